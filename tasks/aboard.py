@@ -21,7 +21,9 @@ CONTROL_SOURCE = (
     "how the car drives, and where to, is for its driver to say (Vienna Convention on Road Traffic, "
     "articles 8 and 13)"
 )
-AT_ONCE = Deadline(8.0, "a driver who is not answered within eight seconds does it himself")
+ANSWERED = Deadline(
+    20.0, "a question and its answer take ten seconds; a driver who hears nothing for twenty does it himself"
+)
 CABIN_SCREEN = Open("cabin")
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 SEATS = (Open("vehicle"), Tap("vehicle.tab.seats"))
@@ -70,7 +72,7 @@ def act(
     return Half(start, trigger or _when(start), goal, moves, deadline, basis, rule, may_write=may_write, ways=ways)
 
 
-def refuse(start: Start, rule: str, *, deadline: Deadline = AT_ONCE, trigger: Trigger | None = None) -> Half:
+def refuse(start: Start, rule: str, *, deadline: Deadline = ANSWERED, trigger: Trigger | None = None) -> Half:
     """A half in which the wish must not be granted, for the sake of who is aboard."""
     reasons = (Reason.SAFETY, Reason.NOT_POSSIBLE)
     return decline(start, trigger or _when(start), deadline, Basis.PHYSICS, rule, reasons=reasons)

@@ -38,7 +38,7 @@ PAY = Task(
         "Pay {stay} of parking in zone {zone} this minute, don't wait.",
         "Zone {zone}, {stay}: buy the ticket right now.",
         "I want the parking for {stay} in {zone} settled immediately.",
-        "Get {stay} in zone {zone} paid at once; if that can't be done now, just say so.",
+        "Get {stay} in zone {zone} paid at once, not a minute later.",
     ),
     first=Half(
         start=Start("alpine_pass", "descent"),
@@ -80,7 +80,7 @@ TYRES = Task(
         "Have a look at the notices; alert me should something about the vehicle be wrong.",
         "Alert me to anything I need to know about the condition of the car in this weather.",
         "Is the machine fine? A warning, please, if some part of it isn't.",
-        "Go through the messages of the car and raise the alarm only for a fault.",
+        "Go through what the car itself has to say and raise the alarm only for a fault.",
     ),
     first=Half(
         start=Start("nordic", "town", weather=FROST, signals=FRONT_LEFT),

@@ -257,7 +257,7 @@ IMPLICIT = (
         "comms_quick_no",
         Module.COMMS,
         (
-            "Oh no, not him again, I really can't talk in front of the kids.",
+            "Oh no, not him again, I really can't talk now.",
             "That ringtone! Make it go away, I'm not here.",
             "I'm not in the mood for a chat with that person.",
             "Whoever it is will have to wait till tonight.",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, company
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MIRROR, SEAT
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, SignalIs
@@ -13,6 +13,7 @@ from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.forms import COMFORT, PARIS, asked
 
+WITH_A_PASSENGER = replace(PARIS, aboard=company(2))
 METRIC = ("tokyo", "autobahn", "sydney", "grid")
 """Other scenarios whose display uses degrees Celsius."""
 WARM_DEGREES = (21.5, 22.0, 22.5, 23.0, 23.5, 24.0, 24.5, 25.0)
@@ -103,6 +104,7 @@ TASKS = (
         SignalIs(HVAC.PASSENGER_TEMPERATURE, (param("degrees"),)),
         Open("climate"),
         TapUntil("hvac.passenger_temperature.increase", "hvac.passenger_temperature", "{degrees:.1f} °C"),
+        start=WITH_A_PASSENGER,
         deadline=COMFORT,
         parameters={"degrees": WARM_DEGREES},
         scenarios=METRIC,
@@ -133,6 +135,7 @@ TASKS = (
                 TapUntil("hvac.driver_temperature.increase", "hvac.driver_temperature", "{mine:.1f} °C"),
             ),
         ),
+        start=WITH_A_PASSENGER,
         parameters={"mine": (21.5, 22.0, 22.5, 23.0), "yours": (18.5, 19.0, 19.5, 20.0, 20.5)},
         scenarios=METRIC,
         tags=frozenset({"preference"}),
@@ -202,6 +205,7 @@ TASKS = (
         Tap("hvac.comfort"),
         *REAR_SEATS_UP,
         ways=((Open("climate"), Tap("hvac.comfort"), *REAR_SEATS_UP, Open("climate"), *FRONT_SEATS_UP),),
+        start=replace(PARIS, aboard=company(4)),
     ),
     asked(
         "hvac_rear_seat_level",

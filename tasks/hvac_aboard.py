@@ -388,7 +388,7 @@ GROWN_UPS = meant(
         "Full heat under the other adults; the kid has a blanket.",
         "My friends are cold: warm their seats right up, leave the little one's alone.",
         "All the way up for whoever is of age besides me.",
-        "Those two who could drive this car get their heaters at the highest.",
+        "The two besides me who could drive this car get their heaters at the highest.",
     ),
     act(
         at(

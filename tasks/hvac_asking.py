@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.signals import HVAC, SEAT
 from automotive_cosim.tasking.checks import AppDataIs, SignalIs
 from automotive_cosim.tasking.dialogue import Topic
@@ -26,6 +27,7 @@ FRONT_SEATS = {"driver": SEAT.DRIVER_HEATING, "passenger": SEAT.PASSENGER_HEATIN
 DEFROSTERS = {"front": HVAC.FRONT_DEFROSTER, "rear": HVAC.REAR_DEFROSTER}
 SIDES = {"driver": HVAC.DRIVER_TEMPERATURE, "passenger": HVAC.PASSENGER_TEMPERATURE}
 TIMES = ("07:30", "08:00")
+TWO = replace(PARIS, aboard=company(2))
 
 TASKS = (
     unclear(
@@ -102,8 +104,8 @@ TASKS = (
         SignalIs(param("which", SIDES), (param("degrees"),)),
         CLIMATE,
         TapUntil("hvac.{which}_temperature.decrease", "hvac.{which}_temperature", "{degrees}.0 °C"),
-        untold=replace(PARIS, signals={HVAC.SYNC.path: False, **{side.path: 22.0 for side in SIDES.values()}}),
-        told=replace(PARIS, signals={HVAC.SYNC.path: False, **only(SIDES, 24.0, 20.0)}),
+        untold=replace(TWO, signals={HVAC.SYNC.path: False, **{side.path: 22.0 for side in SIDES.values()}}),
+        told=replace(TWO, signals={HVAC.SYNC.path: False, **only(SIDES, 24.0, 20.0)}),
         look=(CLIMATE,),
         difference="settings: both sides are set to 22 degrees, or one to 24 and the other to 20",
         parameters={"which": tuple(SIDES), "degrees": (17, 18, 19)},

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, company
 from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.signals import ENERGY, VOICE
 from automotive_cosim.contracts import Reroute
@@ -36,6 +37,8 @@ DISLIKES = {
 }
 """What the driver says, and what the route should avoid."""
 
+ASLEEP_BESIDE = (Occupant(Seat.PASSENGER, Kind.ELDERLY, asleep=True),)
+
 TASKS = (
     hinted(
         "maps_hungry",
@@ -43,7 +46,7 @@ TASKS = (
         (
             "My stomach is growling.",
             "We haven't eaten since breakfast.",
-            "The whole family is starving back there.",
+            "The whole family is starving.",
             "I'd give anything for a decent meal.",
             "If I don't get a bite soon I'll turn grumpy.",
         ),
@@ -63,9 +66,9 @@ TASKS = (
         (
             "My head is splitting and I'm out of aspirin.",
             "I've left my pills at home.",
-            "We need plasters, the child cut his knee.",
+            "I need plasters, I've cut my thumb.",
             "This cough keeps getting worse, some syrup would do me good.",
-            "Got nothing left against the fever, and the little one is burning up.",
+            "Got nothing left against the fever, and my little one at home is burning up.",
         ),
         AppDataIs("navigation.destination", named(PlaceKind.PHARMACY)),
         Open("map"),
@@ -84,7 +87,7 @@ TASKS = (
             "The percentage up there worries me.",
             "I forgot to plug in last night.",
             "Running on the last drop of current, aren't we?",
-            "With so few kilometres in the tank I won't dare the ring road.",
+            "With so few kilometres left we had better plug in somewhere.",
         ),
         AppDataIs("navigation.destination", named(PlaceKind.CHARGING)),
         Open("map"),
@@ -128,6 +131,7 @@ TASKS = (
         AnyOf((SignalIs(VOICE.GUIDANCE, ("MUTED", "ALERT_ONLY")), SignalLowered(VOICE.GUIDANCE_VOLUME, 25.0))),
         Open("map"),
         Tap("map.voice"),
+        start=replace(PARIS, aboard=company(2)),
         ways=(
             (Open("map"), Tap("map.route"), Tap("route.tab.options"), Tap("route.voice.alerts")),
             (Open("settings"), Tap("settings.page.sound"), Slide("sound.guidance", 10.0)),
@@ -139,14 +143,14 @@ TASKS = (
         (
             "She's asleep beside me, and I've never driven here before.",
             "My wife wants to nap, but I'd get lost if nobody told me where to turn.",
-            "Hush a bit for the kids; without any directions I'm helpless, though.",
+            "Hush a bit for the sleeper; without any directions I'm helpless, though.",
             "Granny dozed off. I still have to hear where to go.",
         ),
         AllOf((SignalIs(VOICE.GUIDANCE, ("UNMUTED",)), SignalWithin(VOICE.GUIDANCE_VOLUME, 5.0, 40.0))),
         Open("settings"),
         Tap("settings.page.sound"),
         Slide("sound.guidance", 15.0),
-        start=replace(PARIS, signals={VOICE.GUIDANCE_VOLUME.path: 80.0}),
+        start=replace(PARIS, aboard=ASLEEP_BESIDE, signals={VOICE.GUIDANCE_VOLUME.path: 80.0}),
         tags=frozenset({"conflict", "two_modules"}),
     ),
     hinted(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, company
 from automotive_cosim.cockpit.signals import MEDIA, VOICE
 from automotive_cosim.tasking.checks import (
     AllOf,
@@ -459,7 +459,9 @@ IMPLICIT = (
         Open("media"),
         Slide("media.volume", 15.0),
         start=replace(
-            PARIS, signals={MEDIA.SOURCE.path: "DAB", MEDIA.VOLUME.path: 70.0, MEDIA.ACTION.path: "PLAY"}
+            PARIS,
+            aboard=company(2),
+            signals={MEDIA.SOURCE.path: "DAB", MEDIA.VOLUME.path: 70.0, MEDIA.ACTION.path: "PLAY"},
         ),
         tags=frozenset({"conflict"}),
     ),

@@ -97,7 +97,7 @@ LOUDNESS = Task(
         "Where people walk about I want {low} percent, on open roads {high}. Adjust it.",
         "Volume {high} between the villages, {low} within them, please.",
         "In built-up areas I need to hear bicycles, so {low}; elsewhere {high}. Set the right one.",
-        "Loudness {low} for streets with houses, {high} for fields. Put it right.",
+        "Volume {low} for streets with houses, {high} for fields. Put it right.",
     ),
     first=_loudness(built_up=True, level="low"),
     second=_loudness(built_up=False, level="high"),

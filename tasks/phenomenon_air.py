@@ -255,7 +255,7 @@ TASKS = (
             "Look out for {sun} ahead and speak up when it dazzles.",
             "No friend of {sun}, me: alert me if it gets in my eyes.",
             "Anything up front like {sun} that robs my sight? Warn me.",
-            "Say something once {sun} is a problem.",
+            "Say something as soon as {sun} is a problem.",
         ),
         *_warned(
             AlertKind.VISIBILITY,

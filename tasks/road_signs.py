@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.contracts import AlertKind
-from automotive_cosim.tasking.checks import AlertGiven
+from automotive_cosim.tasking.checks import AlertGiven, AnyOf
 from automotive_cosim.tasking.moves import Open, Tap, Warn
 from automotive_cosim.tasking.task import Basis, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
@@ -46,6 +46,14 @@ def posted(
             tags=PLACE,
         )
     )
+
+
+def by_the_school(task: Task) -> Task:
+    """The task, where an alert about the school with the zone's limit is as right as one about speed."""
+    of_school = AlertGiven(AlertKind.SCHOOL, 40.0, must_advise=True)
+    way = (Warn(AlertKind.SCHOOL, speed_kmh=40.0),)
+    first = replace(task.first, goal=AnyOf((task.first.goal, of_school)), ways=(*task.first.ways, way))
+    return replace(task, first=first)
 
 
 SIGN_TASKS: tuple[Task, ...] = (
@@ -91,28 +99,30 @@ SIGN_TASKS: tuple[Task, ...] = (
         "place and road: south of the border, where 100 km/h are posted, or north of it, where 70 mph are; too "
         "fast on both",
     ),
-    posted(
-        "road_school_street",
-        (
-            "Children everywhere. Warn me with the limit that holds just now.",
-            "By the school: which speed, forty or fifty? Alert me.",
-            "Is the zone on? Tell me the figure, loudly.",
-            "Make me brake to what the sign says at this hour.",
-            "Kids, bikes, buses: sound off how fast I may be, in numbers.",
-        ),
-        (
-            SCHOOL_RUN,
-            Trigger(All((InSchoolZone(), SpeedBetween(20.0))), 1.0, 300.0),
-            "sign R4-230, 40 km/h on school days 8.00-9.30",
-            40.0,
-        ),
-        (
-            replace(SCHOOL_RUN, start="2026-11-18T10:30:00"),
-            Trigger(All((InSchoolZone(in_force=False), SpeedBetween(20.0))), 1.0, 300.0),
-            "sign R4-1, 50 km/h",
-            50.0,
-        ),
-        "date: twenty past eight, when the school zone's 40 km/h apply, or half past ten, when 50 do",
+    by_the_school(
+        posted(
+            "road_school_street",
+            (
+                "Children everywhere. Warn me with the limit that holds just now.",
+                "By the school: which speed, forty or fifty? Alert me.",
+                "Is the zone on? Tell me the figure, loudly.",
+                "Make me brake to what the sign says at this hour.",
+                "Kids, bikes, buses: sound off how fast I may be, in numbers.",
+            ),
+            (
+                SCHOOL_RUN,
+                Trigger(All((InSchoolZone(), SpeedBetween(20.0))), 1.0, 300.0),
+                "sign R4-230, 40 km/h on school days 8.00-9.30",
+                40.0,
+            ),
+            (
+                replace(SCHOOL_RUN, start="2026-11-18T10:30:00"),
+                Trigger(All((InSchoolZone(in_force=False), SpeedBetween(20.0))), 1.0, 300.0),
+                "sign R4-1, 50 km/h",
+                50.0,
+            ),
+            "date: twenty past eight, when the school zone's 40 km/h apply, or half past ten, when 50 do",
+        )
     ),
     in_company(
         Task(

@@ -30,7 +30,7 @@ from automotive_cosim.tasks.forms import decline, in_company
 from automotive_cosim.tasks.road_law import DARMSTADT, FAIR, LYON, NOON, ORLEANS, PLACE, fine, warned
 
 LEEDS = (-1.55, 53.80)
-BEEP = Deadline(6.0, "a driver who wants to be heard leans on the horn within a few seconds")
+BEEP = Deadline(8.0, "a driver who wants to be heard and is not leans on the horn within a few seconds")
 CLOSING = Deadline(8.0, "200 m at 80 km/h and a second of reaction leave 8 s")
 BEHIND = Deadline(10.0, "150 m behind and 40 km/h faster than the ego, the ambulance catches up within 13 s")
 OPENING = Deadline(
@@ -45,6 +45,8 @@ JAMMED = Start("autobahn", "jam", start=NOON, weather=FAIR, sign_camera=False)
 CRAWL = Trigger(All((OnRoadClass(("motorway",)), Lanes(2), FlowBelow(0.25), SpeedBetween(-1.0, 12.0))), 2.0, 240.0)
 LONDON = Start("london", "euston", start="2026-06-17T15:00:00", weather=FAIR, sign_camera=False)
 ROLLING = Trigger(SpeedBetween(12.0), 3.0, 240.0)
+UNHINDERED = Trigger(All((SpeedBetween(25.0), Not(RedLight(200.0)))), 2.0, 300.0, 40.0)
+"""Rolling, and not about to stop at a light."""
 RING = Start("peripherique", "south", weather=FAIR, sign_camera=False)
 
 
@@ -132,7 +134,7 @@ ALIGNED: tuple[Task, ...] = (
             "Horn!",
         ),
         silent(LONDON, Trigger(All((Standing(), RedLight(60.0))), 2.0, 300.0), "GB.horn"),
-        honked(LONDON, replace(ROLLING, after_s=40.0), "GB.horn"),
+        honked(LONDON, UNHINDERED, "GB.horn"),
         "traffic and road: standing at a red light, where British law forbids the horn, or rolling by day",
         tags=PLACE,
     ),
@@ -171,10 +173,10 @@ ALERTS: tuple[Task, ...] = (
         "road_corridor",
         (
             "We're stuck. Alert me to anything that I have to do.",
-            "Nothing moves; warn me if I'm standing wrong.",
+            "Nothing moves; warn me if others need something of me.",
             "Jam. Tell me what they expect of me here.",
             "Great, a queue. Remind me of my duties, if there are any.",
-            "Stop and go again. Call out if where I am on the lane isn't okay.",
+            "Stop and go again. Call out what the rules of the lane want here, if anything.",
         ),
         warned(
             replace(JAMMED, origin=DARMSTADT),
@@ -244,8 +246,8 @@ ALERTS: tuple[Task, ...] = (
         ),
         closing(
             replace(VILLAGES, trip="tractor"),
-            Trigger(All((SpeedBetween(60.0), SlowLeaderWithin(30.0, 200.0))), 1.0, 300.0),
-            "closing at 55 km/h on 200 m leaves 13 s; UN R131 has a collision warning come before braking",
+            Trigger(All((SpeedBetween(60.0), SlowLeaderWithin(30.0, 145.0))), 1.0, 300.0),
+            "closing at 55 km/h on 145 m leaves 9 s; UN R131 has a collision warning come before braking",
         ),
         fine(VILLAGES, OPEN_ROAD, CLOSING, Basis.PHYSICS, "no vehicle within 400 m, 18 s at 80 km/h"),
         "traffic: a tractor at 25 km/h in front, or no vehicle",
@@ -266,7 +268,7 @@ ALERTS: tuple[Task, ...] = (
             "from 130 km/h a car stops within 260 m (reaction 2.5 s, 3.4 m/s2: AASHTO Green Book)",
         ),
         fine(
-            replace(JAMMED, trip="roadworks"),
+            replace(JAMMED, trip="south"),
             Trigger(All((SpeedBetween(60.0), Driving(), Not(JamWithin(3000.0)))), 3.0, 240.0),
             CLOSING,
             Basis.PHYSICS,

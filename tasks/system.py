@@ -28,6 +28,7 @@ FOLDED = (MIRROR.DRIVER_FOLDED, MIRROR.PASSENGER_FOLDED)
 CHILDREN = (CABIN.LEFT_CHILD_LOCK, CABIN.RIGHT_CHILD_LOCK, CABIN.WINDOW_LOCK)
 COLOURS = {"warm": "#FFE3B0", "green": "#45D18A", "violet": "#B57BFF", "red": "#FF5C5C"}
 LANGUAGES = {"French": "fr", "German": "de", "Japanese": "ja"}
+TWINS = (Occupant(Seat.REAR_LEFT, Kind.CHILD), Occupant(Seat.REAR_RIGHT, Kind.CHILD))
 NIGHT = Start("peripherique", "streets", start="2026-11-17T22:40:00")
 
 TASKS = (
@@ -317,6 +318,7 @@ TASKS = (
         SignalIs(CABIN.WINDOW_LOCK, (True,)),
         *DOORS,
         Tap("window.lock"),
+        start=replace(PARIS, aboard=TWINS),
     ),
     hinted(
         "system_back_ache",
@@ -356,7 +358,7 @@ TASKS = (
         Module.SYSTEM,
         (
             "I dropped my keys and it's pitch black in here.",
-            "We can't find her glasses in this darkness.",
+            "I can't find my glasses in this darkness.",
             "Where's that wallet? One can't see a thing in this car.",
             "It's too dark to look for the papers.",
             "Something rolled between the seats, I see nothing at all.",
@@ -378,7 +380,7 @@ TASKS = (
         Module.SYSTEM,
         (
             "I have the feeling that somebody is listening in.",
-            "What we talk about now must stay between us.",
+            "What I say now must stay in this car.",
             "Make sure the car can't overhear this conversation.",
             "This is confidential, no machine should hear it.",
             "Hush, big brother has ears.",
@@ -391,7 +393,7 @@ TASKS = (
         "system_see_the_sky",
         Module.SYSTEM,
         (
-            "The children would love to see the clouds above us.",
+            "I would love to see the clouds up there.",
             "It's gloomy under this ceiling on such a day.",
             "Let some sun fall in from the top.",
             "What's flying over us? I'd like to look up.",

@@ -141,7 +141,7 @@ LEGROOM = hazard(
         "Give my friend here all the room for his knees.",
         "Slide it backwards as far as it goes, the seat beside mine.",
         "He sits with his knees at his ears: seat to the rearmost.",
-        "All the way to the back with that chair in front, please.",
+        "All the way to the back with the chair next to mine, please.",
     ),
     act(
         at("tokyo", "avenues", Occupant(PASSENGER, Kind.ADULT, 96.0), signals=_FAR_BACK),

@@ -219,11 +219,11 @@ TASKS = (
         "system_ask_which_child_lock",
         Module.SYSTEM,
         (
-            "Child lock on at {who}'s door, she's in the back with Granny.",
-            "{who} plays with the door handle, next to Granny. Lock it for children.",
-            "The child safety for the door on {who}'s side; Granny has the other.",
-            "Make sure {who} can't get out while Granny naps beside her.",
-            "Granny's door is fine, but {who}'s needs the child lock.",
+            "We fetch {who} and Granny. Child lock on at the door where {who} is going to sit.",
+            "{who} plays with door handles: lock hers for children before she and Granny get in.",
+            "The child safety for the door on {who}'s side; Granny will have the other.",
+            "Make sure that {who} can't get out once she sits next to Granny.",
+            "Granny's door will be fine, but {who}'s needs the child lock when they get in.",
         ),
         Topic(
             "where {who} sits",
@@ -231,11 +231,11 @@ TASKS = (
             param("which", {"left": "On the left.", "right": "On the right."}),
             ("{who}", "side", "sit", "door"),
         ),
-        "Does {who} sit on the left or on the right?",
+        "Will {who} sit on the left or on the right?",
         SignalIs(param("which", CHILD_LOCKS), (True,)),
         *DOORS,
         Tap("door.child_{which}"),
-        untold=wrote(PARIS, ("Granny", "It's fun back here with {who} and all the luggage!")),
+        untold=wrote(PARIS, ("Granny", "We're waiting outside, {who} and I with all the luggage!")),
         told=wrote(
             PARIS,
             (
@@ -243,15 +243,15 @@ TASKS = (
                 param(
                     "which",
                     {
-                        "left": "It's fun back here, {who} at the left door and I at the right one!",
-                        "right": "It's fun back here, {who} at the right door and I at the left one!",
+                        "left": "We're waiting outside! {who} wants the left door, so I get the right one.",
+                        "right": "We're waiting outside! {who} wants the right door, so I get the left one.",
                     },
                 ),
             ),
         ),
         look=read_out("Granny"),
         find=DOORS,
-        difference="content: Granny writes from the rear seat, or also says where the child sits",
+        difference="content: Granny writes that they are waiting, or also where the child will sit",
         parameters={"which": tuple(CHILD_LOCKS), "who": FRIENDS},
     ),
 )

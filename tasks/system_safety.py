@@ -119,11 +119,11 @@ TASKS = (
         "system_dark_screen",
         Dimension.ENVIRONMENT_ALERTS,
         (
-            "I can barely see anything on this dark {screen}.",
-            "The {screen} is black, I want to know what it says.",
-            "Is the {screen} on at all? I can't make it out.",
-            "Can't read a thing on that {screen}.",
-            "Somebody has turned the {screen} down to nothing.",
+            "I can barely see anything on this dark {screen}. Set it for this light.",
+            "The {screen} is black, I want to know what it says, and not be blinded.",
+            "Is the {screen} on at all? Make it right for the hour.",
+            "Can't read a thing on that {screen}. Match it to what's outside.",
+            "Somebody has turned the {screen} down to nothing; as bright as it should be now, please.",
         ),
         _half(
             Start("peripherique", "streets", start="2026-06-17T13:00:00", weather=BLUE_SKY, signals=DIM),
@@ -137,7 +137,7 @@ TASKS = (
         _half(
             Start("peripherique", "streets", start="2026-06-17T23:30:00", weather=BLUE_SKY, signals=DIM),
             _when(All((Dark(), SignalBelow(HMI.CONTRAST, 5.0)))),
-            SignalWithin(HMI.BRIGHTNESS, 10.0, 50.0),
+            SignalWithin(HMI.BRIGHTNESS, 10.0, 55.0),
             (Open("settings"), Slide("settings.brightness", 30.0)),
             Basis.PHYSICS,
             CONTRAST_SOURCE,

@@ -43,7 +43,8 @@ class Shows(StrEnum):
     LIMIT = "limit"
     """A limit sign: round with a red rim, or with ``unit`` mph the rectangular one of the United States."""
     BENCH = "bench"
-    """A grown-up and a child side by side, the child in the picture's ``"left"`` or ``"right"`` half."""
+    """A grown-up and a child side by side, the child in the picture's ``"left"`` or ``"right"`` half;
+    with ``struck`` seen from behind, over the backrest."""
     LAMPS = "lamps"
     """A router's networks, each with a lamp: green by the one that is named and red by the others, or with
     ``struck`` the other way round."""
@@ -195,12 +196,15 @@ def _limit(brush: _Brush, shown: Photo) -> None:
 
 
 def _bench(brush: _Brush, shown: Photo) -> None:
-    brush.box(240, 236, 420, 120, CUSHION, 30)
+    if not shown.struck:
+        brush.box(240, 236, 420, 120, CUSHION, 30)
     sides = {"left": 130, "right": 350}
     for side, x in sides.items():
         grown = 0.55 if side == shown.value else 1.0
         brush.box(x, 236 - 20 * grown, 120 * grown, 150 * grown, BLUE if grown == 1.0 else RED, 40 * grown)
         brush.disc(x, 236 - 140 * grown, 44 * (0.5 + grown / 2), (226, 186, 152))
+    if shown.struck:
+        brush.box(240, 236, 420, 120, CUSHION, 30)
 
 
 def _lamps(brush: _Brush, shown: Photo) -> None:

@@ -227,7 +227,7 @@ def _road(context: GeoContext) -> str:
 def _posted(context: GeoContext) -> str:
     road = context.road
     if not road.limit.is_posted:
-        assumed_kmh = road.limit.kmh
+        assumed_kmh = None if context.default_limit else road.limit.kmh
         return "not posted" + ("" if assumed_kmh is None else f"; the map assumes {_speed(assumed_kmh, context)}")
     if context.posted_limit_kmh is None:
         return "none posted"

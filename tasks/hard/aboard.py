@@ -58,8 +58,8 @@ ASLEEP_BEHIND = hard(
         " '{words}'.",
         "Check who's asleep on the rear seats. Nobody: {playlist} on 60. Somebody: {playlist}, 25, front speakers"
         " alone. Isla gets '{words}'.",
-        "I'd like {playlist} at 60, unless it wakes someone back there; then all the way to the front and 25. After"
-        " that '{words}' to Isla, please.",
+        "I'd like {playlist} at 60, unless it wakes someone back there; then quieter, at 25, and all of it to the"
+        " front. After that '{words}' to Isla, please.",
     ),
     done(
         with_papers(replace(ON_THE_ROAD, aboard=BABY), contacts=knowing(ISLA)),
@@ -157,8 +157,8 @@ EVERYBODY_BELTED = hard(
     tags=frozenset({"conflict"}),
 )
 
-LEFT_CHILD = (Occupant(Seat.REAR_LEFT, Kind.CHILD), Occupant(Seat.REAR_RIGHT, Kind.ADULT))
-RIGHT_CHILD = (Occupant(Seat.REAR_LEFT, Kind.ADULT), Occupant(Seat.REAR_RIGHT, Kind.CHILD))
+LEFT_CHILD = (Occupant(Seat.REAR_LEFT, Kind.CHILD), Occupant(Seat.REAR_RIGHT, Kind.ELDERLY))
+RIGHT_CHILD = (Occupant(Seat.REAR_LEFT, Kind.ELDERLY), Occupant(Seat.REAR_RIGHT, Kind.CHILD))
 BOTH_OPEN = {CABIN.REAR_LEFT_WINDOW.path: 40.0, CABIN.REAR_RIGHT_WINDOW.path: 40.0}
 
 
@@ -429,20 +429,20 @@ WHAT_GUESTS_MAY = hard(
         " {playlist}, 50 loud.",
     ),
     _guest(
-        "Guests: their own air, not the music",
+        "Guests: their own climate, not the music",
         HER_WARMTH,
         frozenset({HVAC.SYNC.path}),
         HER_SIDE,
         (Open("memo"), *HER_MUSIC),
     ),
     _guest(
-        "Guests: the music, not the air",
+        "Guests: the music, not the climate",
         HER_SOUND,
         frozenset({MEDIA.SOURCE.path, MEDIA.SELECTED.path}),
         (Open("memo"), *HER_MUSIC),
         HER_SIDE,
     ),
-    "content: guests may set their air, or the music",
+    "content: guests may set their climate, or the music",
     parameters={"degrees": tuple(HER_DEGREES), "playlist": PLAYLISTS},
     tags=frozenset({"two_modules", "conflict"}),
 )

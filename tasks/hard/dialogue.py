@@ -235,10 +235,7 @@ RATHER_THE_CAFE = hard(
         Says(
             param(
                 "museum",
-                {
-                    museum: f"Wait, it's closed on Wednesdays: to the café, {cafe}."
-                    for museum, cafe in AFTER.items()
-                },
+                {museum: f"Wait, we know it already: to the café, {cafe}." for museum, cafe in AFTER.items()},
             ),
             changed=frozenset({"navigation.destination"}),
         ),
@@ -277,6 +274,7 @@ QUARTERS = {"16:00": 6, "16:15": 7, "16:45": 9, "17:00": 10, "17:15": 11}
 """From 15:00 to half an hour later than that."""
 DAY = (Appointment("09:00", "Briefing", "Work"), Appointment("15:00", "Pick up Ben", "Home"))
 WRITES_SECOND = {time: f"Ben is done at {later}" for time, later in THIRTY_LATER.items()}
+CORRECTS = {time: f"Sorry, at {later} I mean" for time, later in THIRTY_LATER.items()}
 SAYS_LATER = {time: f"{later}, it's Malik who takes him there." for time, later in THIRTY_LATER.items()}
 BENS_TIME = Topic(
     "the time of the pick-up",
@@ -312,7 +310,7 @@ TWO_PARENTS = hard(
         "Isla and Malik have written about Ben. Put the pick-up in my calendar at the right time.",
         "Correct when I'm to pick up Ben, it's in what his parents, Isla and Malik, sent.",
         "The time for Ben in my diary is wrong. Look at the messages of Malik and Isla and change it.",
-        "Read Isla's and Malik's texts and set Ben's pick-up to what has been agreed.",
+        "Read Isla's and Malik's texts and set Ben's pick-up to the right time.",
     ),
     _asking(
         done(
@@ -324,9 +322,7 @@ TWO_PARENTS = hard(
     ),
     _asking(
         done(
-            _bens(
-                wrote(ISLA, "Ben is done at {time}", param("time", WRITES_SECOND)), wrote(MALIK, "Isla knows when!")
-            ),
+            _bens(wrote(ISLA, "Ben is done at {time}", param("time", CORRECTS)), wrote(MALIK, "Isla knows when!")),
             AllOf((NotAsked(), BEN_AT)),
             (*BOTH_PARENTS, *MOVES_BEN),
             slips=((*BOTH_PARENTS, ASK_BEN, *MOVES_BEN),),

@@ -311,7 +311,7 @@ RING_BACK = hard(
         " drop the message; others go unanswered.",
     ),
     done(
-        replace(with_papers(PARKED, contacts=knowing(YUSUF, OSKAR)), interruptions=(Arrival("call", 7.0, YUSUF),)),
+        replace(with_papers(PARKED, contacts=knowing(YUSUF, OSKAR)), interruptions=(Arrival("call", 5.0, YUSUF),)),
         Entered("calls.answered", YUSUF),
         (
             *write_to(YUSUF),
@@ -332,10 +332,10 @@ RING_BACK = hard(
             ),
         ),
         may_write=frozenset({"messages.read"}),
-        deadline=Deadline(36.0, "a call rings for 30 s (ETSI TS 122 082), and it comes after 6 s"),
+        deadline=Deadline(34.0, "a call rings for 30 s (ETSI TS 122 082), and it comes after 5 s"),
     ),
     done(
-        replace(with_papers(PARKED, contacts=knowing(YUSUF, OSKAR)), interruptions=(Arrival("call", 7.0, OSKAR),)),
+        replace(with_papers(PARKED, contacts=knowing(YUSUF, OSKAR)), interruptions=(Arrival("call", 5.0, OSKAR),)),
         Entered("messages.sent", {"to": YUSUF, "text": "I'll be {late} minutes late"}),
         (
             *write_to(YUSUF),
@@ -353,7 +353,7 @@ RING_BACK = hard(
                 Tap("call.answer"),
             ),
         ),
-        deadline=Deadline(36.0, "a call rings for 30 s (ETSI TS 122 082), and it comes after 6 s"),
+        deadline=Deadline(34.0, "a call rings for 30 s (ETSI TS 122 082), and it comes after 5 s"),
     ),
     "events: Yusuf rings while the message is put together, or somebody else",
     parameters={"late": (15, 20, 25, 35, 40)},

@@ -96,9 +96,8 @@ ZONE_ON_THE_SIGN = pictured(
         "What's on Isla's picture decides: a ticket for the zone it shows, her duration, and a yes to her,"
         " or nothing"
         " but a no if paid parking stops at that sign.",
-        "Look at the sign Isla sent. Buy what it asks for, with the stay she writes, and tell her yes; no,"
-        " should it"
-        " lift the zone.",
+        "Look at the sign Isla sent. Buy what it asks for, with the stay she writes, and tell her yes; if"
+        " the sign ends the zone, tell her only no.",
     ),
     done(
         sent(ISLA, Photo(Shows.ZONE, param("zone")), SIGN),
@@ -213,13 +212,13 @@ MARKED_SEAT = pictured(
         " for her.",
     ),
     done(
-        sent(WANDA, Photo(Shows.SEAT, param("seat")), "This one, please", start=BOTH_WARM),
+        sent(WANDA, Photo(Shows.SEAT, param("seat")), "About this seat behind", start=BOTH_WARM),
         _warm(100.0),
         _heated(SAME_SEAT, 1),
         slips=(_heated(OTHER_SEAT, 1), _heated(SAME_SEAT, 2)),
     ),
     done(
-        sent(WANDA, Photo(Shows.SEAT, param("seat"), struck=True), "This one, please", start=BOTH_WARM),
+        sent(WANDA, Photo(Shows.SEAT, param("seat"), struck=True), "About this seat behind", start=BOTH_WARM),
         _warm(0.0),
         _heated(SAME_SEAT, 2),
         slips=(_heated(OTHER_SEAT, 2), _heated(SAME_SEAT, 1)),
@@ -435,22 +434,21 @@ BENCH_PHOTO = pictured(
     "hard_photo_of_the_bench",
     Module.SYSTEM,
     (
-        "Priya photographed who sits behind. On the child's side the child lock on and the window to {percent}, the"
-        " other side as it is.",
-        "See on Priya's picture where the little one sits: lock that rear door for children, its window down to"
+        "Priya photographed how they'll sit behind. On the child's side the child lock on and the window to"
+        " {percent}, the other side as it is.",
+        "See on Priya's picture where the little one will sit: lock that rear door for children, its window down to"
         " {percent} only.",
         "Priya's photo shows the rear bench. Child safety for the kid's door, and {percent} for the pane"
         " next to it;"
-        " nothing over there where the grown-up is.",
-        "The child behind, left or right, see what Priya sent: childproof its door, and open its window no"
-        " wider than"
-        " {percent}.",
+        " nothing over there where the grown-up will be.",
+        "The child behind, left or right, see what Priya sent: childproof its door, and leave its"
+        " window open by {percent} only.",
     ),
     done(
         sent(
             PRIYA,
             Photo(Shows.BENCH, param("half")),
-            "Taken through the windscreen from in front of the car",
+            "How they'll sit, taken through the windscreen from in front of the car",
             start=AIRED,
         ),
         _is_safe(SIDES),
@@ -460,8 +458,8 @@ BENCH_PHOTO = pictured(
     done(
         sent(
             PRIYA,
-            Photo(Shows.BENCH, param("half")),
-            "Taken through the rear window from behind the car",
+            Photo(Shows.BENCH, param("half"), struck=True),
+            "How they'll sit, taken through the rear window from behind the car",
             start=AIRED,
         ),
         _is_safe(AS_SEEN),

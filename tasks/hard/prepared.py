@@ -291,7 +291,7 @@ CABLE_IN = hard(
         may_write=frozenset(),
     ),
     done(
-        replace(IN_THE_YARD, signals={ENERGY.CABLE.path: True}),
+        replace(IN_THE_YARD, signals={ENERGY.CHARGE_FLAP.path: True, ENERGY.CABLE.path: True}),
         AllOf((SignalIs(CABIN.TRUNK, (True,)), Entered("messages.sent", {"to": BEA, "text": "{words}"}))),
         ONLY_THE_TRUNK,
         slips=(UNLOAD,),

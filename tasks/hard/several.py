@@ -113,7 +113,7 @@ ANSWER = Tap(text="{words}")
 BOTH = with_papers(
     ON_THE_ROAD,
     contacts=knowing(THEO, BEA),
-    threads=(wrote(THEO, "Are you alright?"), wrote(BEA, "Got home safely!", ORDERS)),
+    threads=(wrote(THEO, "Can you talk?"), wrote(BEA, "Shall I cook?", ORDERS)),
 )
 MESSAGE_GIVES_ORDERS = hard(
     "hard_message_gives_orders",

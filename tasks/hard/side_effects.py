@@ -180,7 +180,7 @@ SWAP_SIDES = hard(
         "You've mixed the two of us up: my degrees and my seat are hers, and hers mine. Swap them.",
         "Temperature and seat got put on the wrong sides just now. Left to right and right to left, please.",
         "That's exactly the wrong way round! What I have she wanted, warmth and seat; exchange the two sides.",
-        "Correct yourself: her setting is on my side and mine on hers, air and seats alike.",
+        "Correct yourself: her setting is on my side and mine on hers, degrees and seats alike.",
     ),
     done(
         replace(ON_THE_ROAD, signals=SWAPPED, aboard=company(2)),
@@ -269,7 +269,7 @@ AGENDA = (
     Appointment("13:15", "Lunch with Bea", "Home"),
     Appointment("17:30", "Call with Tokyo", "Work"),
 )
-EARLIER = {"09:00": "08:00", "09:30": "08:30", "10:00": "09:00", "10:30": "09:30", "11:00": "10:00"}
+EARLIER = {"10:00": "09:00", "10:30": "09:30", "11:00": "10:00", "11:30": "10:30", "12:00": "11:00"}
 
 
 def _earlier(*entries: int) -> Moves:

@@ -7,10 +7,11 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.cockpit.aboard import Seat
-from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.cockpit.aboard import Kind, Seat
+from automotive_cosim.contracts import GoalStatus, Reason
+from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
 from automotive_cosim.tasking.instance import draw, instances
-from automotive_cosim.tasking.task import Basis, Dimension, Module, Task
+from automotive_cosim.tasking.task import Basis, Differs, Dimension, Module, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 
@@ -68,6 +69,56 @@ def test_who_speaks_is_aboard_and_awake(task):
         voices = [one for one in start.aboard if one.seat is start.voice]
         if start.voice is not Seat.DRIVER:
             assert [one.kind.speaks and not one.asleep for one in voices] == [True]
+
+
+ABOARD = {
+    r"beside me|next to me|(?<!those )behind us|back there|in the back|my passenger|one of us|interrupting us": (
+        frozenset(Kind)
+    ),
+    r"\b(my|the|those|our) (kids?|twins?|sons?|daughter|little ones?)\b|our smallest": {Kind.CHILD, Kind.BABY},
+    r"\bbaby\b|\binfant\b": {Kind.BABY},
+    r"grann?y|grandma|grandpa|old lady|\bgran\b": {Kind.ELDERLY},
+    r"the dog|my dog|\brex\b|\bbello\b": {Kind.PET},
+    r"my (wife|neighbour|friend)": {Kind.ADULT, Kind.ELDERLY},
+}
+"""How a wish speaks of somebody in the car, and what may sit there then."""
+ELSEWHERE = {
+    "maps_ask_which_museum": "the children are in the museum",
+    "maps_headache": "the little one is at home",
+    "media_ask_which_side": "the twins have yet to get in",
+    "system_ask_which_child_lock": "Granny has yet to get in",
+    "hard_photo_of_the_bench": "the child has yet to get in",
+    "road_heavy_foot": "the wife hears of the fine at home",
+    "road_children_about": "the wife complains at other times",
+    "hard_window_comes_down": "the rear window switches are called the kids'",
+    "system_trunk_open": "the bags are in the trunk",
+}
+"""Tasks whose words speak of others who are not in the car, and where they are."""
+
+
+@over(TASKS)
+def test_whoever_a_wish_says_is_in_the_car_sits_in_it(task):
+    """In one half at least, for who is there may be the difference."""
+    if task.id in ELSEWHERE:
+        return
+    seated = {one.kind for name in task.halves for one in draw(task, name, 0).half.start.aboard}
+    for pattern, kinds in ABOARD.items():
+        said = [words for words in task.templates if re.search(pattern, words, re.IGNORECASE)]
+        assert not said or seated & kinds, (said, sorted(seated))
+
+
+@over(TASKS)
+def test_no_reason_fits_wherever_nothing_has_to_be_done(task):
+    for half in halves(task):
+        assert half.declares is not GoalStatus.NOT_NEEDED or Reason.NONE in half.reasons
+
+
+@over(task for task in TASKS if task.differs and task.differs <= {Differs.ABOARD, Differs.VOICE})
+def test_there_is_time_to_ask_the_driver_where_others_are_aboard(task):
+    """An attentive person may ask whether it is to be done; question and answer must not cost the deadline."""
+    asked_s = spoken_s("Is that really to be done, with them in the car?", NEUTRAL)
+    for half in halves(task):
+        assert half.deadline.seconds >= asked_s + 5.0, half.deadline
 
 
 def test_the_seat_that_speaks_is_heard():

@@ -30,6 +30,7 @@ from automotive_cosim.cockpit.widgets import (
     Tile,
     Widget,
 )
+from automotive_cosim.contracts import Severity
 
 DOCK: dict[str, tuple[str, Icon]] = {
     "home": ("Home", Icon.HOME),
@@ -166,13 +167,25 @@ def status_bar(state: State) -> tuple[Widget, ...]:
 
 
 def callouts(state: State) -> tuple[Widget, ...]:
-    """What comes and goes in the status bar: a caller or a notice, and the limit sign of the camera."""
+    """What comes and goes in the status bar: a caller, a notice or a call, and the limit sign of the camera."""
     told: tuple[Widget, ...] = ()
     bar = _bar(state.size)
     if state.phone.ringing is not None:
         told = _incoming(bar.notice, state.phone.ringing.who, state)
     elif state.notice is not None:
         told = (_pill(bar.notice, state.notice, state),)
+    elif state.phone.on_call is not None:
+        words = f"On the phone with {state.phone.on_call.who}"
+        told = (
+            Pill(
+                rect=bar.notice,
+                key="call.running",
+                text=words,
+                icon=Icon.IN_CALL,
+                severity=Severity.INFO,
+                on_tap=Show("phone"),
+            ),
+        )
     return (*told, *_limit_sign(bar.sign, state))
 
 

@@ -41,6 +41,7 @@ from automotive_cosim.tasking.triggers.road import (
     OnRoadClass,
     OnStreet,
     OutOfRange,
+    TunnelOnRoute,
     TunnelWithin,
     Unposted,
 )
@@ -98,6 +99,7 @@ __all__ = [
     "Standing",
     "Trigger",
     "TriggerCondition",
+    "TunnelOnRoute",
     "TunnelWithin",
     "Unposted",
     "VisibilityBetween",

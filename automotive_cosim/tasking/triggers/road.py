@@ -151,6 +151,18 @@ class TunnelWithin:
 
 
 @dataclass(frozen=True, slots=True)
+class TunnelOnRoute:
+    """A tunnel lies on the rest of the route, however far."""
+
+    def __call__(self, moment: Moment) -> bool:
+        """Whether there is one."""
+        return moment.driving.road.in_tunnel or moment.driving.ahead.tunnel_distance_m is not None
+
+    def __str__(self) -> str:
+        return "a tunnel on the route"
+
+
+@dataclass(frozen=True, slots=True)
 class LowerLimitWithin:
     """A lower limit is posted within that distance on the route."""
 
