@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.screens.parts import content, note, title
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Widget
+from automotive_cosim.contracts.text import joined, say
 
 MOVES_MIN = (
     ("hour_earlier", "-1 h", -60),
@@ -29,7 +30,7 @@ def appointment(state: State) -> tuple[Widget, ...]:
     agenda = state.desk.agenda
     at = int(state.picked.get("appointment", "0"))
     if at >= len(agenda):
-        return (note(inner, "appointment.gone", "This appointment is no longer there"),)
+        return (note(inner, "appointment.gone", say("This appointment is no longer there")),)
     entry = agenda[at]
 
     def put(others: tuple[Appointment, ...], said: str) -> Put:
@@ -39,7 +40,9 @@ def appointment(state: State) -> tuple[Widget, ...]:
         hours, minutes = map(int, entry.at.split(":"))
         then = (60 * hours + minutes + by_min) % 1440
         new = replace(entry, at=f"{then // 60:02d}:{then % 60:02d}")
-        return put((*agenda[:at], new, *agenda[at + 1 :]), f"{entry.title} is at {new.at}")
+        return put(
+            (*agenda[:at], new, *agenda[at + 1 :]), say("{title} is at {time}", title=entry.title, time=new.at)
+        )
 
     cells = times.columns(len(MOVES_MIN), 12)
     back, there, remove = acts.columns(3, 16)
@@ -47,32 +50,32 @@ def appointment(state: State) -> tuple[Widget, ...]:
         Card(
             rect=area,
             children=(
-                title(head, Icon.CALENDAR, f"{entry.at} {entry.title}", "appointment.title"),
+                title(head, Icon.CALENDAR, joined(" ", (entry.at, entry.title)), "appointment.title"),
                 Label(
                     rect=where,
                     key="appointment.place",
                     text=entry.place,
-                    description="Place",
+                    description=say("Place"),
                     style=Type.HEADLINE,
                 ),
                 *(
                     Button(rect=cell, key=f"appointment.{key}", text=text, icon=Icon.CLOCK, on_tap=moved(by_min))
                     for cell, (key, text, by_min) in zip(cells, MOVES_MIN, strict=True)
                 ),
-                Button(rect=back, key="appointment.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+                Button(rect=back, key="appointment.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
                 Button(
                     rect=there,
                     key="appointment.place_there",
-                    text="Show the place",
+                    text=say("Show the place"),
                     icon=Icon.GOAL,
                     on_tap=Show("place", entry.place),
                 ),
                 Button(
                     rect=remove,
                     key="appointment.remove",
-                    text="Remove",
+                    text=say("Remove"),
                     icon=Icon.DELETE,
-                    on_tap=put((*agenda[:at], *agenda[at + 1 :]), f"{entry.title} is removed"),
+                    on_tap=put((*agenda[:at], *agenda[at + 1 :]), say("{name} is removed", name=entry.title)),
                 ),
             ),
         ),

@@ -27,6 +27,7 @@ from automotive_cosim.cockpit.widgets import (
     Tile,
     Widget,
 )
+from automotive_cosim.contracts.text import say
 
 ROOMS = {
     **dict.fromkeys(("home", "map", "explore", "place", "route"), Room.WHOLE),
@@ -111,11 +112,11 @@ def stepper(
         Button(
             rect=left.middle(side, side),
             key=f"{key}.decrease",
-            description=f"{name} lower by {by}",
+            description=say("{name} lower by {step}", name=name, step=by),
             icon=Icon.MINUS,
             on_tap=Set(signal, less),
             on_hold=Set(signal, far_less),
-            disabled="It is at its lowest" if less == value else "",
+            disabled=say("It is at its lowest") if less == value else "",
             locked=locked,
         ),
         Label(
@@ -129,11 +130,11 @@ def stepper(
         Button(
             rect=right.middle(side, side),
             key=f"{key}.increase",
-            description=f"{name} higher by {by}",
+            description=say("{name} higher by {step}", name=name, step=by),
             icon=Icon.PLUS,
             on_tap=Set(signal, more),
             on_hold=Set(signal, far_more),
-            disabled="It is at its highest" if more == value else "",
+            disabled=say("It is at its highest") if more == value else "",
             locked=locked,
         ),
     )
@@ -158,7 +159,7 @@ def switch(
 
 def grouped(tile: Tile, group: str) -> Tile:
     """The tile, told apart from those of the same name in other groups by whoever hears it alone."""
-    return replace(tile, description=f"{group}: {tile.text}")
+    return replace(tile, description=say("{name}: {value}", name=group, value=tile.text))
 
 
 def levels(
@@ -365,7 +366,7 @@ def _rest(rect: Rect, key: str, state: State) -> Row:
     return Row(
         rect=rect,
         key=f"{key}.rest",
-        text="The rest at a stop",
+        text=say("The rest at a stop"),
         icon=Icon.INFO,
         on_tap=Show(state.screen),
         locked=state.locked(Restriction.LIMIT_CONTENT),
@@ -379,7 +380,7 @@ def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put])
         Button(
             rect=earlier,
             key=f"{key}.earlier",
-            description="Half an hour earlier",
+            description=say("Half an hour earlier"),
             icon=Icon.MINUS,
             on_tap=put(timer.moved(-30)),
         ),
@@ -387,14 +388,14 @@ def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put])
             rect=time,
             key=f"{key}.time",
             text=timer.shown,
-            description="Time",
+            description=say("Time"),
             style=Type.HEADLINE,
             align="centre",
         ),
         Button(
             rect=later,
             key=f"{key}.later",
-            description="Half an hour later",
+            description=say("Half an hour later"),
             icon=Icon.PLUS,
             on_tap=put(timer.moved(30)),
         ),
