@@ -16,9 +16,6 @@ from importlib.resources import files
 from io import BytesIO
 from typing import Any, TypeVar
 
-from babel.messages.mofile import write_mo
-from babel.messages.pofile import read_po
-
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import Text
@@ -52,6 +49,9 @@ _OWN: Mapping[type[Widget], tuple[str, ...]] = {
 @lru_cache
 def catalogue(language: str) -> GNUTranslations:
     """The catalogue of a language other than English."""
+    from babel.messages.mofile import write_mo  # takes a while to import, and English does without
+    from babel.messages.pofile import read_po
+
     file = files("automotive_cosim.cockpit").joinpath("languages", f"{language}.po")
     compiled = BytesIO()
     with file.open("rb") as texts:
@@ -69,7 +69,9 @@ def said(text: str, language: str) -> str:
 
 def word(message: str, language: str) -> str:
     """What the screens say for a message without fields; unchanged if they do not say it."""
-    return message if language == Language.ENGLISH else catalogue(language).gettext(message)
+    if not message or language == Language.ENGLISH:  # the empty message is a catalogue's header
+        return message
+    return catalogue(language).gettext(message)
 
 
 def _told(text: Text, known: GNUTranslations) -> str:

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator
-from io import BytesIO
+from io import SEEK_END, BytesIO
 from pathlib import Path
 
 from babel.messages.catalog import Catalog
@@ -23,6 +23,7 @@ PACKAGES = ("contracts", "cockpit", "interface", "traffic")
 FOLDER = ROOT / "cockpit" / "languages"
 KEYWORDS = {"say": None, "say_in": ((1, "c"), 2), "counted": (1, 2)}
 """The functions of ``contracts.text`` and which of their arguments is what."""
+HEADERS = ("Language", "Plural-Forms", "MIME-Version", "Content-Type", "Content-Transfer-Encoding")
 
 Key = tuple[str | tuple[str, ...], str | None]
 """A message, or its singular and plural, and its context."""
@@ -59,9 +60,11 @@ def renewed(language: str, now: Catalog) -> Catalog:
 
 
 def text(catalogue: Catalog) -> bytes:
-    """The file of a catalogue: by message, and without line numbers, so that only what changes is new."""
-    file = BytesIO()
-    write_po(file, catalogue, width=0, sort_output=True, include_lineno=False, omit_header=False)
+    """The file of a catalogue: by message, without dates and line numbers, so that only what changes is new."""
+    header = "".join(f'"{name}: {dict(catalogue.mime_headers)[name]}\\n"\n' for name in HEADERS)
+    file = BytesIO(f'msgid ""\nmsgstr ""\n{header}\n'.encode())
+    file.seek(0, SEEK_END)
+    write_po(file, catalogue, width=0, sort_output=True, include_lineno=False, omit_header=True)
     return file.getvalue()
 
 

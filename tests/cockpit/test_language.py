@@ -20,7 +20,7 @@ from automotive_cosim import cockpit as package
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.language import said
+from automotive_cosim.cockpit.language import said, word
 from automotive_cosim.cockpit.navigation import TURN_LEFT
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.theme import Weight, face
@@ -110,7 +110,7 @@ def named(cockpit: Cockpit) -> frozenset[str]:
     return frozenset(names | {"Home-5G", "CityFree", "Garage", "Coffee-Guest"})
 
 
-IDENTIFIER = re.compile(r"[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)*")
+IDENTIFIER = re.compile(r"#?[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)*")
 """A resource id, a signal, its value, or a screen's name."""
 
 
@@ -263,7 +263,7 @@ def test_an_answer_is_told_in_the_language_of_the_screens(make: Make, language: 
 
 def test_what_varies_is_translated_in_turn() -> None:
     assert said(say("Sent to {to}: {text}", to="Ada Adler", text=say("Thank you")), "de") == "An Ada Adler: Danke"
-    assert said(TURN_LEFT, "fr") == "Tourner à gauche"
+    assert said(TURN_LEFT, "fr") == "Tournez à gauche"
     detail = say("{power} kW, {free} of {total} free", power=300, free=1, total=3)
     assert said(detail, "ja") == "300 kW、3台中1台空き"
 
@@ -295,6 +295,11 @@ def test_braces_of_others_are_no_fields() -> None:
     assert said(say("Sent to {to}: {text}", to="{x}", text="{0} {text}"), "de") == "An {x}: {0} {text}"
     assert listed(("a", say("low beam"), "{b}")) == "a, low beam, {b}"
     assert said(joined(" ", ("{a}", say("Thank you"))), "de") == "{a} Danke"
+
+
+def test_a_word_without_fields_is_found_by_itself() -> None:
+    assert (word("Locks", "de"), word("Kaya Duval", "de"), word("", "de")) == ("Schlösser", "Kaya Duval", "")
+    assert word("Locks", "en") == "Locks"
 
 
 def test_what_was_typed_stays(make: Make, around: Surroundings) -> None:
