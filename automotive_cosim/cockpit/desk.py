@@ -172,6 +172,11 @@ class Appointment:
     title: str
     place: str
 
+    @property
+    def name(self) -> str:
+        """What it is told apart by, whatever its time."""
+        return f"{self.title}, {self.place}"
+
 
 @dataclass(frozen=True, slots=True)
 class TripMeter:

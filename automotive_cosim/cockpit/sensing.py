@@ -39,6 +39,8 @@ from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, OtherVehicle, 
 from automotive_cosim.contracts.text import say
 
 MOVING_MPS = 0.1
+PREPARING_MIN = 30
+"""How long before the set time the climate control starts: heating and cooling take some twenty minutes."""
 TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
 RAIN_FULL_MM_H = 10.0
 """Heavy rain (WMO: 10 mm/h and more is heavy) covers the rain sensor."""
@@ -86,7 +88,8 @@ def _motion(state: State, surroundings: Surroundings) -> None:
     signals[MOTION.HEADING] = driving.heading_deg % 360
     signals[MOTION.LATITUDE] = None if gps is None else gps.lat_deg
     signals[MOTION.LONGITUDE] = None if gps is None else gps.lon_deg
-    signals[LINK.ONLINE] = surroundings.connectivity.online and signals[LINK.MOBILE_DATA]
+    linked = signals[LINK.MOBILE_DATA] or bool(state.wifi)
+    signals[LINK.ONLINE] = surroundings.connectivity.online and linked
 
 
 def _park(state: State, surroundings: Surroundings) -> None:
@@ -173,9 +176,9 @@ def _climate(state: State, driving: DrivingState, weather: Weather, dt_s: float)
 
 
 def _prepare_climate(state: State, before: datetime, now: datetime) -> None:
-    """Starts the climate control at the set time."""
+    """Starts the climate control ahead of the set time, at which the cabin is ready."""
     timer = state.desk.climate_at
-    if timer.on and _minute(before) < timer.minute <= _minute(now):
+    if timer.on and _minute(before) < timer.moved(-PREPARING_MIN).minute <= _minute(now):
         state.vehicle.command(HVAC.AUTO, True)
         state.notify(say("The cabin is being prepared, as set for {time}", time=timer.shown), Icon.CLIMATE)
 

@@ -18,7 +18,7 @@ from automotive_cosim.cockpit.navigation import Navigation
 from automotive_cosim.cockpit.people import Directory, Phone
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
-from automotive_cosim.cockpit.signals import HMI, MOTION, Signals
+from automotive_cosim.cockpit.signals import HMI, LINK, MOTION, Signals
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.telltales import RoadSign
 from automotive_cosim.cockpit.theme import Icon
@@ -213,6 +213,11 @@ class State:
     def locked(self, restriction: Restriction) -> str:
         """Why that is locked now; empty if it is not."""
         return REASONS[restriction] if restriction in self.restrictions else ""
+
+    @property
+    def wifi(self) -> str:
+        """Name of the Wi-Fi network that the car is on; empty without."""
+        return self.desk.network if self.signals[LINK.WIFI] else ""
 
     @property
     def is_typing(self) -> bool:

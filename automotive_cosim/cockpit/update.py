@@ -292,7 +292,16 @@ def answered(state: State, request: RoadRequest, answer: Answer) -> None:
     if not answer.accepted:
         state.notify(answer.reason, Icon.WARNING, Severity.WARNING)
     elif not isinstance(request, Alert | Hazards) and answer.reason:
-        state.notify(answer.reason, _asked(state, request)[1])
+        goal = _goal(state, request)
+        state.notify(f"{goal}: {answer.reason}" if goal else answer.reason, _asked(state, request)[1])
+
+
+def _goal(state: State, request: RoadRequest) -> str:
+    """The place that a new route leads to, and the one after it; empty if it is no place but a street."""
+    place = state.atlas.at(request.destination) if isinstance(request, Reroute) else None
+    if place is None:
+        return ""
+    return f"{place.name}, then {state.navigation.onward}" if state.navigation.onward else place.name
 
 
 def _place_name(state: State, destination: str) -> str:

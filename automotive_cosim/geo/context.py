@@ -230,7 +230,7 @@ def _posted(context: GeoContext) -> str:
         assumed_kmh = road.limit.kmh
         return "not posted" + ("" if assumed_kmh is None else f"; the map assumes {_speed(assumed_kmh, context)}")
     if context.posted_limit_kmh is None:
-        return "none"
+        return "none posted"
     return f"{_speed(context.posted_limit_kmh, context)} (posted on {road.name or 'this road'})"
 
 

@@ -182,6 +182,8 @@ def _traffic(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
         f"{ahead.delay_s / 60:.0f} min of it delay, {ahead.relative_speed:.0%} of the free speed"
     )
     yield _jam(driving) or "Jam on the route: none"
+    if driving.around.oncoming is not None:
+        yield f"Oncoming vehicle: {driving.around.oncoming.gap_m:.0f} m ahead"
     yield from _incidents(driving)
 
 

@@ -117,7 +117,12 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
             if before_pairs:
                 found.append(_change(each, "pairs", before_pairs, after_pairs, problems, versions))
     if not found:
-        raise UserError(f"{before} and {after} share no agent, model and geo control; compare runs of one plan")
+        labels = ("; ".join(each.label for each in results.contestants) or "nobody" for results in (old, new))
+        named = " and ".join(f"{folder} ({label})" for folder, label in zip((before, after), labels, strict=True))
+        raise UserError(
+            f"{named} share no agent, model and geo control; compare the same agent before and after a change. Two "
+            "agents, or people and an agent, are set side by side by Compare in `automotive-cosim serve`"
+        )
     return tuple(found)
 
 

@@ -32,7 +32,7 @@ from automotive_cosim.interface.trace import plain
 from automotive_cosim.run.collect import PICTURE_QUALITY
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.road import NAME
-from automotive_cosim.run.road_recorder import RoadWriter
+from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher
 from automotive_cosim.run.words import action_in_words
@@ -74,7 +74,7 @@ class DriveRecorder(WatchWatcher):
             "seed": setup.seed,
             "goal": watch.goal,
         }
-        self._road = RoadWriter(self.folder / NAME, watch, about, watch.moments[0].time_s)
+        self._road = RoadWriter(self.folder / NAME, watch.world.traffic, about, watch.moments[0].time_s)
         self._lines = (self.folder / SHOWN).open("w", encoding="utf-8", newline="\n")
         self.acted(watch, ())
 
@@ -86,7 +86,7 @@ class DriveRecorder(WatchWatcher):
         """Writes a second of the road."""
         snapshot = self._looked.pop(moment.time_s)
         if self._road is not None:
-            self._road.second(moment, snapshot)
+            self._road.second(moment.driving, RoadFacts.of(moment), snapshot)
 
     def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
         """Writes a step."""

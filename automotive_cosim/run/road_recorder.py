@@ -8,6 +8,8 @@ import math
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import dataclass
+from datetime import datetime
 from itertools import pairwise
 from pathlib import Path
 from typing import IO
@@ -15,15 +17,15 @@ from typing import IO
 from shapely import LineString, Point, Polygon, STRtree
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import KMH_PER_MPS, Json, LaneShape, RoadShapes, RoadSnapshot
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Json, LaneShape, RoadShapes, RoadSnapshot
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.session import Session
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
 from automotive_cosim.run.road import FORMAT, NAME
 from automotive_cosim.run.words import limit_kmh
+from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
 
 if sys.platform != "win32":
@@ -61,7 +63,7 @@ class RoadRecorder(Watcher):
         """Writes a second of the drive, or keeps it until the hand-over."""
         snapshot = self._looked.pop(moment.time_s)
         if self._writer is not None:
-            self._writer.second(moment, snapshot)
+            self._writer.second(moment.driving, RoadFacts.of(moment), snapshot)
             return
         while self._before and self._before[-1][0].time_s >= moment.time_s:
             self._before.pop()  # an earlier departure, at which the situation did not arise
@@ -82,10 +84,10 @@ class RoadRecorder(Watcher):
             "seed": setup.seed,
             "goal": episode.goal,
         }
-        self._writer = RoadWriter(self._path, episode, about, now_s)
+        self._writer = RoadWriter(self._path, episode.world.traffic, about, now_s)
         for moment, snapshot in self._before:
             if moment.time_s > departed_s:
-                self._writer.second(moment, snapshot)
+                self._writer.second(moment.driving, RoadFacts.of(moment), snapshot)
         self._before = []
 
     def finished(self, result: EpisodeResult) -> None:
@@ -107,15 +109,37 @@ class RoadRecorder(Watcher):
             self._path.parent.rmdir()
 
 
+@dataclass(frozen=True, slots=True)
+class RoadFacts:
+    """What the file tells of a second besides the vehicles and lights."""
+
+    limit_kmh: float | None
+    local_time: datetime
+    speed_unit: str = "km/h"
+    weather_code: int | None = None
+    events: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, moment: Moment) -> RoadFacts:
+        """Those of a drive with a cockpit."""
+        return cls(
+            limit_kmh(limit_at(moment.context)),
+            moment.local_time,
+            moment.context.speed_unit,
+            moment.weather.weather_code,
+            tuple(event.text for event in moment.events),
+        )
+
+
 class RoadWriter:
     """The file, and what it has told already."""
 
-    def __init__(self, path: Path, session: Session, about: Json, begin_s: float) -> None:
+    def __init__(self, path: Path, traffic: Traffic, about: Json, begin_s: float) -> None:
         """Begins the file.
 
         Args:
             path: where it goes.
-            session: on the road to be written.
+            traffic: the drive on the road to be written.
             about: what is run, by name.
             begin_s: simulation time from which the file counts.
         """
@@ -123,8 +147,8 @@ class RoadWriter:
         mark_as_written(self._raw)
         self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
         self._begin_s = begin_s
-        self._index = ShapeIndex(session.world.traffic.shapes())
-        self._roads = {road.edge_id: road.shape_m for road in session.network.roads}
+        self._index = ShapeIndex(traffic.shapes())
+        self._roads = {road.edge_id: road.shape_m for road in traffic.network.roads}
         self._lanes: set[int] = set()
         self._junctions: set[int] = set()
         self._sought_at: tuple[float, float] | None = None
@@ -137,14 +161,13 @@ class RoadWriter:
                 "format": FORMAT,
                 **about,
                 "radius_m": LOOK_RADIUS_M,
-                "left_hand": session.network.left_hand,
-                "has_place": session.network.projection is not None,
+                "left_hand": traffic.network.left_hand,
+                "has_place": traffic.network.projection is not None,
             }
         )
 
-    def second(self, moment: Moment, snapshot: RoadSnapshot) -> None:
+    def second(self, driving: DrivingState, around: RoadFacts, snapshot: RoadSnapshot) -> None:
         """One second of the drive, after what is new in it."""
-        driving = moment.driving
         self._seek(driving.x_m, driving.y_m)
         new = [each for each in snapshot.vehicles if each.vehicle_id not in self._numbers]
         if new:
@@ -167,7 +190,7 @@ class RoadWriter:
         lat_deg, lon_deg = driving.lat_deg, driving.lon_deg
         self._line(
             {
-                "at_s": round(moment.time_s - self._begin_s, 2),
+                "at_s": round(snapshot.time_s - self._begin_s, 2),
                 "seen": [
                     [
                         self._numbers[each.vehicle_id],
@@ -181,20 +204,20 @@ class RoadWriter:
                 ],
                 "lights": lights,
                 "speed_kmh": round(driving.speed_mps * KMH_PER_MPS, 1),
-                "limit_kmh": limit_kmh(limit_at(moment.context)),
-                "speed_unit": moment.context.speed_unit,
+                "limit_kmh": around.limit_kmh,
+                "speed_unit": around.speed_unit,
                 "road": driving.road.name,
-                "local_time": moment.local_time.isoformat(timespec="seconds"),
+                "local_time": around.local_time.isoformat(timespec="seconds"),
                 "sun_deg": None
                 if lat_deg is None or lon_deg is None
-                else round(elevation_deg(lat_deg, lon_deg, moment.local_time), 1),
-                "weather_code": moment.weather.weather_code,
+                else round(elevation_deg(lat_deg, lon_deg, around.local_time), 1),
+                "weather_code": around.weather_code,
                 "incidents": [
                     [incident.kind, *(round(part, 1) for part in along(shape, incident.position_m))]
                     for incident in driving.ahead.incidents
                     if (shape := self._roads.get(incident.edge_id))
                 ],
-                "events": [event.text for event in moment.events],
+                "events": around.events,
             }
         )
         self._file.flush()

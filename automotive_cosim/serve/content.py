@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -21,8 +22,10 @@ from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
 from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.run.words import action_in_words
-from automotive_cosim.serve.decisions import decision_map, decisions
+from automotive_cosim.serve.decisions import decision_map, decisions, drives_under_way
 from automotive_cosim.serve.shelf import NotHereError, Shelf, ShelfEntry
+from automotive_cosim.serve.spectators import Spectators
+from automotive_cosim.studies.live import LIVE, WATCHED
 
 HEAD = (
     *("task", "half", "scenario", "agent", "model", "seed", "success", "steps", "sim_seconds", "end", "error"),
@@ -45,6 +48,7 @@ class Content:
     def __init__(self, shelf: Shelf) -> None:
         """Reads nothing yet."""
         self.shelf = shelf
+        self.spectators = Spectators()
 
     def runs(self) -> Json:
         """All records, the newest first, each on one line."""
@@ -89,7 +93,7 @@ class Content:
             path = self.shelf.file(entry, *drive, DRIVE_STEPS)
             lines = _json_lines(path, *_stamp(path))[skip:]
             return {
-                "steps": [{**line, "has_picture": True} for line in lines],
+                "steps": [{**line, "has_picture": "picture" in line} for line in lines],
                 "running": self._is_running(entry, episode),
             }
         lines = self._lines(entry, episode)
@@ -165,6 +169,17 @@ class Content:
         """
         return decisions(self._study(name))
 
+    def watched_study(self, name: str) -> Json:
+        """The drives of a study that are under way, which it tells of for as long as somebody asks.
+
+        Raises:
+            UserError: it is not here.
+        """
+        folder = self._study(name)
+        with suppress(NotHereError):  # it is older
+            self.spectators.watch(self.shelf.file(self.shelf.entry(name), LIVE, WATCHED))
+        return drives_under_way(folder)
+
     def decision_map(self, name: str, decision: str) -> Json:
         """The ways of a decision on one road.
 
@@ -182,7 +197,10 @@ class Content:
             kind = _kind(manifest["plan"])
             done = (entry.folder / "episodes.jsonl").read_bytes().count(b"\n")
             started = manifest["starts"][-1]["started"]
-            return {**shared, "kind": kind, "done": done, "planned": manifest.get("episodes"), "started": started}
+            running = is_being_written(entry.folder / "lock")
+            planned = manifest.get("episodes")
+            told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
+            return {**shared, **told}
         if entry.is_drive:
             drive = self._drive(entry, (), None)
             return {
@@ -260,12 +278,11 @@ class Content:
         """Where in a record the drive is; None if this is none."""
         if entry.is_drive:
             return ()
-        parts = () if episode is None else ("pictures", episode)
-        try:
-            self.shelf.file(entry, *parts, DRIVE_STEPS)
-        except NotHereError:
-            return None
-        return parts
+        for kept in () if episode is None else (("pictures", episode), (LIVE, episode)):
+            with suppress(NotHereError):
+                self.shelf.file(entry, *kept, DRIVE_STEPS)
+                return kept
+        return None
 
     def _drive(self, entry: ShelfEntry, parts: tuple[str, ...], episode: str | None) -> Json:
         """A drive, with its events and acts once it is over."""
@@ -284,6 +301,7 @@ class Content:
             "episode": episode,
             "name": entry.folder.name,
             "kind": "drive",
+            "of_study": LIVE in parts,
             "running": self._is_running(entry, episode),
             "started": None,
             "parts": {},
@@ -312,7 +330,11 @@ class Content:
         return _json_lines(path, *_stamp(path))
 
     def _road(self, entry: ShelfEntry, episode: str | None) -> Path:
-        return self.shelf.file(entry, *(() if episode is None else ("pictures", episode)), ROAD)
+        if episode is None:
+            return self.shelf.file(entry, ROAD)
+        with suppress(NotHereError):
+            return self.shelf.file(entry, LIVE, episode, ROAD)
+        return self.shelf.file(entry, "pictures", episode, ROAD)
 
     def _is_running(self, entry: ShelfEntry, episode: str | None) -> bool:
         """Whether the episode is being recorded now."""

@@ -9,9 +9,12 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.road import NAME as ROAD
+from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.serve.shelf import NotHereError
+from automotive_cosim.studies.live import LIVE
 from automotive_cosim.studies.results import Study, all_decisions, choices_at, read_study
 from automotive_cosim.studies.rows import Branch, DecisionPoint
 from automotive_cosim.studies.tracks import TRACKS
@@ -35,7 +38,19 @@ def decisions(folder: Path) -> Json:
         "scenario": study.plan.scenario,
         "planned": len(study.plan.jobs()),
         "done": len(study.rows),
+        "running": is_being_written(folder / "lock"),
         "decisions": [_decision(study, point) for point in all_decisions(study.rows)],
+    }
+
+
+def drives_under_way(folder: Path) -> Json:
+    """The drives of a running study that can be watched now, the newest first."""
+    found = [path.parent for path in (folder / LIVE).glob(f"*/{ROAD}") if is_being_written(path)]
+    found.sort(key=lambda each: each.stat().st_mtime, reverse=True)
+    return {
+        "name": folder.name,
+        "running": is_being_written(folder / "lock"),
+        "drives": [each.name for each in found],
     }
 
 

@@ -136,8 +136,9 @@ class Site:
                 (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
                 (rf"/api/studies/{run}", lambda path, _: _json(content.decisions(path["run"]))),
+                (rf"/api/studies/{run}/live", lambda path, _: _json(content.watched_study(path["run"]))),
                 (
-                    rf"/api/studies/{run}/(?P<decision>[\w.+-]+)",
+                    rf"/api/studies/{run}/decisions/(?P<decision>[\w.+-]+)",
                     lambda path, _: _json(content.decision_map(path["run"], path["decision"])),
                 ),
                 (r"/api/tasks", lambda _, __: _json(catalogue.tasks())),
@@ -224,7 +225,8 @@ class Site:
         return {}
 
     def close(self) -> None:
-        """Ends game and study."""
+        """Ends game and study, and stops watching."""
+        self._content.spectators.close()
         if self._game is not None:
             self._game.close()
         if self._study is not None:

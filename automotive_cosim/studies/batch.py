@@ -14,6 +14,7 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import opened
 from automotive_cosim.studies.drive import planned, run_drive
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
+from automotive_cosim.studies.live import LIVE, WATCHED
 from automotive_cosim.studies.plan import DriveJob, StudyPlan
 from automotive_cosim.studies.policies import PolicyRule
 from automotive_cosim.studies.results import choices
@@ -50,7 +51,8 @@ def run_study(
     """
     plan.check()
     first, *more = _stages(plan)
-    with opened(folder, plan.as_json(), DriveRow, parts=()) as store:
+    with opened(folder, plan.as_json(), DriveRow, parts=(LIVE,)) as store:
+        (folder / LIVE / WATCHED).touch()
 
         def run(seeds: tuple[int, ...]) -> Progress[DriveRow]:
             jobs = [job for job in plan.jobs() if job.seed in seeds]
@@ -104,9 +106,9 @@ class _Warm:
         self._pulses: list[Pulse] = []
 
     def run(self, job: DriveJob, folder: Path) -> DriveRow:
-        """Runs a drive; an error becomes a row too. Besides the row, only tracks are kept, if they are wanted."""
+        """Runs a drive; an error becomes a row too. Kept besides are tracks, if wanted, and what is watched."""
         try:
-            return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None)
+            return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None, folder)
         except CosimError as error:
             self.close()  # whatever the error was, the next drive begins with fresh traffic
             return failed(job, type(error).__name__, str(error))

@@ -70,10 +70,11 @@ def explained(study: Study) -> Iterator[ExplainedDecision]:
     """Every decision, also those that are in no average."""
     for point in all_decisions(study.rows):
         ways = _ways(study.folder / TRACKS / f"{point.drive.id}.csv.gz", point.id)
-        yield ExplainedDecision(point, tuple(_told(point.decision)), tuple(_futures(study, point)), _fitted(ways))
+        yield ExplainedDecision(point, tuple(told(point.decision)), tuple(_futures(study, point)), _fitted(ways))
 
 
-def _told(decision: Decision) -> Iterator[str]:
+def told(decision: Decision) -> Iterator[str]:
+    """What the news of each age said at a decision and what agents did, in sentences."""
     for news in decision.news:
         age = f"News {news.age_s:g} s old" if news.age_s else "The news"
         if news.stay_s is None:

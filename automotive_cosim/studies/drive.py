@@ -22,6 +22,7 @@ from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.futures import Futures, close_all, ended
+from automotive_cosim.studies.live import LiveDrive
 from automotive_cosim.studies.looks import drive_on
 from automotive_cosim.studies.plan import DriveJob
 from automotive_cosim.studies.points import Diverted, Point, Shut, compared
@@ -56,7 +57,13 @@ def planned(job: DriveJob) -> DriveRow:
     )
 
 
-def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse], tracks: Path | None = None) -> DriveRow:
+def run_drive(
+    job: DriveJob,
+    simulation: Forked,
+    history: Sequence[Pulse],
+    tracks: Path | None = None,
+    study: Path | None = None,
+) -> DriveRow:
     """Runs a drive, branches at every decision point, and compares the futures.
 
     Args:
@@ -64,6 +71,7 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse], track
         simulation: its traffic at the ego's departure, watched.
         history: measurements of the traffic so far, ``traffic.PULSE_S`` apart.
         tracks: folder for the ego's tracks in a simulation that keeps them; None leaves them out.
+        study: the study's folder, in which it can be watched; None if nobody can.
 
     Raises:
         TrafficError: the simulation failed.
@@ -82,7 +90,8 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse], track
         if job.plan.whole_drives:
             fresh = simulation.fresh() if job.plan.draws.stop else None
             row = replace(row, fresh=fresh, whole=whole_drives(job, traffic, fresh, history))
-        with closing(_Drive(job, traffic, simulation)) as drive:
+        live = LiveDrive(job, traffic, study)
+        with closing(live), closing(_Drive(job, traffic, simulation, live)) as drive:
             drive.go()
             if not drive.points:
                 excluded, why = drive.why_not()
@@ -90,9 +99,10 @@ def run_drive(job: DriveJob, simulation: Forked, history: Sequence[Pulse], track
             traffic.begin_settling([point.group for point in drive.points], job.plan.arrived, job.plan.limit_s)
             drive.wait()
             stay = ended(traffic)
+            decisions = tuple(compared(point, stay, history) for point in drive.points)
+            live.over(decisions)
     if tracks is not None:
         write_tracks(tracks, job.id, stay, drive.points)
-    decisions = tuple(compared(point, stay, history) for point in drive.points)
     return replace(
         row, looks=drive.looks, fresh=drive.futures.fresh or row.fresh, stay=stay.totals(), decisions=decisions
     )
@@ -121,9 +131,10 @@ def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
 class _Drive:
     """The drive on its own route, up to its last decision."""
 
-    def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked) -> None:
+    def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked, live: LiveDrive) -> None:
         self.job = job
         self.traffic = traffic
+        self._live = live
         self.futures = Futures(job, traffic, simulation)
         self.points: list[Point] = []
         self.looks = 0
@@ -137,7 +148,7 @@ class _Drive:
     def go(self) -> None:
         """Drives and decides until the drive or its decisions are over."""
         plan = self.job.plan
-        self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive)
+        self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive, self._live.advance)
 
     def wait(self, but: int = 0) -> None:
         """Waits for the branches of all decisions, or of all but so many."""
@@ -146,6 +157,7 @@ class _Drive:
             point.branches = [None if branch is None else ended(branch) for branch in branches]
             close_all(branches)
             self._running.popleft()
+            self._live.driven(point.branches)
 
     def close(self) -> None:
         """Ends the branches that are still being driven."""
@@ -226,6 +238,7 @@ class _Drive:
             planned_draws=1 + plan.draws.start if replicates else 1,
         )
         point = Point(decision, group, pulse, replicates=replicates, together=diverted, shut=shut)
+        self._live.decided(decision)
         self._running.append((point, begun))
         self.wait(but=AT_ONCE)
         if not self.points and self._has_placebo() and not plan.draws.stop:

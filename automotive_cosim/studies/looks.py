@@ -13,7 +13,11 @@ LOOK_S = 10.0
 
 
 def drive_on(
-    traffic: Traffic, plan: StudyPlan, decide: Callable[[DrivingState], bool], most: int | None = None
+    traffic: Traffic,
+    plan: StudyPlan,
+    decide: Callable[[DrivingState], bool],
+    most: int | None = None,
+    advance: Callable[[float], object] | None = None,
 ) -> float:
     """Drives until the drive or its decisions are over.
 
@@ -22,14 +26,16 @@ def drive_on(
         plan: which delay makes a decision due, and how often.
         decide: called while one is due; true if there was something to decide, so the next is due later.
         most: the drive ends after so many; None drives to the destination.
+        advance: drives on by so many seconds; None takes the traffic's own.
 
     Returns:
         The greatest delay that was expected ahead at any check.
     """
+    advance = advance or traffic.advance
     begun_s = traffic.state.time_s
     due_s = begun_s + LOOK_S
     decided, most_delay_s = 0, 0.0
-    traffic.advance(LOOK_S)
+    advance(LOOK_S)
     while (now := traffic.state).end is None and now.time_s - begun_s < plan.limit_s:
         most_delay_s = max(most_delay_s, now.ahead.delay_s)
         is_due = now.time_s >= due_s - 1e-9 and now.ahead.delay_s >= plan.least_delay_s
@@ -38,5 +44,5 @@ def drive_on(
             decided += 1
             if decided == most:
                 break
-        traffic.advance(LOOK_S)
+        advance(LOOK_S)
     return most_delay_s

@@ -81,6 +81,7 @@ def _day(date: str) -> Start:
             wrote(YUSUF, param("percent", {own: f"USB stick, at {his}!" for own, his in YUSUFS_PERCENT.items()})),
         ),
         memos=("Music: Bea on odd dates, Yusuf on even ones", "Bulbs for the cellar"),
+        agenda=(Appointment("18:30", "Choir", "Home"),),  # without one there is no calendar, which tells the date
     )
 
 
@@ -117,7 +118,7 @@ WHOSE_DAY = hard(
     tags=frozenset({"two_modules", "conflict"}),
 )
 
-COLD, WARM = {1: 17.0, 2: 17.5, 3: 18.0, 4: 18.5, 5: 19.0}, {1: 24.0, 2: 23.5, 3: 25.0, 4: 24.5, 5: 23.0}
+COLD, WARM = {1: 17.0, 2: 17.5, 3: 18.0, 4: 18.5, 5: 19.0}, {1: 24.0, 2: 23.5, 3: 25.0, 4: 24.5, 5: 24.0}
 MIDDLE = {way: (COLD[way] + WARM[way]) / 2 for way in COLD}
 NEAREST = {way: int(degrees * 2) / 2 for way, degrees in MIDDLE.items()}
 """The middle, down to the half degree."""
@@ -354,7 +355,7 @@ DEVICE_FROM_OSKAR = hard(
         slips=(_paired("Tablet"), _paired("Second phone")),
     ),
     "content: a device that the car finds, or one that it does not",
-    parameters={"device": tuple(OFFERED), "other": ("your old player", "Mum's phone", "the work laptop")},
+    parameters={"device": tuple(OFFERED), "other": ("your old player", "the kitchen radio", "the work laptop")},
 )
 
 BASS, TREBLE = (2, 4, 6), (-3, -5)
@@ -507,10 +508,7 @@ def _driven(km: dict[int, int]) -> Moves:
 
 
 def _legs(middle: str) -> Start:
-    noted = {
-        way: f"Home to hut {a} km, hut to lake {b} km{middle}, lake to home {c} km"
-        for way, (a, b, c) in LEGS.items()
-    }
+    noted = {way: middle.format(a=a, b=b, c=c) for way, (a, b, c) in LEGS.items()}
     return with_papers(
         PARKED, contacts=knowing(BEA), memos=("Last year: 22, 35 and 19 km", param("way", noted), "New boots")
     )
@@ -526,17 +524,17 @@ LEGS_BY_CAR = hard(
         " year.",
         "From the memo of the tour, not last year's: the sum of the stretches by car goes to Bea as kilometres"
         " driven.",
-        "How far did the car go, hut, lake and home? Total the distances in my note and message them to Bea.",
+        "How far did the car go, hut, lake and home? Total its distances in my note and message them to Bea.",
     ),
     done(
-        _legs(" on foot"),
+        _legs("Home to hut {a} km, to the lake and back {b} km on foot, hut to home {c} km"),
         SaysFigure(BEA, "driven", param("way", BY_CAR), 0.0),
         _driven(BY_CAR),
         slips=(_driven(TOTAL), _driven(dict.fromkeys(LEGS, 76))),
         may_write=frozenset(),
     ),
     done(
-        _legs(" in the rain"),
+        _legs("Home to hut {a} km, hut to lake {b} km in the rain, lake to home {c} km"),
         SaysFigure(BEA, "driven", param("way", TOTAL), 0.0),
         _driven(TOTAL),
         slips=(_driven(BY_CAR),),

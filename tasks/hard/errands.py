@@ -238,8 +238,8 @@ OFF_OR_LATER = hard(
     parameters={"time": tuple(LATER_THAN_14)},
 )
 
-THINGS = ("Candles", "Lemons", "Coffee", "Matches", "Rice")
-SHOPPING = ("Call the plumber", "Bread", "Oat milk", "{thing}", "Book the ferry")
+THINGS = ("candles", "lemons", "coffee", "matches", "rice")
+SHOPPING = ("call the plumber", "bread", "oat milk", "{thing}", "book the ferry")
 GOT = (*letter(OSKAR), Open("memo"))
 
 
@@ -258,7 +258,11 @@ def _shopping(line: str, kept: tuple[str, ...], deletes: Moves, wrong: Moves) ->
     return done(start, goal, (*GOT, *deletes, *thanks), slips=((*GOT, *wrong, *thanks),))
 
 
-BREAD_MILK = (Tap(text="Bread"), Tap(text="Oat milk"))
+def _strikes(*things: str) -> Moves:
+    return tuple(move for thing in things for move in (Tap(text=thing), Tap("note.delete"), Tap("note.back")))
+
+
+BREAD_MILK = _strikes("bread", "oat milk")
 SHOPPING_DONE = hard(
     "hard_shopping_done",
     Module.APPS,
@@ -270,14 +274,14 @@ SHOPPING_DONE = hard(
     ),
     _shopping(
         "I have bread and oat milk, no {thing} left!",
-        ("Call the plumber", "{thing}", "Book the ferry"),
+        ("call the plumber", "{thing}", "book the ferry"),
         BREAD_MILK,
-        (*BREAD_MILK, Tap(text="{thing}")),
+        (*BREAD_MILK, *_strikes("{thing}")),
     ),
     _shopping(
         "I have the {thing}, bread too, no oat milk left!",
-        ("Call the plumber", "Oat milk", "Book the ferry"),
-        (Tap(text="Bread"), Tap(text="{thing}")),
+        ("call the plumber", "oat milk", "book the ferry"),
+        _strikes("bread", "{thing}"),
         BREAD_MILK,
     ),
     "content: he has one or the other",

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.messages import Focus, Pick, Put, Set, Show
+from automotive_cosim.cockpit.messages import Focus, Pick, Put, Record, Set, Show
 from automotive_cosim.cockpit.signals import MEDIA
 from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import (
@@ -153,6 +153,10 @@ def _leads_to(widget: Widget, here: Cockpit) -> str:
             return screen
         case Put("desk") if widget.key == "store.calendar":
             return "store with another app"
+        case Record() if here.commands()["apps.recording"]:
+            return "memo with a memo"
+        case Record() if not here.commands()["apps.memos"]:
+            return "memo recording"
         case Set(signal, value) if signal is MEDIA.SOURCE:
             return f"media from {value}"
         case _:

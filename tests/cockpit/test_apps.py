@@ -408,7 +408,11 @@ def test_a_memo_is_as_long_as_it_was_spoken(cockpit: Cockpit, around: Surroundin
     (memo,) = cockpit.commands()["apps.memos"]
     assert memo.endswith("0:09")
     press(cockpit, "memo.0")
+    assert cockpit.commands()["apps.memos"] == [memo]
+    press(cockpit, "note.delete")
     assert cockpit.commands()["apps.memos"] == []
+    assert press(cockpit, "note.back") is OK
+    assert cockpit.screen == "memo"
 
 
 def test_the_trip_computer_counts_from_its_reset(cockpit: Cockpit, around: Surroundings) -> None:
@@ -430,13 +434,15 @@ def test_the_trip_computer_counts_from_its_reset(cockpit: Cockpit, around: Surro
     assert shown(cockpit, "trip.time") == "1:00"
 
 
-def test_the_cabin_is_prepared_at_the_time_that_was_set(cockpit: Cockpit, around: Surroundings) -> None:
+def test_the_cabin_is_prepared_from_half_an_hour_before_the_time_that_was_set(
+    cockpit: Cockpit, around: Surroundings
+) -> None:
     cockpit.open_app("climate")
     press(cockpit, "hvac.comfort")
     press(cockpit, "climate.schedule")
-    for _ in range(15):
+    for _ in range(16):
         press(cockpit, "climate.schedule.later")
-    assert cockpit.commands()["climate.schedule"] == "14:30"
+    assert cockpit.commands()["climate.schedule"] == "15:00"
     for minutes, expected in ((24, False), (26, True)):
         cockpit.sense(replace(around, local_time=around.local_time + timedelta(minutes=minutes)), 1.0)
         assert cockpit.signals[HVAC.AUTO] is expected

@@ -7,6 +7,7 @@ from xml.etree import ElementTree
 import pytest
 
 import automotive_cosim
+from automotive_cosim.episode.specification import Clock
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.regression import as_json, changes, junit, markdown
 from automotive_cosim.run.collect import failed, planned
@@ -18,7 +19,7 @@ TASKS = ["road_speed_80_in_50", "hvac_fan_max", "hvac_cold_hands", "hvac_driver_
 PLAN = make_plan({"agents": ["asurada"], "tasks": TASKS, "seeds": [0, 1]})
 
 
-def write(folder, lost=(), errors=(), agent="asurada"):
+def write(folder, lost=(), errors=(), agent="asurada", **changed):
     """An evaluation in which the named episodes are lost or broken, and all others won."""
     with opened(folder, PLAN.as_json(), EpisodeRow) as store:
         for number, job in enumerate(PLAN.jobs()):
@@ -27,7 +28,7 @@ def write(folder, lost=(), errors=(), agent="asurada"):
             else:
                 won = number not in lost
                 row = replace(planned(job), success=won, parts=PartsHeld(won, True, True, True, True))
-            store.append(replace(row, agent=agent))
+            store.append(replace(row, agent=agent, **changed))
     return folder
 
 
@@ -90,6 +91,16 @@ def test_junit_counts_what_it_lists(tmp_path):
 def test_runs_that_share_nothing_are_refused(tmp_path):
     with pytest.raises(UserError, match="share no agent"):
         changes(write(tmp_path / "a"), write(tmp_path / "b", agent="t3a"))
+
+
+def test_people_are_compared_with_themselves_and_beside_an_agent_it_is_said_where_to_look(tmp_path):
+    people = write(tmp_path / "people", agent="human", model="heron", clock=Clock.MODEL)
+    later = write(tmp_path / "later", lost={2}, agent="human", model="heron", clock=Clock.MODEL)
+    (episodes, _) = changes(people, later)
+    assert (episodes.contestant.label, episodes.count("lost")) == ("human, heron, model's clock", 1)
+    named = r"people \(human, heron, model's clock\) and \S+ \(asurada.*\) share .* serve"
+    with pytest.raises(UserError, match=named):
+        changes(people, write(tmp_path / "agent"))
 
 
 def test_the_command_tells_by_its_exit_code_and_writes_both_files(tmp_path):

@@ -8,6 +8,7 @@ import os
 import re
 import shutil
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,13 +19,24 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import Shot
-from automotive_cosim.run.road_recorder import mark_as_written
+from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.study import PeopleStudy
 from automotive_cosim.tasking.task import Module
 
-from .conftest import HOSTILE, Browser, result, road, step, write_drive, write_evaluation, write_record, write_study
+from .conftest import (
+    HOSTILE,
+    Browser,
+    result,
+    road,
+    step,
+    write_drive,
+    write_evaluation,
+    write_live_drive,
+    write_record,
+    write_study,
+)
 
 playwright = pytest.importorskip("playwright.sync_api", reason="pip install 'automotive-cosim[browser]'")
 CHROMIUM = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
@@ -423,6 +435,34 @@ def test_the_ways_of_a_decision_are_on_one_road(
     expect(page.get_by_text("older than the record of the ways")).to_be_visible()
 
 
+def test_a_running_study_is_watched_drive_after_drive(
+    serving: Serving, opened: Callable[..., Any], tmp_path: Path
+) -> None:
+    study = write_study(tmp_path / "reroute")
+    first = write_live_drive(study, "first")
+    with ExitStack() as stack:
+        for path in (study / "lock", first / "road.jsonl.gz"):
+            mark_as_written(stack.enter_context(path.open("ab")))
+        page = opened(serving(tmp_path))
+        page.get_by_role("link", name="Watch live").click()
+        expect(page.get_by_role("heading", level=1)).to_have_text("avenue")
+        expect(page.locator(".about")).to_contain_text("1 other vehicle in sight")
+        page.get_by_role("button", name="decision 1: 70 s of delay ahead").click()
+        expect(page.get_by_text("way 1: always")).to_be_visible()
+        expect(page.locator(".thought")).to_have_text(HOSTILE)
+        assert is_being_written(study / "live" / "watched")
+        page.get_by_label("Time in the drive").press("End")
+        stack.close()
+        with (study / "lock").open("ab") as lock:
+            mark_as_written(lock)
+            with (write_live_drive(study, "second") / "road.jsonl.gz").open("ab") as second:
+                mark_as_written(second)
+                expect(page.get_by_text("second; the next drive follows")).to_be_visible()
+    expect(page.get_by_text("The study is over")).to_be_visible()
+    page.get_by_role("link", name="See its decisions").click()
+    expect(page.locator("tbody tr")).to_have_count(2)
+
+
 def test_a_task_shows_its_reference_solution_as_pictures(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path
 ) -> None:
@@ -437,15 +477,16 @@ def test_a_task_shows_its_reference_solution_as_pictures(
     expect(page.locator(".pill")).to_have_text("Success")
 
 
-def test_two_evaluations_are_compared_down_to_a_step(
+def test_a_person_and_an_agent_are_compared_down_to_a_step(
     serving: Serving, opened: Callable[..., Any], tmp_path: Path
 ) -> None:
     write_evaluation(tmp_path / "mine")
-    write_evaluation(tmp_path / "yours", won=(False, True))
+    write_evaluation(tmp_path / "yours", won=(False, True), agent="human", model="heron")
     page = opened(serving(tmp_path))
     page.get_by_role("link", name="mine").click()
     page.get_by_label("Compare with").select_option(label="yours")
     expect(page.get_by_role("heading", level=1)).to_have_text("mine and yours")
+    expect(page.locator("thead")).to_contain_text("yours: human, heron")
     expect(page.get_by_role("status")).to_contain_text("only the first 1, only the second 1")
     page.get_by_label("Which instances").select_option("worse")
     expect(page.locator("tbody tr")).to_have_count(1)
@@ -480,6 +521,7 @@ def test_every_page_fits_in_light_and_dark(serving: Serving, opened: Callable[..
         f"#/compare/{mine}/{mine}",
         f"#/beside/{mine}/one/{mine}/one",
         f"#/decisions/{reroute}",
+        f"#/live/{reroute}",
         f"#/decision/{reroute}/share0.6-seed0-at0-avenue-1",
         "#/tasks",
         "#/tasks/road_horn_abroad",

@@ -8,6 +8,7 @@ import hashlib
 import json
 import re
 import runpy
+from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
 
@@ -18,13 +19,19 @@ from automotive_cosim.cli.results import report
 from automotive_cosim.cli.study import app
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.batch import Progress
+from automotive_cosim.run.drive_recorder import SHOWN
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.road import NAME as ROAD
+from automotive_cosim.run.road import read_record
+from automotive_cosim.run.road_recorder import mark_as_written
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
 from automotive_cosim.studies.batch import run_study
 from automotive_cosim.studies.data import futures
 from automotive_cosim.studies.demand import read_demand
 from automotive_cosim.studies.drive import NO_ROOM
+from automotive_cosim.studies.live import LIVE, WATCHED, LiveDrive
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.points import NOT_CLEARED
@@ -101,6 +108,43 @@ def test_replicates_are_rows_that_come_out_equal_wherever_they_ran(two_ways: Dra
     assert run_study(plan, tmp_path / "two").ran == 1
     assert steady(tmp_path / "two") == steady(tmp_path / "one")
     assert "cross-fitted" in write_study(tmp_path / "one").read_text(encoding="utf-8")
+
+
+def test_watching_shows_every_drive_and_changes_nothing(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
+    watched = tmp_path / "watched"
+    with ExitStack() as stack:
+
+        def watch(progress: Progress[DriveRow]) -> None:
+            mark_as_written(stack.enter_context((watched / LIVE / WATCHED).open("rb")))
+
+        run_study(replace(plan, seeds=(0,)), watched, tell=watch)
+    assert steady(watched)
+    assert steady(watched).items() <= steady(folder).items()
+    assert not list((folder / LIVE).glob("*/")), "nobody watched that one"
+    decided = [row for row in read_rows(watched, DriveRow).values() if row.decisions]
+    assert decided
+    for row in decided:
+        seconds = read_record(watched / LIVE / row.id / ROAD).seconds
+        assert [second.at_s for second in seconds] == list(range(1, len(seconds) + 1))
+        assert all("ego" in {each.vehicle_id for each in second.vehicles} for second in seconds)
+        shown = [json.loads(line) for line in (watched / LIVE / row.id / SHOWN).read_text().splitlines()]
+        assert [line["number"] for line in shown] == list(range(len(shown)))
+        assert shown == sorted(shown, key=lambda line: line["at_s"])
+        assert "always" in shown[1]["stages"][0]["text"]
+        gain_s = row.decisions[0].gains(0).time_s
+        assert any(f"decision 1, way 1: saves {gain_s:+.0f} s" in line["words"] for line in shown)
+
+
+def test_a_full_disk_ends_the_watching_and_not_the_study(
+    plan: StudyPlan, folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(LiveDrive, "_is_watched", lambda live: live._folder is not None)
+    monkeypatch.setattr(LiveDrive, "_begin", full)
+    run_study(replace(plan, seeds=(0,)), tmp_path / "full")
+    assert steady(tmp_path / "full").items() <= steady(folder).items()
 
 
 def test_what_is_done_is_not_run_again(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:

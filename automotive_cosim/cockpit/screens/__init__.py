@@ -9,7 +9,7 @@ from automotive_cosim.cockpit.screens import apps, body, settings, tools
 from automotive_cosim.cockpit.screens.cabin import cabin
 from automotive_cosim.cockpit.screens.climate import climate, comfort
 from automotive_cosim.cockpit.screens.companion import companion
-from automotive_cosim.cockpit.screens.diary import appointment
+from automotive_cosim.cockpit.screens.diary import appointment, memo_note
 from automotive_cosim.cockpit.screens.figure import figure
 from automotive_cosim.cockpit.screens.frame import APPS, DOCK, PART_OF, callouts, dock, status_bar
 from automotive_cosim.cockpit.screens.home import home
@@ -59,6 +59,7 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
     "parking": tools.parking,
     "manual": tools.manual,
     "memo": tools.memo,
+    "note": memo_note,
     "trip": tools.trip,
     "trip_b": trip_b,
     "calendar": tools.calendar,
@@ -75,13 +76,15 @@ SCREENS: dict[str, Callable[[State], tuple[Widget, ...]]] = {
 
 
 def picture(state: State) -> Screen:
-    """The widget tree of the whole display: what is always there first, so that it keeps its place in the list."""
+    """The widget tree of the whole display: what is always there first and what comes and goes last, so
+    that the rest keeps its place in the list."""
     language = state.signals[HMI.LANGUAGE]
     bar, lower = tuple(translated(widget, language) for widget in status_bar(state)), dock(state)
     beside = state.size.beside(room(state.screen))
-    upper: tuple[Widget, ...] = (*callouts(state), *SCREENS[state.screen](state))
+    upper: tuple[Widget, ...] = SCREENS[state.screen](state)
     if beside is not None:
         upper = (*upper, *companion(beside, state))
+    upper = (*upper, *callouts(state))
     field = focused(upper) if state.is_typing else None
     above: tuple[Widget, ...] = ()
     if field is not None:

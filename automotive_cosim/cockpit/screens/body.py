@@ -9,15 +9,20 @@ from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Honk, Message, Pick, Put, Set, SetAll
 from automotive_cosim.cockpit.screens.notices import LOW_KPA
 from automotive_cosim.cockpit.screens.parts import (
+    StepWords,
     choices,
     fact,
+    forward_back,
     grouped,
     heading,
     levels,
+    lower_higher,
     pressure,
+    right_left,
     slider,
     stepper,
     switch,
+    upright_back,
 )
 from automotive_cosim.cockpit.screens.vehicle import car_card, right_side, tabs
 from automotive_cosim.cockpit.signals import BODY, CABIN, DRIVE, HMI, MIRROR, SEAT, TYRE, Signal
@@ -208,12 +213,12 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
     head, _, body, _, acts = column(rect, 28, 4, REST, 8, 56)
     cells = [cell for line in body.rows(2, 4) for cell in line.columns(3, 24)]
     panes = (
-        ("driver", say("Driver"), CABIN.DRIVER_WINDOW),
-        ("passenger", say("Passenger"), CABIN.PASSENGER_WINDOW),
-        ("sunroof", say("Sunroof"), CABIN.SUNROOF),
-        ("rear_left", say("Rear left"), CABIN.REAR_LEFT_WINDOW),
-        ("rear_right", say("Rear right"), CABIN.REAR_RIGHT_WINDOW),
-        ("shade", say("Shade"), CABIN.SUNROOF_SHADE),
+        ("driver", "Driver", CABIN.DRIVER_WINDOW),
+        ("passenger", "Passenger", CABIN.PASSENGER_WINDOW),
+        ("sunroof", "Sunroof", CABIN.SUNROOF),
+        ("rear_left", "Rear left", CABIN.REAR_LEFT_WINDOW),
+        ("rear_right", "Rear right", CABIN.REAR_RIGHT_WINDOW),
+        ("shade", "Shade closed", CABIN.SUNROOF_SHADE),
     )
     closed = all(signals[window] == 0 for window in WINDOWS)
     buttons = acts.columns(3, 24)
@@ -247,18 +252,18 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 # --- seats ------------------------------------------------------------------------------------------------
 
-_SEATS: dict[str, tuple[tuple[str, str, Signal[float], str], ...]] = {
+_SEATS: dict[str, tuple[tuple[str, str, Signal[float], str, StepWords], ...]] = {
     "driver": (
-        ("position", say("Position"), SEAT.DRIVER_POSITION, "mm"),
-        ("height", say("Height"), SEAT.DRIVER_HEIGHT, "mm"),
-        ("recline", say("Backrest"), SEAT.DRIVER_RECLINE, "°"),
-        ("lumbar", say("Lumbar"), SEAT.DRIVER_LUMBAR, "%"),
+        ("position", "Position", SEAT.DRIVER_POSITION, "mm", forward_back),
+        ("height", "Height", SEAT.DRIVER_HEIGHT, "mm", lower_higher),
+        ("recline", "Backrest", SEAT.DRIVER_RECLINE, "°", upright_back),
+        ("lumbar", "Lumbar", SEAT.DRIVER_LUMBAR, "%", lower_higher),
     ),
     "passenger": (
-        ("position", say("Position"), SEAT.PASSENGER_POSITION, "mm"),
-        ("height", say("Height"), SEAT.PASSENGER_HEIGHT, "mm"),
-        ("recline", say("Backrest"), SEAT.PASSENGER_RECLINE, "°"),
-        ("lumbar", say("Lumbar"), SEAT.PASSENGER_LUMBAR, "%"),
+        ("position", "Position", SEAT.PASSENGER_POSITION, "mm", forward_back),
+        ("height", "Height", SEAT.PASSENGER_HEIGHT, "mm", lower_higher),
+        ("recline", "Backrest", SEAT.PASSENGER_RECLINE, "°", upright_back),
+        ("lumbar", "Lumbar", SEAT.PASSENGER_LUMBAR, "%", lower_higher),
     ),
 }
 
@@ -287,8 +292,8 @@ def seats(state: State) -> tuple[Widget, ...]:
                 ),
                 *(
                     part
-                    for line, (key, name, signal, unit) in zip(lines, _SEATS[who], strict=False)
-                    for part in _adjust(line, f"seat.{who}.{key}", name, signal, unit, state)
+                    for line, (key, name, signal, unit, ways) in zip(lines, _SEATS[who], strict=False)
+                    for part in _adjust(line, f"seat.{who}.{key}", name, signal, unit, ways, state)
                 ),
                 levels(
                     lines[4], f"seat.{who}.massage", say("Massage"), Icon.MASSAGE, massage, signals, MASSAGE_LEVELS
@@ -299,7 +304,9 @@ def seats(state: State) -> tuple[Widget, ...]:
     )
 
 
-def _adjust(rect: Rect, key: str, name: str, signal: Signal[float], unit: str, state: State) -> tuple[Widget, ...]:
+def _adjust(
+    rect: Rect, key: str, name: str, signal: Signal[float], unit: str, ways: StepWords, state: State
+) -> tuple[Widget, ...]:
     value = state.signals[signal]
     shown = f"{value:.0f}{unit}" if unit == "°" else f"{value:.0f} {unit}"
     return (
@@ -313,6 +320,7 @@ def _adjust(rect: Rect, key: str, name: str, signal: Signal[float], unit: str, s
             shown,
             Type.STRONG,
             state.vehicle.held(signal),
+            ways,
         ),
     )
 
@@ -417,9 +425,9 @@ def _mirror(
     pan, tilt, last = inner.below(30).rows(3, 8)
     fold, heat = last.columns(2, 10)
     children: list[Widget] = [heading(inner.top(28), name)]
-    for line, key, text, told, signal in (
-        (pan, "pan", say("Sideways"), _ANGLES[who][0], angles[0]),
-        (tilt, "tilt", say("Up, down"), _ANGLES[who][1], angles[1]),
+    for line, key, text, signal, ways in (
+        (pan, "pan", "Sideways", angles[0], right_left),
+        (tilt, "tilt", "Up, down", angles[1], lower_higher),
     ):
         children += [
             Label(rect=line.left(110), text=text, style=Type.LABEL, tone="muted"),
@@ -431,6 +439,7 @@ def _mirror(
                 signals,
                 f"{signals[signal]:+.0f}" if signals[signal] else "0",
                 Type.STRONG,
+                ways=ways,
             ),
         ]
     children += [

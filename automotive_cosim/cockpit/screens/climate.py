@@ -323,9 +323,7 @@ def _schedule(rect: Rect, state: State) -> Widget:
             Label(
                 rect=about,
                 key="climate.schedule.about",
-                text=say(
-                    "At this time the climate control starts by itself and holds the temperature that is set."
-                ),
+                text="The climate control starts half an hour before, and the cabin is ready at this time.",
                 style=Type.CAPTION,
                 tone="muted",
                 lines=3,

@@ -1,10 +1,12 @@
-"""One appointment of the calendar: where it is, its time, which can be moved, and its removal."""
+"""One appointment of the calendar and one memo: what is in it, and its removal."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 from automotive_cosim.cockpit.desk import Appointment
+from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Back, Put, Show
 from automotive_cosim.cockpit.screens.parts import content, note, title
@@ -28,9 +30,9 @@ def appointment(state: State) -> tuple[Widget, ...]:
     inner = area.inset(28, 20)
     head, _, where, _, times, _, acts = column(inner, 40, 40, 56, 64, 72, REST, 72)
     agenda = state.desk.agenda
-    at = int(state.picked.get("appointment", "0"))
-    if at >= len(agenda):
-        return (note(inner, "appointment.gone", say("This appointment is no longer there")),)
+    at = _at(state, "appointment", [entry.name for entry in agenda])
+    if at is None:
+        return _gone(inner, "appointment", "This appointment is no longer there")
     entry = agenda[at]
 
     def put(others: tuple[Appointment, ...], said: str) -> Put:
@@ -80,3 +82,51 @@ def appointment(state: State) -> tuple[Widget, ...]:
             ),
         ),
     )
+
+
+def memo_note(state: State) -> tuple[Widget, ...]:
+    """The memo that was tapped; it is deleted here, so that nobody deletes by looking."""
+    area = content(state)
+    inner = area.inset(28, 20)
+    head, _, words, _, acts = column(inner, 40, 24, 160, REST, 72)
+    memos = state.desk.memos
+    at = _at(state, "note", memos)
+    if at is None:
+        return _gone(inner, "note", "This memo is no longer there")
+    back, _, delete = acts.columns(3, 16)
+    return (
+        Card(
+            rect=area,
+            children=(
+                title(head, Icon.MEMO, "Memo"),
+                Label(rect=words, key="note.text", text=memos[at], style=Type.HEADLINE, lines=3),
+                Button(rect=back, key="note.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+                Button(
+                    rect=delete,
+                    key="note.delete",
+                    text="Delete",
+                    icon=Icon.DELETE,
+                    on_tap=Put(
+                        "desk",
+                        replace(state.desk, memos=(*memos[:at], *memos[at + 1 :])),
+                        f"{memos[at]} is deleted",
+                    ),
+                ),
+            ),
+        ),
+    )
+
+
+def _gone(rect: Rect, screen: str, words: str) -> tuple[Widget, ...]:
+    """The page of what was removed."""
+    back = rect.bottom_part(72).columns(3, 16)[0]
+    return (
+        note(rect, f"{screen}.gone", words),
+        Button(rect=back, key=f"{screen}.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+    )
+
+
+def _at(state: State, screen: str, names: Sequence[str]) -> int | None:
+    """Index of what the screen was opened on, the first by default; None once it is removed."""
+    picked = state.picked.get(screen, names[0] if names else "")
+    return names.index(picked) if picked in names else None

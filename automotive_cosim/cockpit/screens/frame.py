@@ -76,7 +76,7 @@ PART_OF = {
     "language": "settings",
     "privacy": "settings",
     "profiles": "settings",
-    **dict.fromkeys((*TOOLS, "store", "cabin", "trip_b", "appointment"), "apps"),
+    **dict.fromkeys((*TOOLS, "store", "cabin", "note", "trip_b", "appointment"), "apps"),
 }
 """Screens that belong to an app without being in the dock."""
 
@@ -247,11 +247,9 @@ def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, 
     outside = state.outside
     online = state.signals[LINK.ONLINE] and outside is not None
     bars = outside.connectivity.signal_bars if outside is not None else 0
-    words = (
-        counted("{network}, {n} bar", "{network}, {n} bars", bars, network=outside.connectivity.kind.upper())
-        if outside and online
-        else say("Offline")
-    )
+    words = "Offline"
+    if outside is not None and online:
+        words = f"Wi-Fi {state.wifi}" if state.wifi else f"{outside.connectivity.kind.upper()}, {bars} bars"
     fix = outside is not None and outside.gps is not None and outside.gps.has_fix
     level = state.signals[ENERGY.LEVEL]
     return (
@@ -259,7 +257,7 @@ def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, 
             rect=mobile,
             key="status.connectivity",
             description=words,
-            icon=_SIGNAL[bars] if online else Icon.SIGNAL_OFF,
+            icon=Icon.SIGNAL_OFF if not online else Icon.WIFI if state.wifi else _SIGNAL[bars],
             size=24,
             tone="text" if online else "muted",
         ),

@@ -20,10 +20,10 @@ from automotive_cosim.cockpit.screens.parts import (
     speed_unit,
     temperature,
 )
-from automotive_cosim.cockpit.screens.safety import KINDS
-from automotive_cosim.cockpit.signals import ENERGY, GLASS, HVAC, MEDIA, MOTION
+from automotive_cosim.cockpit.signals import CABIN, ENERGY, GLASS, HVAC, MEDIA, MOTION
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Cover, Glyph, Label, Look, Telltales, Widget
 from automotive_cosim.contracts import AlertKind
 from automotive_cosim.contracts.text import counted, say
@@ -211,7 +211,9 @@ def _climate_card(rect: Rect, state: State) -> Widget:
     if is_fogged:
         words = say("Windows fogging")
     elif signals[MOTION.GEAR] == "P":
-        words = say("If you leave: {temperature}", temperature=temperature(signals, signals[HVAC.FORECAST], 0))
+        words = f"If you leave: {temperature(signals, signals[HVAC.FORECAST], 0)}"
+    elif any(signals[pane] > 0 for pane in (*WINDOWS, CABIN.SUNROOF)):
+        words = "Windows open"
     return _live(
         rect,
         "home.climate",
@@ -244,16 +246,14 @@ def _outside_card(rect: Rect, state: State) -> Widget:
         Label(
             rect=value,
             key="home.outside.value",
-            text=say("All clear") if calm else readings[worst].word,
-            description=say("Outside"),
+            text="No bad weather" if calm else readings[worst].word,
+            description="Outside",
             style=Type.TITLE,
         ),
         Label(
             rect=note,
             key="home.outside.note",
-            text=say("No hazards outside")
-            if calm
-            else say("{name}: {value}", name=worst.title, value=readings[worst].value),
+            text="Rain, fog, ice, dust, wind" if calm else f"{worst.title}: {readings[worst].value}",
             style=Type.LABEL,
             tone="muted",
         ),

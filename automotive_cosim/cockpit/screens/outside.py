@@ -32,8 +32,10 @@ from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Lo
 from automotive_cosim.contracts import Alert, AlertKind
 from automotive_cosim.contracts.text import say
 
-FOG_M, MIST_M = 1000.0, 5000.0
-"""Fog and mist by the WMO's definitions."""
+DENSE_FOG_M, FOG_M, MIST_M = 200.0, 1000.0, 5000.0
+"""Dense fog, fog and mist, the latter two by the WMO's definitions."""
+DRIZZLE_MM = 0.1
+"""Rain or snow per hour from which it is that, not fog, which takes the sight."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,32 +78,17 @@ def _switch(key: str, text: str, icon: Icon, signal: Signal[bool]) -> Act:
 
 def _rain(state: State) -> Reading:
     rate = 0.0 if state.outside is None else state.outside.weather.precipitation
-    word = (
-        say("No rain")
-        if rate < 0.1
-        else say("Light")
-        if rate < 2.5
-        else say("Moderate")
-        if rate < 10
-        else say("Heavy")
-    )
+    word = "No rain" if rate < DRIZZLE_MM else "Light" if rate < 2.5 else "Moderate" if rate < 10 else "Heavy"
     return Reading(word, f"{rate:.1f} mm/h", state.signals[BODY.RAIN_INTENSITY] / 100)
 
 
 def _fog(state: State) -> Reading:
     sight = state.signals[OUTSIDE.VISIBILITY]
-    word = (
-        say("Clear")
-        if sight >= MIST_M
-        else say("Mist")
-        if sight >= FOG_M
-        else say("Fog")
-        if sight >= 200
-        else say("Dense fog")
-    )
-    return Reading(
-        word, say("Visibility {distance}", distance=distance(state.signals, sight)), 1 - min(1.0, sight / MIST_M)
-    )
+    weather = None if state.outside is None else state.outside.weather
+    is_fog = weather is None or not (is_dusty(weather) or weather.precipitation >= DRIZZLE_MM)
+    words = ("Clear", "Mist", "Fog", "Dense fog") if is_fog else ("Good", "Moderate", "Poor", "Very poor")
+    word = words[sum(sight < bound_m for bound_m in (MIST_M, FOG_M, DENSE_FOG_M))]
+    return Reading(word, distance(state.signals, sight), 1 - min(1.0, sight / MIST_M))
 
 
 def _ice(state: State) -> Reading:
@@ -192,7 +179,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         AlertKind.WEATHER,
     ),
     "fog": Phenomenon(
-        say("Fog"),
+        "Visibility",
         Icon.REAR_FOG,
         say("Visibility as the forward camera estimates it. Whether fog lamps may be lit depends on local law."),
         _fog,

@@ -32,7 +32,7 @@ from automotive_cosim.contracts.text import say
 ROOMS = {
     **dict.fromkeys(("home", "map", "explore", "place", "route"), Room.WHOLE),
     **dict.fromkeys(("apps", "store", "notifications", "emergency"), Room.ONE),
-    **dict.fromkeys(("trip", "trip_b", "calendar", "appointment"), Room.ONE),
+    **dict.fromkeys(("note", "trip", "trip_b", "calendar", "appointment"), Room.ONE),
 }
 """What the screens need; the others have two panes."""
 HELD_STEPS = 5
@@ -90,6 +90,30 @@ def heading(rect: Rect, text: str, key: str = "") -> Label:
     return Label(rect=rect, key=key, text=text, style=Type.LABEL, tone="muted")
 
 
+StepWords = Callable[[str, str], tuple[str, str]]
+"""From a name and a step, what minus and plus do."""
+
+
+def lower_higher(name: str, by: str) -> tuple[str, str]:
+    """For what has more or less."""
+    return f"{name} lower by {by}", f"{name} higher by {by}"
+
+
+def forward_back(name: str, by: str) -> tuple[str, str]:
+    """For a seat, whose position counts from the front."""
+    return f"{name} forward by {by}", f"{name} back by {by}"
+
+
+def upright_back(name: str, by: str) -> tuple[str, str]:
+    """For a backrest, whose angle counts from upright."""
+    return f"{name} more upright by {by}", f"{name} further back by {by}"
+
+
+def right_left(name: str, by: str) -> tuple[str, str]:
+    """For a mirror, whose angle counts to the left (VSS, ``Vehicle.Body.Mirrors.DriverSide.Pan``)."""
+    return f"{name} to the right by {by}", f"{name} to the left by {by}"
+
+
 def stepper(
     rect: Rect,
     key: str,
@@ -99,20 +123,21 @@ def stepper(
     shown: str,
     style: Type = Type.TITLE,
     locked: str = "",
+    ways: StepWords = lower_higher,
 ) -> tuple[Widget, ...]:
-    """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once."""
+    """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once. ``ways`` says where minus and plus lead."""
     value = signals[signal]
     side = min(rect.height, 64)
     less, more, far_less, far_more = (
         min(signal.high, max(signal.low, value + steps * signal.step)) for steps in (-1, 1, -HELD_STEPS, HELD_STEPS)
     )
-    by = _step(signal, signals)
+    down, up = ways(name, _step(signal, signals))
     left, middle, right = row(rect, side, REST, side)
     return (
         Button(
             rect=left.middle(side, side),
             key=f"{key}.decrease",
-            description=say("{name} lower by {step}", name=name, step=by),
+            description=down,
             icon=Icon.MINUS,
             on_tap=Set(signal, less),
             on_hold=Set(signal, far_less),
@@ -130,7 +155,7 @@ def stepper(
         Button(
             rect=right.middle(side, side),
             key=f"{key}.increase",
-            description=say("{name} higher by {step}", name=name, step=by),
+            description=up,
             icon=Icon.PLUS,
             on_tap=Set(signal, more),
             on_hold=Set(signal, far_more),

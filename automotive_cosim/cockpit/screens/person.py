@@ -108,9 +108,33 @@ def thread(state: State) -> tuple[Widget, ...]:
         Button(
             rect=figure,
             key="thread.figure",
-            text=say("With a figure"),
+            text="Send a figure",
             icon=Icon.MESSAGE,
             on_tap=Show("figure", who),
+        ),
+        Button(
+            rect=read,
+            key="thread.read",
+            text="Read out" if hidden else "Open",
+            icon=Icon.VOICE if hidden else Icon.EYE,
+            on_tap=Read(who),
+            disabled="" if said and not opened else "There is nothing new to read",
+        ),
+        heading(right.top(28), "Answer"),
+        rows(
+            right.below(36),
+            "thread.answers",
+            "Answers",
+            state,
+            len(TEMPLATES),
+            lambda index, cell: Row(
+                rect=cell,
+                key=f"thread.answer.{index}",
+                text=TEMPLATES[index],
+                icon=Icon.REPLY,
+                on_tap=SendReply(who, TEMPLATES[index]),
+            ),
+            height=56,
         ),
         *(
             (
@@ -143,29 +167,5 @@ def thread(state: State) -> tuple[Widget, ...]:
             (Picture(rect=seen.middle(PHOTO_WIDE, PHOTO_HIGH), key=PHOTO, description=say("Photo"), photo=photo),)
             if photo
             else ()
-        ),
-        Button(
-            rect=read,
-            key="thread.read",
-            text=say("Read out") if hidden else say("Open"),
-            icon=Icon.VOICE if hidden else Icon.EYE,
-            on_tap=Read(who),
-            disabled="" if said and not opened else say("There is nothing new to read"),
-        ),
-        heading(right.top(28), say("Answer")),
-        rows(
-            right.below(36),
-            "thread.answers",
-            say("Answers"),
-            state,
-            len(TEMPLATES),
-            lambda index, cell: Row(
-                rect=cell,
-                key=f"thread.answer.{index}",
-                text=TEMPLATES[index],
-                icon=Icon.REPLY,
-                on_tap=SendReply(who, TEMPLATES[index]),
-            ),
-            height=56,
         ),
     )

@@ -330,14 +330,13 @@ def memo(state: State) -> tuple[Widget, ...]:
     memos = desk.memos
 
     def line(index: int, cell: Rect) -> Row:
-        rest = (*memos[:index], *memos[index + 1 :])
         return Row(
             rect=cell,
             key=f"memo.{index}",
             text=memos[index],
-            trail=say("Delete"),
+            trail="Open",
             icon=Icon.MEMO,
-            on_tap=Put("desk", replace(desk, memos=rest), say("{memo} is deleted", memo=memos[index])),
+            on_tap=Show("note", memos[index]),
         )
 
     return (
@@ -399,7 +398,7 @@ def trip(state: State) -> tuple[Widget, ...]:
         ("trip.range", say("Range"), distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
     )
     cells = [cell for line in body.rows(2, 16) for cell in line.columns(3, 16)]
-    children: list[Widget] = [title(head, Icon.TRIP, say("Trip computer"))]
+    children: list[Widget] = [title(head, Icon.TRIP, "Trip A", "trip.title")]
     for cell, (key, name, value, icon) in zip(cells, tiles, strict=True):
         upper, _, lower = column(cell.inset(20, 16), 32, REST, 56)
         picture, _, words = row(upper, 32, 12, REST)
@@ -444,7 +443,7 @@ def calendar(state: State) -> tuple[Widget, ...]:
             detail=entry.place,
             trail=say("Open"),
             icon=Icon.CALENDAR,
-            on_tap=Show("appointment", str(index)),
+            on_tap=Show("appointment", entry.name),
         )
 
     return (

@@ -286,7 +286,7 @@ def _holder(
         Tile(
             rect=tile,
             key=key,
-            text=name,
+            text=f"{name} active",
             icon=icon,
             checked=on,
             on_tap=Set(active, not on),

@@ -2,6 +2,7 @@
 
 import { ask, h } from "./dom.js";
 import { runsPage, resultsPage } from "./runs.js";
+import { livePage } from "./live.js";
 import { replayPage } from "./replay.js";
 import { playPage } from "./play.js";
 import { besidePage, comparePage } from "./compare.js";
@@ -18,6 +19,7 @@ const PAGES = [
   [/^\/scenarios$/, scenariosPage],
   [/^\/play$/, playPage],
   [/^\/study$/, studyPage],
+  [/^\/live\/([0-9a-f]{12})$/, livePage],
   [/^\/decisions\/([0-9a-f]{12})$/, decisionsPage],
   [/^\/decision\/([0-9a-f]{12})\/([^/]+)$/, decisionPage],
   [/^\/compare\/([0-9a-f]{12})\/([0-9a-f]{12})$/, comparePage],

@@ -3,12 +3,13 @@
 import { ask, counted, h, svg } from "./dom.js";
 
 const MOST = 400;
+const EVERY_MS = 3000;
 const WAYS = ["keeps its route", ...Array.from({ length: 20 }, (_, index) => `way ${index + 1}`)];
 const signed = (value, unit) => `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value)} ${unit}`;
 const wayOf = (branch) => WAYS[branch === null ? 0 : branch + 1];
 
 export async function decisionsPage(query, id) {
-  const study = await ask(`/api/studies/${id}`);
+  let study = await ask(`/api/studies/${id}`);
   const trips = [...new Set(study.decisions.map(({ trip }) => trip))].sort();
   const trip = h("select", { "aria-label": "Trip" }, h("option", { value: "" }, "Trip: all"), trips.map((name) => h("option", { value: name, selected: name === query.get("trip") }, name)));
   const which = h("select", { "aria-label": "Which decisions" }, [["", "all decisions"], ["better", "another way saves time"], ["worse", "no way saves time"], ["excluded", "excluded ones"]].map(([value, words]) => h("option", { value, selected: value === query.get("show") }, words)));
@@ -29,12 +30,21 @@ export async function decisionsPage(query, id) {
     history.replaceState(null, "", `#/decisions/${id}${kept_.size ? `?${kept_}` : ""}`);
   }
   for (const each of [trip, which]) each.addEventListener("change", fill);
+  const live = h("p", { hidden: !study.running }, h("a", { class: "pill live", href: `#/live/${id}` }, "Watch live"));
+  const again = async () => {
+    if (!study.running) return;
+    study = await ask(`/api/studies/${id}`);
+    live.hidden = !study.running;
+    fill();
+  };
+  const timer = setInterval(() => again().catch(() => {}), EVERY_MS);
   return {
     title: study.name,
-    content: [h("h1", {}, study.name), h("p", { class: "muted" }, `A study in ${study.scenario}: at each decision the drive is copied, and every way is driven to its end.`), h("div", { class: "filters" }, trip, which), count,
+    content: [h("h1", {}, study.name), h("p", { class: "muted" }, `A study in ${study.scenario}: at each decision the drive is copied, and every way is driven to its end.`), live, h("div", { class: "filters" }, trip, which), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Decisions" }, h("table", {},
         h("thead", {}, h("tr", {}, ["Trip", "Seed", "At", "Delay ahead", "Best way saves", "All others save", "Excluded"].map((name) => h("th", { scope: "col" }, name)))), body))],
     ready: fill,
+    leave: () => clearInterval(timer),
   };
 }
 
@@ -42,7 +52,7 @@ export async function decisionPage(query, id, name) {
   const study = await ask(`/api/studies/${id}`);
   const found = study.decisions.find((each) => each.id === name);
   if (!found) throw new Error("There is no such decision.");
-  const map = found.has_ways ? await ask(`/api/studies/${id}/${encodeURIComponent(name)}`) : null;
+  const map = found.has_ways ? await ask(`/api/studies/${id}/decisions/${encodeURIComponent(name)}`) : null;
   const rows = [{ number: null, gain_s: 0, stops: 0, distance_m: 0, co2_g: 0, others_s: 0, changed: 0 }, ...found.futures];
   const chosen = (number) => [...new Set(found.choices.filter(({ branch }) => branch === number).map(({ policy }) => policy))].join(", ");
   const picture = map && drawn(map);

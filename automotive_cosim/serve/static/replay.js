@@ -6,7 +6,7 @@ import { speedPlot } from "./plot.js";
 
 const POLL_MS = 1000;
 const WEATHER = [[0, "clear"], [3, "cloudy"], [48, "fog"], [57, "drizzle"], [67, "rain"], [77, "snow"], [82, "showers"], [86, "snow showers"], [99, "thunderstorm"]]; // up to each WMO code
-const SPEEDS = [0.25, 0.5, 1, 2, 4, 8];
+const SPEEDS = [0.25, 0.5, 1, 2, 4, 8, 16, 32];
 
 export async function replayPage(query, id, episode) {
   const base = `/api/runs/${id}${episode ? `/episodes/${encodeURIComponent(episode)}` : ""}`;
@@ -34,7 +34,7 @@ export async function replayPage(query, id, episode) {
   const marks = h("div", { class: "marks", "aria-hidden": "true" });
   const clock = h("output", { class: "clock" });
   const play = h("button", { type: "button", class: "main" }, "Play");
-  const speed = h("select", { "aria-label": "Speed of the replay" }, SPEEDS.map((value) => h("option", { value, selected: value === 1 }, `${value}×`)));
+  const speed = h("select", { "aria-label": "Speed of the replay" }, SPEEDS.map((value) => h("option", { value, selected: value === (SPEEDS.find((each) => each === Number(query.get("speed"))) ?? 1) }, `${value}×`)));
   const live = h("button", { type: "button", "aria-pressed": "true", hidden: true }, "Follow live");
   const list = h("ol", { class: "steps" });
   const events = h("ol", { class: "events" });
@@ -47,7 +47,7 @@ export async function replayPage(query, id, episode) {
 
   let at = 0;
   let playing = false;
-  let following = running && !query.has("at");
+  let following = running && !query.has("at") && !query.has("speed");
   let picked = null;
   let shownStep = null;
   let last = 0;
@@ -62,10 +62,11 @@ export async function replayPage(query, id, episode) {
   const step = () => steps.findLastIndex((each) => each.at_s <= at + 1e-6);
 
   function head() {
-    const told = [run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && run.model, run.seed !== null && `seed ${run.seed}`];
+    const told = [run.of_study && h("a", { href: `#/decisions/${id}` }, run.name), run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && run.model, run.seed !== null && `seed ${run.seed}`];
     heading.replaceChildren(
-      h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).join(" · "))),
-      run.kind === "drive" && !running ? h("span", { class: "pill" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.bait && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
+      h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).flatMap((each, index) => (index ? [" · ", each] : [each])))),
+      run.of_study ? h("span", { class: running ? "pill live" : "pill quiet" }, running ? "Running" : "Over")
+        : run.kind === "drive" && !running ? h("span", { class: "pill" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.bait && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
     live.hidden = !running;
     const parts = Object.entries(run.verdict?.parts ?? {});
     verdict.replaceChildren(...(parts.length ? [h("h2", {}, "Verdict"), h("ol", { class: "card parts" },
@@ -164,7 +165,7 @@ export async function replayPage(query, id, episode) {
 
   function told(now) {
     return [
-      h("h3", {}, now.number ? `Step ${now.number}: ${now.words}` : run.kind === "drive" ? "Departure" : "Hand-over"),
+      h("h3", {}, now.number ? `${run.of_study ? "" : `Step ${now.number}: `}${now.words}` : run.kind === "drive" ? "Departure" : "Hand-over"),
       now.thought && h("p", { class: "thought" }, now.thought),
       now.feedback.text && h("p", { class: "muted" }, `${plain(now.feedback.code)}: ${now.feedback.text}`),
       now.action && h("p", {}, h("code", {}, JSON.stringify(now.action))),
@@ -235,11 +236,11 @@ export async function replayPage(query, id, episode) {
 
   async function again() {
     try {
-      const had = steps.length;
+      const had = `${steps.length} ${run.scenario}`;
       running = await poll();
       note.hidden = true;
-      if (!running) run = await ask(base);
-      if (!running || steps.length !== had) head();
+      if (!running || !run.scenario) run = await ask(base); // at its very beginning nothing is known of it
+      if (!running || `${steps.length} ${run.scenario}` !== had) head();
       lists();
       show();
     } catch (error) {
@@ -261,8 +262,8 @@ export async function replayPage(query, id, episode) {
   return {
     title: run.task,
     content: [heading, note,
-      h("div", { class: "stage" },
-        h("figure", { class: "cockpit card" }, box),
+      h("div", { class: run.of_study ? "stage wide" : "stage" },
+        run.of_study ? null : h("figure", { class: "cockpit card" }, box),
         h("figure", { class: "card map" }, canvas,
           h("div", { class: "tools" }, button("+", () => view.zoom(1.4), "Closer (+)"), button("−", () => view.zoom(1 / 1.4), "Further away (−)"), ego, turn, button("All roads", () => view.whole(), "All recorded roads (0)")),
           h("figcaption", {}, about, vehicle))),
@@ -270,17 +271,18 @@ export async function replayPage(query, id, episode) {
         play, button("‹ Step", () => hop(-1), "Step before (,)"), button("Step ›", () => hop(1), "Next step (.)"), live,
         h("div", { class: "time-line" }, slider, marks), clock, speed, copy, copied),
       h("div", { class: "columns" },
-        h("section", {}, h("h2", {}, "Steps"), h("div", { class: "card" }, list)),
-        h("section", {}, h("h2", {}, "This step"), detail)),
+        h("section", {}, h("h2", {}, run.of_study ? "What is decided" : "Steps"), h("div", { class: "card" }, list)),
+        h("section", {}, h("h2", {}, run.of_study ? "In detail" : "This step"), detail)),
       verdict,
       h("div", { class: "columns even" },
-        h("section", {}, h("h2", {}, "Events"), h("div", { class: "card" }, events)),
+        run.of_study ? null : h("section", {}, h("h2", {}, "Events"), h("div", { class: "card" }, events)),
         h("section", {}, h("h2", {}, "Speed and limit"), plot)),
       h("p", { class: "muted hash" }, run.trace_sha256 ? `Trace ${run.trace_sha256}` : "")],
     ready: () => {
-      jump(query.has("at") && Number.isFinite(Number(query.get("at"))) ? Number(query.get("at")) : running ? end() : 0, true);
+      jump(query.has("at") && Number.isFinite(Number(query.get("at"))) ? Number(query.get("at")) : running ? (following ? end() : road.begin) : 0, true);
       if (running) { run_(true); timer = setTimeout(again, POLL_MS); }
     },
+    isOver: () => !running && at >= end() - 0.05,
     leave: () => {
       clearTimeout(timer);
       clearTimeout(saved);

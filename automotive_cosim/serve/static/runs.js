@@ -29,7 +29,8 @@ function line(record) {
     const done = record.planned ? `${record.done} of ${counted(record.planned, unit)}` : counted(record.done, unit);
     return h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/${page}/${record.id}` }, record.name), h("p", { class: "muted" }, `${label} · ${done} · ${when(record.started)}`)),
-      h("span", { class: "pill quiet" }, "Results"));
+      record.running && record.kind === "study" ? h("a", { class: "pill live", href: `#/live/${record.id}` }, "Watch live")
+        : h("span", { class: record.running ? "pill live" : "pill quiet" }, record.running ? "Running" : "Results"));
   }
   const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && record.model, record.seed !== null && `seed ${record.seed}`, when(record.started)];
   return h("li", { class: "card" },

@@ -1,0 +1,51 @@
+"""Tells running programs that somebody watches them, by a mark that the system drops with this process."""
+
+from __future__ import annotations
+
+import threading
+from contextlib import suppress
+from pathlib import Path
+from typing import IO
+
+from automotive_cosim.run.road_recorder import mark_as_written
+
+PATIENCE_S = 10.0
+"""Who has not asked for so long has gone."""
+
+
+class Spectators:
+    """Marks the files of those who are watched; nothing is written into them."""
+
+    def __init__(self, patience_s: float = PATIENCE_S) -> None:
+        """Nobody watches yet."""
+        self._patience_s = patience_s
+        self._marked: dict[Path, tuple[IO[bytes], threading.Timer]] = {}
+        self._lock = threading.Lock()
+
+    def watch(self, path: Path) -> None:
+        """Marks a file for some seconds; if another program has, nothing more is needed.
+
+        Raises:
+            OSError: it cannot be read.
+        """
+        with self._lock:
+            file, timer = self._marked.get(path, (None, None))
+            if timer is not None:
+                timer.cancel()
+            file = file or path.open("rb")
+            mark_as_written(file)
+            timer = threading.Timer(self._patience_s, self._leave, (path,))
+            timer.daemon = True
+            timer.start()
+            self._marked[path] = file, timer
+
+    def close(self) -> None:
+        """Drops all marks."""
+        for path in list(self._marked):
+            self._leave(path)
+
+    def _leave(self, path: Path) -> None:
+        with self._lock, suppress(KeyError):
+            file, timer = self._marked.pop(path)
+            timer.cancel()
+            file.close()
