@@ -175,7 +175,7 @@ class Appointment:
     @property
     def name(self) -> str:
         """What it is told apart by, whatever its time."""
-        return f"{self.title}, {self.place}"
+        return say("{first}, {second}", first=self.title, second=self.place)
 
 
 @dataclass(frozen=True, slots=True)

@@ -293,7 +293,10 @@ def answered(state: State, request: RoadRequest, answer: Answer) -> None:
         state.notify(answer.reason, Icon.WARNING, Severity.WARNING)
     elif not isinstance(request, Alert | Hazards) and answer.reason:
         goal = _goal(state, request)
-        state.notify(f"{goal}: {answer.reason}" if goal else answer.reason, _asked(state, request)[1])
+        state.notify(
+            say("{name}: {value}", name=goal, value=answer.reason) if goal else answer.reason,
+            _asked(state, request)[1],
+        )
 
 
 def _goal(state: State, request: RoadRequest) -> str:
@@ -301,7 +304,11 @@ def _goal(state: State, request: RoadRequest) -> str:
     place = state.atlas.at(request.destination) if isinstance(request, Reroute) else None
     if place is None:
         return ""
-    return f"{place.name}, then {state.navigation.onward}" if state.navigation.onward else place.name
+    return (
+        say("{place}, then {onward}", place=place.name, onward=state.navigation.onward)
+        if state.navigation.onward
+        else place.name
+    )
 
 
 def _place_name(state: State, destination: str) -> str:

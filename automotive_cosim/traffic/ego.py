@@ -299,12 +299,12 @@ class Driver:
     def _cruise(self, speed_kmh: float | None, state: DrivingState) -> Answer:
         if speed_kmh is None:
             self._bounds.cruise = math.inf
-            return Answer(True, "no speed is set any more")
+            return Answer(True, say("no speed is set any more"))
         why_not = _too_slow(speed_kmh, state)
         if why_not:
             return Answer(False, why_not)
         self._bounds.cruise = speed_kmh / KMH_PER_MPS
-        return Answer(True, f"the car goes no faster than {speed_kmh:.0f} km/h")
+        return Answer(True, say("the car goes no faster than {speed} km/h", speed=f"{speed_kmh:.0f}"))
 
     def _act(self, intent: _Intent, state: DrivingState) -> tuple[Event, ...]:
         request, after = intent.request, f"{state.time_s - intent.asked_s:.1f} s after"

@@ -107,12 +107,12 @@ def notifications(state: State) -> tuple[Widget, ...]:
                     key="notifications.clear",
                     text=say("Clear all"),
                     icon=Icon.DELETE,
-                    on_tap=Put("notices", (), "The notifications are cleared"),
+                    on_tap=Put("notices", (), say("The notifications are cleared")),
                     disabled=""
                     if state.notices
-                    else "These go when they are dealt with"
+                    else say("These go when they are dealt with")
                     if lines
-                    else "There is nothing to clear",
+                    else say("There is nothing to clear"),
                 ),
                 rows(
                     inner.below(72),

@@ -213,12 +213,12 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
     head, _, body, _, acts = column(rect, 28, 4, REST, 8, 56)
     cells = [cell for line in body.rows(2, 4) for cell in line.columns(3, 24)]
     panes = (
-        ("driver", "Driver", CABIN.DRIVER_WINDOW),
-        ("passenger", "Passenger", CABIN.PASSENGER_WINDOW),
-        ("sunroof", "Sunroof", CABIN.SUNROOF),
-        ("rear_left", "Rear left", CABIN.REAR_LEFT_WINDOW),
-        ("rear_right", "Rear right", CABIN.REAR_RIGHT_WINDOW),
-        ("shade", "Shade closed", CABIN.SUNROOF_SHADE),
+        ("driver", say("Driver"), CABIN.DRIVER_WINDOW),
+        ("passenger", say("Passenger"), CABIN.PASSENGER_WINDOW),
+        ("sunroof", say("Sunroof"), CABIN.SUNROOF),
+        ("rear_left", say("Rear left"), CABIN.REAR_LEFT_WINDOW),
+        ("rear_right", say("Rear right"), CABIN.REAR_RIGHT_WINDOW),
+        ("shade", say("Shade closed"), CABIN.SUNROOF_SHADE),
     )
     closed = all(signals[window] == 0 for window in WINDOWS)
     buttons = acts.columns(3, 24)
@@ -254,16 +254,16 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 _SEATS: dict[str, tuple[tuple[str, str, Signal[float], str, StepWords], ...]] = {
     "driver": (
-        ("position", "Position", SEAT.DRIVER_POSITION, "mm", forward_back),
-        ("height", "Height", SEAT.DRIVER_HEIGHT, "mm", lower_higher),
-        ("recline", "Backrest", SEAT.DRIVER_RECLINE, "°", upright_back),
-        ("lumbar", "Lumbar", SEAT.DRIVER_LUMBAR, "%", lower_higher),
+        ("position", say("Position"), SEAT.DRIVER_POSITION, "mm", forward_back),
+        ("height", say("Height"), SEAT.DRIVER_HEIGHT, "mm", lower_higher),
+        ("recline", say("Backrest"), SEAT.DRIVER_RECLINE, "°", upright_back),
+        ("lumbar", say("Lumbar"), SEAT.DRIVER_LUMBAR, "%", lower_higher),
     ),
     "passenger": (
-        ("position", "Position", SEAT.PASSENGER_POSITION, "mm", forward_back),
-        ("height", "Height", SEAT.PASSENGER_HEIGHT, "mm", lower_higher),
-        ("recline", "Backrest", SEAT.PASSENGER_RECLINE, "°", upright_back),
-        ("lumbar", "Lumbar", SEAT.PASSENGER_LUMBAR, "%", lower_higher),
+        ("position", say("Position"), SEAT.PASSENGER_POSITION, "mm", forward_back),
+        ("height", say("Height"), SEAT.PASSENGER_HEIGHT, "mm", lower_higher),
+        ("recline", say("Backrest"), SEAT.PASSENGER_RECLINE, "°", upright_back),
+        ("lumbar", say("Lumbar"), SEAT.PASSENGER_LUMBAR, "%", lower_higher),
     ),
 }
 
@@ -425,9 +425,10 @@ def _mirror(
     pan, tilt, last = inner.below(30).rows(3, 8)
     fold, heat = last.columns(2, 10)
     children: list[Widget] = [heading(inner.top(28), name)]
-    for line, key, text, signal, ways in (
-        (pan, "pan", "Sideways", angles[0], right_left),
-        (tilt, "tilt", "Up, down", angles[1], lower_higher),
+    sideways, upwards = _ANGLES[who]
+    for line, key, text, told, signal, ways in (
+        (pan, "pan", say("Sideways"), sideways, angles[0], right_left),
+        (tilt, "tilt", say("Up, down"), upwards, angles[1], lower_higher),
     ):
         children += [
             Label(rect=line.left(110), text=text, style=Type.LABEL, tone="muted"),

@@ -323,7 +323,7 @@ def _schedule(rect: Rect, state: State) -> Widget:
             Label(
                 rect=about,
                 key="climate.schedule.about",
-                text="The climate control starts half an hour before, and the cabin is ready at this time.",
+                text=say("The climate control starts half an hour before, and the cabin is ready at this time."),
                 style=Type.CAPTION,
                 tone="muted",
                 lines=3,

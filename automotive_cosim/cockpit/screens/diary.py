@@ -32,7 +32,7 @@ def appointment(state: State) -> tuple[Widget, ...]:
     agenda = state.desk.agenda
     at = _at(state, "appointment", [entry.name for entry in agenda])
     if at is None:
-        return _gone(inner, "appointment", "This appointment is no longer there")
+        return _gone(inner, "appointment", say("This appointment is no longer there"))
     entry = agenda[at]
 
     def put(others: tuple[Appointment, ...], said: str) -> Put:
@@ -92,24 +92,24 @@ def memo_note(state: State) -> tuple[Widget, ...]:
     memos = state.desk.memos
     at = _at(state, "note", memos)
     if at is None:
-        return _gone(inner, "note", "This memo is no longer there")
+        return _gone(inner, "note", say("This memo is no longer there"))
     back, _, delete = acts.columns(3, 16)
     return (
         Card(
             rect=area,
             children=(
-                title(head, Icon.MEMO, "Memo"),
+                title(head, Icon.MEMO, say("Memo")),
                 Label(rect=words, key="note.text", text=memos[at], style=Type.HEADLINE, lines=3),
-                Button(rect=back, key="note.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+                Button(rect=back, key="note.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
                 Button(
                     rect=delete,
                     key="note.delete",
-                    text="Delete",
+                    text=say("Delete"),
                     icon=Icon.DELETE,
                     on_tap=Put(
                         "desk",
                         replace(state.desk, memos=(*memos[:at], *memos[at + 1 :])),
-                        f"{memos[at]} is deleted",
+                        say("{memo} is deleted", memo=memos[at]),
                     ),
                 ),
             ),
@@ -122,7 +122,7 @@ def _gone(rect: Rect, screen: str, words: str) -> tuple[Widget, ...]:
     back = rect.bottom_part(72).columns(3, 16)[0]
     return (
         note(rect, f"{screen}.gone", words),
-        Button(rect=back, key=f"{screen}.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+        Button(rect=back, key=f"{screen}.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
     )
 
 

@@ -247,9 +247,14 @@ def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, 
     outside = state.outside
     online = state.signals[LINK.ONLINE] and outside is not None
     bars = outside.connectivity.signal_bars if outside is not None else 0
-    words = "Offline"
+    words = say("Offline")
     if outside is not None and online:
-        words = f"Wi-Fi {state.wifi}" if state.wifi else f"{outside.connectivity.kind.upper()}, {bars} bars"
+        network = outside.connectivity.kind.upper()
+        words = (
+            say("Wi-Fi {network}", network=state.wifi)
+            if state.wifi
+            else counted("{network}, {n} bar", "{network}, {n} bars", bars, network=network)
+        )
     fix = outside is not None and outside.gps is not None and outside.gps.has_fix
     level = state.signals[ENERGY.LEVEL]
     return (

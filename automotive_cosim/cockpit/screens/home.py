@@ -20,6 +20,7 @@ from automotive_cosim.cockpit.screens.parts import (
     speed_unit,
     temperature,
 )
+from automotive_cosim.cockpit.screens.safety import KINDS
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, GLASS, HVAC, MEDIA, MOTION
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -211,9 +212,9 @@ def _climate_card(rect: Rect, state: State) -> Widget:
     if is_fogged:
         words = say("Windows fogging")
     elif signals[MOTION.GEAR] == "P":
-        words = f"If you leave: {temperature(signals, signals[HVAC.FORECAST], 0)}"
+        words = say("If you leave: {temperature}", temperature=temperature(signals, signals[HVAC.FORECAST], 0))
     elif any(signals[pane] > 0 for pane in (*WINDOWS, CABIN.SUNROOF)):
-        words = "Windows open"
+        words = say("Windows open")
     return _live(
         rect,
         "home.climate",
@@ -246,14 +247,16 @@ def _outside_card(rect: Rect, state: State) -> Widget:
         Label(
             rect=value,
             key="home.outside.value",
-            text="No bad weather" if calm else readings[worst].word,
-            description="Outside",
+            text=say("No bad weather") if calm else readings[worst].word,
+            description=say("Outside"),
             style=Type.TITLE,
         ),
         Label(
             rect=note,
             key="home.outside.note",
-            text="Rain, fog, ice, dust, wind" if calm else f"{worst.title}: {readings[worst].value}",
+            text=say("Rain, fog, ice, dust, wind")
+            if calm
+            else say("{name}: {value}", name=worst.title, value=readings[worst].value),
             style=Type.LABEL,
             tone="muted",
         ),

@@ -78,7 +78,15 @@ def _switch(key: str, text: str, icon: Icon, signal: Signal[bool]) -> Act:
 
 def _rain(state: State) -> Reading:
     rate = 0.0 if state.outside is None else state.outside.weather.precipitation
-    word = "No rain" if rate < DRIZZLE_MM else "Light" if rate < 2.5 else "Moderate" if rate < 10 else "Heavy"
+    word = (
+        say("No rain")
+        if rate < DRIZZLE_MM
+        else say("Light")
+        if rate < 2.5
+        else say("Moderate")
+        if rate < 10
+        else say("Heavy")
+    )
     return Reading(word, f"{rate:.1f} mm/h", state.signals[BODY.RAIN_INTENSITY] / 100)
 
 
@@ -86,7 +94,11 @@ def _fog(state: State) -> Reading:
     sight = state.signals[OUTSIDE.VISIBILITY]
     weather = None if state.outside is None else state.outside.weather
     is_fog = weather is None or not (is_dusty(weather) or weather.precipitation >= DRIZZLE_MM)
-    words = ("Clear", "Mist", "Fog", "Dense fog") if is_fog else ("Good", "Moderate", "Poor", "Very poor")
+    words = (
+        (say("Clear"), say("Mist"), say("Fog"), say("Dense fog"))
+        if is_fog
+        else (say("Good"), say("Moderate"), say("Poor"), say("Very poor"))
+    )
     word = words[sum(sight < bound_m for bound_m in (MIST_M, FOG_M, DENSE_FOG_M))]
     return Reading(word, distance(state.signals, sight), 1 - min(1.0, sight / MIST_M))
 
@@ -179,7 +191,7 @@ PHENOMENA: dict[str, Phenomenon] = {
         AlertKind.WEATHER,
     ),
     "fog": Phenomenon(
-        "Visibility",
+        say("Visibility"),
         Icon.REAR_FOG,
         say("Visibility as the forward camera estimates it. Whether fog lamps may be lit depends on local law."),
         _fog,

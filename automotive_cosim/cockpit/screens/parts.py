@@ -96,22 +96,28 @@ StepWords = Callable[[str, str], tuple[str, str]]
 
 def lower_higher(name: str, by: str) -> tuple[str, str]:
     """For what has more or less."""
-    return f"{name} lower by {by}", f"{name} higher by {by}"
+    return say("{name} lower by {step}", name=name, step=by), say("{name} higher by {step}", name=name, step=by)
 
 
 def forward_back(name: str, by: str) -> tuple[str, str]:
     """For a seat, whose position counts from the front."""
-    return f"{name} forward by {by}", f"{name} back by {by}"
+    return say("{name} forward by {step}", name=name, step=by), say("{name} back by {step}", name=name, step=by)
 
 
 def upright_back(name: str, by: str) -> tuple[str, str]:
     """For a backrest, whose angle counts from upright."""
-    return f"{name} more upright by {by}", f"{name} further back by {by}"
+    return (
+        say("{name} more upright by {step}", name=name, step=by),
+        say("{name} further back by {step}", name=name, step=by),
+    )
 
 
 def right_left(name: str, by: str) -> tuple[str, str]:
     """For a mirror, whose angle counts to the left (VSS, ``Vehicle.Body.Mirrors.DriverSide.Pan``)."""
-    return f"{name} to the right by {by}", f"{name} to the left by {by}"
+    return (
+        say("{name} to the right by {step}", name=name, step=by),
+        say("{name} to the left by {step}", name=name, step=by),
+    )
 
 
 def stepper(

@@ -108,23 +108,23 @@ def thread(state: State) -> tuple[Widget, ...]:
         Button(
             rect=figure,
             key="thread.figure",
-            text="Send a figure",
+            text=say("Send a figure"),
             icon=Icon.MESSAGE,
             on_tap=Show("figure", who),
         ),
         Button(
             rect=read,
             key="thread.read",
-            text="Read out" if hidden else "Open",
+            text=say("Read out") if hidden else say("Open"),
             icon=Icon.VOICE if hidden else Icon.EYE,
             on_tap=Read(who),
-            disabled="" if said and not opened else "There is nothing new to read",
+            disabled="" if said and not opened else say("There is nothing new to read"),
         ),
-        heading(right.top(28), "Answer"),
+        heading(right.top(28), say("Answer")),
         rows(
             right.below(36),
             "thread.answers",
-            "Answers",
+            say("Answers"),
             state,
             len(TEMPLATES),
             lambda index, cell: Row(

@@ -334,7 +334,7 @@ def memo(state: State) -> tuple[Widget, ...]:
             rect=cell,
             key=f"memo.{index}",
             text=memos[index],
-            trail="Open",
+            trail=say("Open"),
             icon=Icon.MEMO,
             on_tap=Show("note", memos[index]),
         )
@@ -398,7 +398,7 @@ def trip(state: State) -> tuple[Widget, ...]:
         ("trip.range", say("Range"), distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
     )
     cells = [cell for line in body.rows(2, 16) for cell in line.columns(3, 16)]
-    children: list[Widget] = [title(head, Icon.TRIP, "Trip A", "trip.title")]
+    children: list[Widget] = [title(head, Icon.TRIP, say("Trip A"), "trip.title")]
     for cell, (key, name, value, icon) in zip(cells, tiles, strict=True):
         upper, _, lower = column(cell.inset(20, 16), 32, REST, 56)
         picture, _, words = row(upper, 32, 12, REST)

@@ -29,7 +29,7 @@ def trip_b(state: State) -> tuple[Widget, ...]:
         Card(
             rect=area,
             children=(
-                title(head, Icon.TRIP, "Trip B", "trip_b.title"),
+                title(head, Icon.TRIP, say("Trip B"), "trip_b.title"),
                 *(
                     widget
                     for rect, (key, name, value) in zip(lines, facts, strict=True)

@@ -226,7 +226,7 @@ def _keeping(rect: Rect, state: State) -> Widget:
             *_holder(
                 left,
                 "adas.cruise",
-                say("Cruise control"),
+                say("Cruise control active"),
                 say("Cruise control, set speed"),
                 Icon.CRUISE,
                 ADAS.CRUISE_ACTIVE,
@@ -247,7 +247,7 @@ def _keeping(rect: Rect, state: State) -> Widget:
             *_holder(
                 right,
                 "adas.limiter",
-                say("Limiter"),
+                say("Limiter active"),
                 say("Limiter, set speed"),
                 Icon.SLOWER,
                 ADAS.LIMITER_ACTIVE,
@@ -286,7 +286,7 @@ def _holder(
         Tile(
             rect=tile,
             key=key,
-            text=f"{name} active",
+            text=name,
             icon=icon,
             checked=on,
             on_tap=Set(active, not on),
