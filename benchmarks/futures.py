@@ -118,6 +118,7 @@ def main() -> None:
     parser.add_argument("--ages", type=float, nargs="*", default=[0.0])
     parser.add_argument("--policies", nargs="*", default=list(POLICIES))
     parser.add_argument("--placebo-every", type=int, default=3)
+    parser.add_argument("--arrived", type=float, default=0.95, help="0.5: futures end about when the ego arrives")
     parser.add_argument("--no-bare", action="store_true", help="leave out the bare steps, which take as long again")
     parser.add_argument("--replicates", type=int, nargs="*", default=[1, 2, 4])
     given = parser.parse_args()
@@ -139,6 +140,7 @@ def main() -> None:
                 ages_s=tuple(given.ages),
                 policies=tuple(given.policies),
                 placebo_every=given.placebo_every,
+                arrived=given.arrived,
                 replicates=draws,
             ),
             bare=not given.no_bare,

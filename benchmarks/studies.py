@@ -100,7 +100,6 @@ def decision(first_s: float, more_s: Sequence[float]) -> Decision:
         delay_s=60.0,
         eta_s=300.0,
         relative_speed=0.5,
-        complies=True,
         news=(News(age_s=0.0, stay_s=300.0, delay_s=60.0, offered_s=240.0, branch=0),),
         own=None,
         agents={},

@@ -108,9 +108,9 @@ def _print(found: Calibration) -> None:
     from rich.table import Table
 
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.report.calibration import findings, table
+    from automotive_cosim.report.calibration import MANY_HOURS, by_hour, findings, table
 
-    shown = table(found)
+    shown = by_hour(found) if len(found.hours) > MANY_HOURS else table(found)
     made = Table(*shown.columns, box=None, header_style="bold", pad_edge=False)
     for column in made.columns[shown.heads :]:
         column.justify = "right"

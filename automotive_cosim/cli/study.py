@@ -66,7 +66,9 @@ def reroute(
         ),
     ] = None,
     ages: Annotated[str, typer.Option(help="Ages of the traffic news in seconds, separated by commas.")] = "0",
-    compliance: Annotated[float, typer.Option(help="Probability that the driver follows the advice.")] = 1.0,
+    compliance: Annotated[
+        str, typer.Option(help="Probabilities that the driver follows the advice, 0 to 1, separated by commas.")
+    ] = "1",
     policies: Annotated[
         str,
         typer.Option(
@@ -184,6 +186,7 @@ def reroute(
     values: dict[str, Any] = {
         "seeds": tuple(seeds_in(seeds)),
         "ages_s": tuple(_numbers("ages", ages)),
+        "compliance": tuple(_numbers("compliance", compliance)),
         "policies": tuple(words("policies", policies)),
         "per_drive": per_drive,
         "placebo_every": placebo_every,
@@ -197,7 +200,6 @@ def reroute(
         scenario,
         from_place=from_place,
         to_place=to_place,
-        compliance=compliance,
         driver=driver,
         least_delay_s=delay,
         every_s=every,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from automotive_cosim.calibration import Calibration, read_calibration
 from automotive_cosim.calibration.counts import GOOD_GEH
+from automotive_cosim.calibration.result import Met
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
@@ -22,6 +23,9 @@ if TYPE_CHECKING:
 
 UNFITTED, CALIBRATED, HELD_OUT = PALETTE[7], PALETTE[0], PALETTE[1]
 
+MANY_HOURS = 3
+"""With more, a table of every site and hour is too long to read in a terminal."""
+
 FEW_SITES = 20
 """With fewer, many demands meet the counts, and the true one cannot be told."""
 
@@ -35,7 +39,8 @@ def write_page(folder: Path) -> Path:
         SetupError: matplotlib is not installed.
     """
     found = read_calibration(folder)
-    tables = [table(found), rounds(found), *([times(found)] if found.times else [])]
+    several = [by_hour(found)] if len(found.hours) > 1 else []
+    tables = [*several, table(found), rounds(found), *([times(found)] if found.times else [])]
     plots = charts(found, network_of(load(folder)))
     text = render(
         "report/calibration.html",
@@ -123,6 +128,29 @@ def table(found: Calibration) -> Table:
     return Table("sites", "Site by site", columns, rows, note, heads=4)
 
 
+def by_hour(found: Calibration) -> Table:
+    """One row for each hour and kind of site."""
+    rows = []
+    for hour in found.hours:
+        for held_out in (False, True):
+            here = [row for row in found.rows if (row.hour, row.held_out) == (hour, held_out)]
+            if here:
+                met = Met.of([(row.simulated, row.counted) for row in here])
+                sums = (sum(getattr(row, name) for row in here) for name in ("counted", "unfitted", "simulated"))
+                rows.append(
+                    (
+                        f"{hour} h",
+                        "held out" if held_out else "",
+                        *(f"{each:.0f}" for each in sums),
+                        f"{met.good} of {met.count}",
+                        f"{met.mean_geh:.1f}",
+                    )
+                )
+    columns = ("hour", "", "counted", "unfitted", "simulated", f"GEH < {GOOD_GEH:g}", "mean GEH")
+    note = "Sums over the sites that were counted in the hour. Unfitted: the scenario's own demand."
+    return Table("hours", "Hour by hour", columns, tuple(rows), note, heads=2)
+
+
 def rounds(found: Calibration) -> Table:
     """One row for each round of fit and simulation."""
     rows = tuple(
@@ -178,6 +206,7 @@ def charts(found: Calibration, network: Network) -> dict[str, tuple[str, str, st
     """
     made = {
         "flows": ("Counted and simulated", _flows(found)),
+        **({"day": ("The calibrated sites over the day", _day(found))} if len(found.hours) > MANY_HOURS else {}),
         "map": ("Where the sites are", _map(found, network)),
     }
     return {
@@ -203,6 +232,24 @@ def _flows(found: Calibration) -> Drawing:
         legend(axes)
 
     return 4.2, draw
+
+
+def _day(found: Calibration) -> Drawing:
+    def draw(axes: Axes) -> None:
+        lines = (("counted", INK, "-"), ("unfitted", UNFITTED, ":"), ("simulated", CALIBRATED, "o"))
+        for name, colour, style in lines:
+            sums = [
+                sum(getattr(row, name) for row in found.rows if (row.hour, row.held_out) == (hour, False))
+                for hour in found.hours
+            ]
+            axes.plot(found.hours, sums, style, color=colour, label=name, markersize=5)
+        axes.set_ylim(bottom=0)
+        axes.grid(color=INK, alpha=0.15, linewidth=0.8)
+        axes.set_xlabel("local hour")
+        axes.set_ylabel("vehicles per hour, all sites")
+        legend(axes)
+
+    return 3.4, draw
 
 
 def _map(found: Calibration, network: Network) -> Drawing:

@@ -107,11 +107,12 @@ def _tracks(folder: Path, point: DecisionPoint, count: int) -> list[list[list[fl
 
 def _decision(study: Study, point: DecisionPoint) -> Json:
     drive, decision = point.drive, point.decision
-    chosen = choices_at(point, study.plan.policies) if not decision.excluded else ()
+    chosen = choices_at(point, study.plan.policies, study.plan.compliance[0]) if not decision.excluded else ()
     return {
         "id": point.id,
         **{name: getattr(drive, name) for name in ("trip", "seed", "share", "departure_s")},
-        **{name: getattr(decision, name) for name in ("at_s", "edge", "delay_s", "eta_s", "complies", "draws")},
+        **{name: getattr(decision, name) for name in ("at_s", "edge", "delay_s", "eta_s", "draws")},
+        "complies": decision.complies(study.plan.compliance[0]),
         "excluded": decision.excluded,
         "why": decision.why,
         "has_ways": bool(decision.ways),

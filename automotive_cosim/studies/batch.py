@@ -74,7 +74,8 @@ def _stages(plan: StudyPlan) -> list[tuple[int, ...]]:
 
 def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
     """Whether the mean gain of ``always`` is known precisely enough."""
-    found = [each for each in choices(rows, (PolicyRule.ALWAYS,)) if each.age_s == plan.ages_s[0]]
+    always = choices(rows, (PolicyRule.ALWAYS,), plan.compliance[0])
+    found = [each for each in always if each.age_s == plan.ages_s[0]]
     mean = seed_mean((each.seed, each.gain.time_s) for each in found)
     if plan.half_width_s is None or mean is None or mean.interval is None:
         return False

@@ -19,6 +19,7 @@ from automotive_cosim.studies.tables import (
     goes_by_news,
     groups,
     mean_of,
+    needs_driver,
     time_saved_s,
 )
 
@@ -44,6 +45,7 @@ def charts(study: Study) -> dict[str, tuple[str, str, str]]:
         "promised": ("Predicted and actual savings", _promised(study)),
         "congestion": ("Time saved by congestion at the decision", _congestion(study)),
         "ages": ("Time saved by the age of the news", _ages(study)),
+        "compliance": ("Time saved by the driver's compliance", _compliance(study)),
         "shares": ("Time saved by the share of cars that reroute", _shares(study)),
     }
     return {
@@ -96,6 +98,19 @@ def _ages(study: Study) -> Drawing | None:
         for name in named
     ]
     return _points(study, [f"{age_s:g} s old" for age_s in ages_s], series)
+
+
+def _compliance(study: Study) -> Drawing | None:
+    if len(study.plan.compliance) < 2:
+        return None
+    first_s = study.plan.ages_s[0]
+    levels = [[e for e in study.at_compliance(each) if e.age_s == first_s] for each in study.plan.compliance]
+    series = [
+        (name, [[each for each in level if each.policy == name] for level in levels])
+        for name in study.plan.policies
+        if needs_driver(name)
+    ]
+    return _points(study, [f"followed at {each:.0%}" for each in study.plan.compliance], series)
 
 
 def _shares(study: Study) -> Drawing | None:

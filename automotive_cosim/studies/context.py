@@ -37,7 +37,7 @@ def bounds(study: Study) -> Table:
         put_in = [
             (point.decision.excluded, choice)
             for point in here
-            for choice in choices_at(point, (policy,))
+            for choice in choices_at(point, (policy,), study.plan.compliance[0])
             if choice.age_s == age_s
         ]
         known = _gains(counted) + _gains(choice for reason, choice in put_in if reason != NOT_ARRIVED)

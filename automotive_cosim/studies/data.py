@@ -20,6 +20,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.row import InColumns, columns
+from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.policies import chosen, parse_policy
 from automotive_cosim.studies.results import Study, all_decisions
 from automotive_cosim.studies.rows import (
@@ -63,7 +64,8 @@ class FutureRow:
     """Number of the branch; None for keeping the route."""
     is_placebo: bool
     policies: str
-    """Policies that choose this future by the newest news, separated by spaces, without ``best``."""
+    """Policies that choose this future by the newest news and at the first compliance, separated by spaces,
+    without ``best``."""
     ego: Annotated[Totals, InColumns("ego")]
     gain: Annotated[Totals, InColumns("gain")]
     """What it saves compared with keeping the route in the same draw; a kept route, compared with draw 0."""
@@ -81,6 +83,7 @@ class WholeRow:
     departure_s: float
     trip: str
     policy: str
+    compliance: float
     draw: int
     reroutings: int
     excluded: str
@@ -93,7 +96,7 @@ def futures(study: Study) -> Iterator[FutureRow]:
     for point in all_decisions(study.rows):
         decision = point.decision
         assert point.drive.stay is not None, "it has a decision"
-        by_branch = choosers(study.plan.policies, decision)
+        by_branch = choosers(study.plan, decision)
         kept = Branch(gains=NOTHING, totals=point.drive.stay, others=NOBODY)
         driven: list[tuple[int, int | None, Branch, tuple[Branch, ...]]] = [(0, None, kept, decision.branches)]
         driven += [
@@ -119,6 +122,7 @@ def whole_drives(study: Study) -> Iterator[WholeRow]:
                 departure_s=row.departure_s,
                 trip=row.trip,
                 policy=drive.policy,
+                compliance=drive.compliance,
                 draw=drive.draw,
                 reroutings=drive.reroutings,
                 excluded=drive.excluded,
@@ -136,7 +140,7 @@ def write_data(study: Study) -> list[Path]:
     written: list[Path] = []
     resources: list[Json] = []
     kinds: dict[str, Sequence[FutureRow | WholeRow | PolicyChoice]] = {
-        "choices": study.choices,
+        "choices": study.all_choices,
         "futures": tuple(futures(study)),
         "whole_drives": tuple(whole_drives(study)),
     }
@@ -217,12 +221,13 @@ def _future(
     )
 
 
-def choosers(policies: Sequence[str], decision: Decision) -> dict[int | None, str]:
-    """The policies that choose each branch."""
+def choosers(plan: StudyPlan, decision: Decision) -> dict[int | None, str]:
+    """The policies that choose each branch, by the newest news and at the first compliance, without ``best``."""
     found: dict[int | None, list[str]] = {}
-    for text in policies:
+    for text in plan.policies:
         if text != "best":
-            found.setdefault(chosen(parse_policy(text), decision, decision.news[0].age_s), []).append(text)
+            number = chosen(parse_policy(text), decision, decision.news[0].age_s, plan.compliance[0])
+            found.setdefault(number, []).append(text)
     return {branch: " ".join(names) for branch, names in found.items()}
 
 

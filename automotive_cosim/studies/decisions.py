@@ -95,7 +95,7 @@ def told(decision: Decision) -> Iterator[str]:
 def _futures(study: Study, point: DecisionPoint) -> Iterator[ExplainedFuture]:
     decision, stay = point.decision, point.drive.stay
     assert stay is not None, "it has a decision"
-    by_branch = choosers(study.plan.policies, decision)
+    by_branch = choosers(study.plan, decision)
     kept_s = [decision.replicates[draw - 1].stay.totals.time_s if draw else stay.time_s for draw in decision.scored]
     yield ExplainedFuture(KEPT, by_branch.get(None, ""), fmean(kept_s), None, None, None, None)
     for number in range(len(decision.branches)):

@@ -229,7 +229,7 @@ class _Drive:
             delay_s=round(now.ahead.delay_s, 1),
             eta_s=round(now.ahead.eta_s, 1),
             relative_speed=round(now.ahead.relative_speed, 3),
-            complies=bool(self._draws.random() < plan.compliance),
+            complies_above=float(self._draws.random()),
             news=tuple(self._told(age_s, options, numbers) for age_s, options in news.items()),
             ways=tuple(taken),
             own=numbers.get(own),

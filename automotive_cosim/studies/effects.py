@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from itertools import pairwise
+from itertools import pairwise, product
 from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
@@ -28,12 +28,12 @@ def whole(study: Study) -> Table:
     """The value of a policy over the whole drive."""
     rows: list[TableRow] = []
     for share in sorted({row.share for row in study.rows}):
-        for policy in study.plan.policies:
+        for policy, compliance in product(study.plan.policies, study.plan.compliance):
             drives: dict[str, list[WholeDrive]] = {}
             seeds: dict[str, int] = {}
             for row in study.rows:
                 for drive in row.whole if row.share == share else ():
-                    if drive.policy == policy:
+                    if (drive.policy, drive.compliance) == (policy, compliance):
                         drives.setdefault(row.id, []).append(drive)
                         seeds[row.id] = row.seed
             kept = {name: here for name, here in drives.items() if not any(each.excluded for each in here)}
@@ -52,6 +52,7 @@ def whole(study: Study) -> Table:
                 (
                     f"{share:.0%}",
                     policy,
+                    f"{compliance:.0%}",
                     str(len(kept)),
                     str(len(drives) - len(kept)),
                     told_mean(means["reroutings"], ".2f"),
@@ -63,6 +64,7 @@ def whole(study: Study) -> Table:
     columns = (
         "Share rerouting",
         "Policy",
+        "Compliance",
         "Drives",
         "Excluded",
         "Reroutings",
@@ -74,7 +76,7 @@ def whole(study: Study) -> Table:
         "Per drive from departure to destination, compared with the drive that keeps its route from the same "
         "traffic; drives that meet no decision count, with 0. The policy decides by the newest news of the plan."
     )
-    return Table("whole", "What following a policy saves over the whole drive", columns, tuple(rows), note, heads=2)
+    return Table("whole", "What following a policy saves over the whole drive", columns, tuple(rows), note, heads=3)
 
 
 def rerouted(study: Study) -> list[tuple[tuple[str, str, str], list[SpreadOf]]]:

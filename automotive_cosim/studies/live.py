@@ -77,7 +77,7 @@ class LiveDrive:
     def decided(self, decision: Decision) -> None:
         """A decision is made; its futures are being driven."""
         self._decisions += 1
-        chosen = choosers(self._job.plan.policies, decision)
+        chosen = choosers(self._job.plan, decision)
         lines = [f"{_way(number)}: {policies}" for number, policies in chosen.items()]
         self._tell(
             f"decision {self._decisions}: {decision.delay_s:.0f} s of delay ahead",

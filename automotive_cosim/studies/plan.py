@@ -60,8 +60,8 @@ class StudyPlan:
     """Ages of the traffic news by which the alternative route is selected."""
     driver: str = ""
     """Name of a driver profile; empty takes the scenario's."""
-    compliance: Annotated[float, Ge(0), Le(1)] = 1.0
-    """Probability that the driver follows the advice."""
+    compliance: Annotated[tuple[Annotated[float, Ge(0), Le(1)], ...], MinLen(1)] = (1.0,)
+    """Probabilities that the driver follows the advice, at the same decisions; most tables are of the first."""
     policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
     least_delay_s: Annotated[float, Ge(0), Le(3_600)] = 30.0
     """A decision is due while the expected delay ahead is at least this."""
@@ -117,7 +117,7 @@ class StudyPlan:
             UserError: one does not exist or is out of range.
         """
         _check(asdict(self))
-        for name in ("departures_s", "seeds", "shares", "ages_s", "policies", "trips", "together"):
+        for name in ("departures_s", "seeds", "shares", "ages_s", "compliance", "policies", "trips", "together"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
                 raise UserError(f"{_option(name)} names something twice: {', '.join(map(str, values))}")
@@ -229,7 +229,8 @@ class DriveJob:
     @property
     def wall_s(self) -> float:
         """Limit of its wall time: agents may think for a while."""
-        parts = 1 + self.plan.whole_drives + len(self.plan.together) + 2 * bool(self.plan.close)
+        whole = self.plan.whole_drives * len(self.plan.compliance)
+        parts = 1 + whole + len(self.plan.together) + 2 * bool(self.plan.close)
         return (7_200.0 if self.plan.agents else 1_800.0) * (1 + self.plan.draws.stop) * parts
 
     @property

@@ -63,13 +63,14 @@ def parse_policy(text: str) -> Policy:
     return Policy(text, PolicyRule(text))
 
 
-def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
+def chosen(policy: Policy, decision: Decision, age_s: float, compliance: float = 1.0) -> int | None:
     """The future that a policy's choice leads to.
 
     Args:
         policy: the policy.
         decision: a decision of a drive.
         age_s: age of its news; SUMO's device, hindsight and agents have their own.
+        compliance: how probably the driver follows the advice; hindsight needs no driver.
 
     Returns:
         The number of the branch; None for keeping the route.
@@ -89,14 +90,16 @@ def chosen(policy: Policy, decision: Decision, age_s: float) -> int | None:
         case PolicyRule.DELAY:
             is_worth = news.delay_s >= policy.delay_s and (news.promised_s or 0.0) > 0
             number = news.branch if is_worth else None
-    return number if decision.complies else None
+    return number if decision.complies(compliance) else None
 
 
-def drawn_choices(policy: Policy, decision: Decision, age_s: float) -> tuple[int | None, ...]:
+def drawn_choices(
+    policy: Policy, decision: Decision, age_s: float, compliance: float = 1.0
+) -> tuple[int | None, ...]:
     """What a policy chooses in each draw of the futures: always the same, except for ``best``."""
     if policy.rule is PolicyRule.BEST:
         return hindsight(decision)
-    return (chosen(policy, decision, age_s),) * decision.draws
+    return (chosen(policy, decision, age_s, compliance),) * decision.draws
 
 
 def hindsight(decision: Decision) -> tuple[int | None, ...]:

@@ -60,8 +60,17 @@ class Study:
 
     @property
     def choices(self) -> tuple[PolicyChoice, ...]:
-        """The choice of every policy at every decision, with news of every age."""
-        return tuple(choices(self.rows, self.plan.policies))
+        """The choice of every policy at every decision, with news of every age, at the first compliance."""
+        return self.at_compliance(self.plan.compliance[0])
+
+    @property
+    def all_choices(self) -> tuple[PolicyChoice, ...]:
+        """The same at every compliance."""
+        return tuple(each for level in self.plan.compliance for each in self.at_compliance(level))
+
+    def at_compliance(self, compliance: float) -> tuple[PolicyChoice, ...]:
+        """The same if the driver follows advice with that probability."""
+        return tuple(choices(self.rows, self.plan.policies, compliance))
 
     def noise(self) -> Noise:
         """The effect of chance."""
@@ -103,7 +112,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
         import pandas as pd
     except ImportError as error:
         raise SetupError("load_study requires pandas: pip install 'automotive-cosim[report]'") from error
-    return pd.DataFrame([columns(choice) for choice in read_study(Path(folder)).choices])
+    return pd.DataFrame([columns(choice) for choice in read_study(Path(folder)).all_choices])
 
 
 def all_decisions(rows: Iterable[DriveRow]) -> Iterator[DecisionPoint]:
@@ -113,23 +122,24 @@ def all_decisions(rows: Iterable[DriveRow]) -> Iterator[DecisionPoint]:
             yield DecisionPoint(f"{row.id}-{number}", row, decision)
 
 
-def choices(rows: Iterable[DriveRow], policies: Sequence[str]) -> Iterator[PolicyChoice]:
+def choices(rows: Iterable[DriveRow], policies: Sequence[str], compliance: float = 1.0) -> Iterator[PolicyChoice]:
     """The choice of each policy at each decision that counts, with news of each age, and its gain."""
     for point in all_decisions(rows):
         if not point.decision.excluded:
-            yield from choices_at(point, policies)
+            yield from choices_at(point, policies, compliance)
 
 
-def choices_at(point: DecisionPoint, policies: Sequence[str]) -> Iterator[PolicyChoice]:
+def choices_at(point: DecisionPoint, policies: Sequence[str], compliance: float = 1.0) -> Iterator[PolicyChoice]:
     """The choice of each policy at a decision, with news of each age, and its gain."""
     for policy in map(parse_policy, policies):
         for news in point.decision.news:
-            yield _choice(point, policy, news)
+            yield _choice(point, policy, news, compliance)
 
 
-def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
+def _choice(point: DecisionPoint, policy: Policy, news: News, compliance: float) -> PolicyChoice:
     drive, decision = point.drive, point.decision
-    numbers = drawn_choices(policy, decision, news.age_s)[: len(decision.scored)]
+    numbers = drawn_choices(policy, decision, news.age_s, compliance)[: len(decision.scored)]
+    complies = decision.complies(compliance)
     draws = decision.scored
     gains = [decision.gain(draw, number) for draw, number in enumerate(numbers)]
     ideal = hindsight(decision)
@@ -153,8 +163,10 @@ def _choice(point: DecisionPoint, policy: Policy, news: News) -> PolicyChoice:
         time_index=round(decision.time_index, 3),
         age_s=news.age_s,
         policy=policy.text,
-        complies=decision.complies,
-        rerouted=_took_another(policy, decision) if policy.agent else branch is not None,
+        compliance=compliance,
+        complies=complies,
+        # an agent's branch, in which it may do anything, need not have left the route
+        rerouted=complies and policy.agent in decision.agents_rerouted if policy.agent else branch is not None,
         branch=branch,
         promised_s=None if news.promised_s is None else round(news.promised_s, 1),
         stay=drive.stay,
@@ -189,11 +201,6 @@ def _mean(values: Iterable[float]) -> float:
     """The mean; a whole number stays one."""
     listed = list(values)
     return listed[0] if len(listed) == 1 else round(fmean(listed), 3)
-
-
-def _took_another(policy: Policy, decision: Decision) -> bool:
-    """Whether the agent's branch, in which it may do anything, left the route."""
-    return decision.complies and policy.agent in decision.agents_rerouted
 
 
 def noise(decisions: Iterable[Decision]) -> Noise:

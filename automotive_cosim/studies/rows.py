@@ -219,8 +219,8 @@ class Decision:
     """Distance to the destination."""
     relative_speed: float
     """Mean speed ahead as a share of the free speed."""
-    complies: bool
-    """Whether the driver follows the advice."""
+    complies_above: float = 0.0
+    """The driver follows the advice at any compliance above this number, which was drawn from 0 to 1."""
     news: tuple[News, ...]
     ways: tuple[tuple[str, ...], ...] = ()
     """Edges from here to the destination: of the present route, then of each branch; empty in older rows."""
@@ -248,6 +248,10 @@ class Decision:
     """Futures in which others take the quickest other way too, at the first decision of a drive."""
     closed: tuple[Closed, ...] = ()
     """Futures in which a road is closed, at the first decision of a drive."""
+
+    def complies(self, compliance: float) -> bool:
+        """Whether a driver follows the advice who does so with that probability."""
+        return self.complies_above < compliance
 
     @property
     def time_index(self) -> float:
@@ -294,6 +298,8 @@ class WholeDrive:
     """A drive from departure to destination under one policy, compared with the one that keeps its route."""
 
     policy: str
+    compliance: float = 1.0
+    """Probability with which the driver followed it at each decision."""
     draw: int
     """0 with the random numbers of the drive itself, then with fresh ones."""
     reroutings: int
@@ -356,7 +362,10 @@ class PolicyChoice:
     """Expected travel time divided by that at free flow."""
     age_s: float
     policy: str
+    compliance: float
+    """Probability that the driver follows the advice."""
     complies: bool
+    """Whether the driver does here; if so, at every greater probability too."""
     rerouted: bool
     branch: int | None
     """Number of the branch that it chose in most draws; None for keeping the route."""

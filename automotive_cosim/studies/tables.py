@@ -26,6 +26,7 @@ def tables(study: Study) -> list[Table]:
         costs(study),
         by_congestion(study),
         by_age(study),
+        by_compliance(study),
         by_share(study),
         noise_floor(study),
         excluded(study),
@@ -184,6 +185,29 @@ def by_age(study: Study) -> Table:
         columns = ("News age, s",)
     note = "Seconds saved at the very same decisions when the alternative route is selected by news of that age."
     return Table("by_age", "Time saved by the age of the news", columns, tuple(rows), note)
+
+
+def by_compliance(study: Study) -> Table:
+    """Time saved by how probably the driver follows the advice, at the same decisions."""
+    rows: list[TableRow] = []
+    named = [name for name in study.plan.policies if needs_driver(name)]
+    for compliance in study.plan.compliance if len(study.plan.compliance) > 1 else ():
+        chosen = study.at_compliance(compliance)
+        here = [each for each in chosen if each.age_s == study.plan.ages_s[0]]
+        followed = per_cent({each.id: each.complies for each in here}.values())
+        cells = [mean_cell((each for each in here if each.policy == name), time_saved_s) for name in named]
+        rows.append((f"{compliance:.0%}", followed, *cells))
+    note = (
+        "Seconds saved at the very same decisions by a driver who follows the advice with that probability. Who "
+        "follows it at one probability does so at every greater one, so the rows differ by the compliance alone."
+    )
+    columns = ("Compliance", "Followed", *named)
+    return Table("by_compliance", "Time saved by the driver's compliance", columns, tuple(rows), note)
+
+
+def needs_driver(policy: str) -> bool:
+    """Whether a policy is advice that the driver may ignore."""
+    return parse_policy(policy).rule not in (PolicyRule.NEVER, PolicyRule.BEST)
 
 
 def by_share(study: Study) -> Table:

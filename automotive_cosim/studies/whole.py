@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import closing
+from itertools import product
 
 import numpy as np
 
@@ -57,20 +58,20 @@ def _drawn(
     draw: int,
     history: Sequence[Pulse],
 ) -> list[WholeDrive]:
-    """All policies with the same random numbers."""
+    """All policies at every compliance with the same random numbers."""
     entropy = (*job.entropy, 5, draw)
     with closing(traffic.branch()) as start:
         if fresh is not None:
             start.renew(fresh, int(np.random.default_rng(entropy).integers(SEED_RANGE)))
         group, pulse = start.others()
-        made: list[tuple[Policy, int, Future | None]] = []
-        for policy in policies:
+        made: list[tuple[Policy, float, int, Future | None]] = []
+        for policy, compliance in product(policies, job.plan.compliance):
             with closing(start.branch()) as copy:
-                reroutings = _follow(job, policy, copy, draw)
-                made.append((policy, reroutings, _left(job, copy, group) if reroutings else None))
-        stay = _left(job, start, group) if any(future is not None for _, _, future in made) else None
+                reroutings = _follow(job, policy, compliance, copy, draw)
+                made.append((policy, compliance, reroutings, _left(job, copy, group) if reroutings else None))
+        stay = _left(job, start, group) if any(future is not None for *_, future in made) else None
     drives = []
-    for policy, reroutings, future in made:
+    for policy, compliance, reroutings, future in made:
         excluded = why = ""
         branch = SAME
         if future is not None and stay is not None:
@@ -78,7 +79,13 @@ def _drawn(
             branch = branched(stay, future, group)
         drives.append(
             WholeDrive(
-                policy=policy.text, draw=draw, reroutings=reroutings, branch=branch, excluded=excluded, why=why
+                policy=policy.text,
+                compliance=compliance,
+                draw=draw,
+                reroutings=reroutings,
+                branch=branch,
+                excluded=excluded,
+                why=why,
             )
         )
     return drives
@@ -89,14 +96,14 @@ def _left(job: DriveJob, traffic: RemoteTraffic, group: Sequence[str]) -> Future
     return Future(traffic.state, settled)
 
 
-def _follow(job: DriveJob, policy: Policy, traffic: RemoteTraffic, draw: int) -> int:
+def _follow(job: DriveJob, policy: Policy, compliance: float, traffic: RemoteTraffic, draw: int) -> int:
     """Drives under a policy with the newest news of the plan; returns how often it left its route."""
     draws = np.random.default_rng((*job.entropy, 6, draw))
     reroutings = 0
 
     def decide(now: DrivingState) -> bool:
         nonlocal reroutings
-        if draws.random() >= job.plan.compliance:
+        if draws.random() >= compliance:
             return True
         before = now.ahead.route_edges
         if policy.agent:

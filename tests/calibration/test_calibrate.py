@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,15 +15,21 @@ from typer.testing import CliRunner
 from automotive_cosim import scenarios
 from automotive_cosim.calibration import Calibration, CalibrationOptions, calibrate, read_calibration, result
 from automotive_cosim.calibration.candidates import Candidate, Candidates, Passing, passes
-from automotive_cosim.calibration.driving import CountedTime, DrivenDemand, drive, passed
+from automotive_cosim.calibration.driving import HOUR_S, CountedTime, DrivenDemand, drive, passed
 from automotive_cosim.calibration.result import RECORD, Carried, Met
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, UserError
-from automotive_cosim.report.calibration import findings, write_page
+from automotive_cosim.report.calibration import by_hour, findings, write_page
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes
 from automotive_cosim.traffic.options import Setup, read_configuration, run_options
 
 COUNTS = Path(__file__).parents[2] / "docs/examples/grid_counts.csv"
+
+PROFILE = (
+    *(0.12, 0.07, 0.05, 0.05, 0.09, 0.25, 0.6, 0.95, 1.0, 0.85, 0.75, 0.76),
+    *(0.8, 0.78, 0.77, 0.85, 0.95, 1.0, 0.9, 0.7, 0.5, 0.4, 0.3, 0.2),
+)
+"""Traffic of each hour of a day, as a share of the busiest's."""
 
 
 def trip(name: str, exits_s: tuple[float, ...], departed_s: float = 0.0) -> DrivenTrip:
@@ -137,6 +144,38 @@ def test_the_page_tells_all_sites_and_times(made: tuple[Path, Calibration]) -> N
     told = "\n".join(findings(found))
     for word in ("held out, before the fit", "teleports", "travel times", "leave the demand open", "with seed 1"):
         assert word in told
+
+
+@pytest.mark.slow
+def test_a_day_is_calibrated_hour_by_hour(sumo: None, tmp_path: Path) -> None:
+    """A tenth of the example's counts with the profile of a day; the grid's traffic, also a tenth, has none."""
+    counts = tmp_path / "day.csv"
+    sites = [line.split(",") for line in COUNTS.read_text().splitlines()[1:]]
+    lines = [
+        f"{site},{hour},{float(flow) * share / 10:.0f},{edge}"
+        for site, counted, flow, edge in sites
+        if counted == "8"
+        for hour, share in enumerate(PROFILE)
+    ]
+    counts.write_text("\n".join(["site,hour,vehicles_per_hour,edge", *lines]))
+    grid = scenarios.load("grid")
+    calm = replace(grid, sumo=replace(grid.sumo, scale=0.1))
+    target = tmp_path / "out"
+    options = CalibrationOptions(rounds=2, at_hour=8)
+    found = calibrate(calm, counts, target, options, lambda _said, _share: None)
+    assert found.hours == tuple(range(24))
+    assert found.met(held_out=False).mean_geh < 1 < found.met(held_out=False, unfitted=True).mean_geh
+    for hour, share in enumerate(PROFILE):
+        rows = [row for row in found.rows if row.hour == hour and not row.held_out]
+        counted = sum(row.counted for row in rows)
+        assert sum(row.simulated for row in rows) == pytest.approx(counted, rel=0.1, abs=10), (hour, share)
+    scenario = scenarios.load(target)
+    assert scenario.start.hour == 8
+    assert read_configuration(scenario.config).begin_s == 8 * HOUR_S
+    page = write_page(target).read_text(encoding="utf-8")
+    assert "Hour by hour" in page
+    assert (target / "plots/day.svg").is_file()
+    assert len(by_hour(found).rows) == 48
 
 
 @pytest.mark.slow

@@ -180,7 +180,7 @@ def write_study(folder: Path) -> Path:
         others=OthersTotals(count=3, gain_s=-4.0, changed=1, unfinished_stay=0, unfinished=0),
     )
     old = Decision(
-        at_s=900.0, edge="cwc0", delay_s=70.0, eta_s=100.0, relative_speed=0.5, complies=True,
+        at_s=900.0, edge="cwc0", delay_s=70.0, eta_s=100.0, relative_speed=0.5,
         news=(News(age_s=0.0, stay_s=100.0, delay_s=70.0, offered_s=80.0, branch=0),), own=None, agents={},
         agents_rerouted=(), branches=(branch,),
     )  # fmt: skip

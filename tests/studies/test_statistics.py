@@ -43,7 +43,6 @@ def decision(*gains_s: float, offered_s: float | None = 80.0, delay_s: float = 7
         delay_s=delay_s,
         eta_s=100.0,
         relative_speed=0.5,
-        complies=True,
         news=(news,),
         own=None,
         agents={},
@@ -80,7 +79,7 @@ def drive(*decisions: Decision, seed: int = 0) -> DriveRow:
         ("agent:asurada", decision(30.0, 2.0, agents={"asurada": 1}), 1),
         ("best", decision(30.0, 31.0), 1),
         ("best", decision(-1.0, 0.0), None),
-        ("always", decision(30.0, complies=False), None),
+        ("always", decision(30.0, complies_above=1.0), None),
     ],
 )
 def test_who_chooses_what(policy: str, row: Decision, expected: int | None) -> None:
@@ -355,7 +354,9 @@ def ends(made: Future, at_s: float) -> Future:
         ({"shares": (1.5,)}, "--shares is 1.5"),
         ({"ages_s": (-1.0,)}, "--ages"),
         ({"ages_s": (5000.0,)}, "--ages"),
-        ({"compliance": 2.0}, "--compliance"),
+        ({"compliance": (2.0,)}, "--compliance is 2"),
+        ({"compliance": ()}, "--compliance is empty"),
+        ({"compliance": (0.5, 0.5)}, "twice"),
         ({"departures_s": (0.0, 0.0)}, "twice"),
         ({"equilibrium_gap": 0.05}, "duaIterate"),
         ({"driver": "hurry"}, "hurried"),

@@ -8,6 +8,7 @@ import hashlib
 import json
 import re
 import runpy
+import shutil
 from contextlib import ExitStack
 from dataclasses import replace
 from pathlib import Path
@@ -37,6 +38,7 @@ from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.points import NOT_CLEARED
 from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
+from automotive_cosim.studies.tables import policies as policy_table
 from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.traffic.chance import Fresh
 
@@ -158,7 +160,7 @@ def test_what_is_done_is_not_run_again(plan: StudyPlan, folder: Path, tmp_path: 
     assert steady(again) == steady(folder)
     assert run_study(plan, again).ran == 0
     with pytest.raises(UserError, match="begun with other plan"):
-        run_study(replace(plan, compliance=0.5), again)
+        run_study(replace(plan, compliance=(0.5,)), again)
 
 
 def test_what_has_nothing_to_decide_is_counted_and_kept_out(folder: Path) -> None:
@@ -263,6 +265,32 @@ EMPTY_HERE = {"gain_error_s", "won", "lost", "chose_best", "draw_seed"}
 """Columns that a study of single draws leaves empty."""
 
 
+def test_compliance_is_swept_at_the_same_decisions(folder: Path, tmp_path: Path) -> None:
+    """Who follows at one probability does so at every greater one; the data hold all, the tables the first."""
+    swept = tmp_path / "swept"
+    shutil.copytree(folder, swept)
+    manifest = json.loads((swept / "manifest.json").read_text())
+    levels = (1.0, 0.5, 0.0)
+    manifest["plan"]["compliance"] = levels
+    (swept / "manifest.json").write_text(json.dumps(manifest))
+    write_study(swept)
+    frame = load_study(swept)
+    frame = frame[(frame.policy == "always") & (frame.age_s == 0.0)]
+    full, half, none = (frame[frame.compliance == level].set_index("id") for level in levels)
+    assert full.complies.all()
+    assert full.rerouted.all()
+    assert not none.complies.any()
+    assert (none.gain_time_s == 0).all()
+    assert 0 < half.complies.sum() < len(half)
+    assert (half.gain_time_s == full.gain_time_s.where(half.complies, 0.0)).all()
+    rows = list(csv.DictReader((swept / "tables" / "by_compliance.csv").read_text().splitlines()))
+    assert [row["Compliance"] for row in rows] == ["100%", "50%", "0%"]
+    assert float(rows[0]["always"]) == pytest.approx(full.gain_time_s.mean(), abs=0.05)
+    assert float(rows[2]["always"]) == 0
+    assert (swept / "plots" / "compliance.svg").exists()
+    assert policy_table(read_study(swept)) == policy_table(read_study(folder)), "other tables are of the first"
+
+
 def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> None:
     plan = StudyPlan(
         str(two_ways(JAMMED)), (600.0,), seeds=(0,), per_drive=1, least_delay_s=0.0, placebo_every=0, limit_s=300.0
@@ -294,6 +322,7 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
         seeds=(0,),
         per_drive=1,
         policies=policies,
+        compliance=(1.0, 0.0),
         whole_drives=True,
         placebo_every=0,
         replicates=2,
@@ -302,7 +331,7 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
     study = read_study(tmp_path / "whole")
     row = {row.trip: row for row in study.rows}["across"]
     (decision,) = row.decisions
-    always = [each for each in row.whole if each.policy == "always"]
+    always = [each for each in row.whole if (each.policy, each.compliance) == ("always", 1.0)]
     assert [each.draw for each in always] == [0, 1]
     for each in always:
         assert each.reroutings == 1
@@ -311,12 +340,13 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
         ("delay:3000", 0)
     }
     assert {each.policy for each in row.whole} == {"always", "delay:3000", "sumo"}
+    assert {each.reroutings for each in row.whole if each.compliance == 0} == {0}, "nobody follows"
     free = {row.trip: row for row in study.rows}["free"]
     assert free.excluded == "no congestion met"
     assert {each.branch.gains for each in free.whole} == {NOTHING}
     write_study(tmp_path / "whole")
     text = (tmp_path / "whole" / "tables" / "whole.csv").read_text()
-    assert "always,3,0" in text, "the drives without a decision count; the one that has nowhere to go does not"
+    assert "always,100%,3,0" in text, "the drives without a decision count; the one that has nowhere to go does not"
 
 
 @pytest.mark.slow
@@ -493,7 +523,7 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
 ANSWERS = {
     "chance": r"1 branches, each driven 2 to 2 times\n.*within a decision: \d",
     "gain": r"always +\+31\.\d s ± nan, 1 decisions of 1 seeds",
-    "policy": r"always +1\.0 +31\.",
+    "policy": r"always +1\.0 +1\.0 +31\.",
     "ways": r"branch 0: .*out, back.*\nkept route: .*main",
     "who_pays": r"the ego gains: 2 futures, mean \+31",
 }

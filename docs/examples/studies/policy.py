@@ -6,4 +6,5 @@ import pandas as pd
 
 frame = pd.read_csv(f"{sys.argv[1]}/whole_drives.csv", keep_default_na=False)
 counted = frame[frame.excluded == ""]
-print(counted.groupby("policy")[["reroutings", "gain_time_s", "gain_distance_m"]].mean().round(1).to_string())
+figures = ["reroutings", "gain_time_s", "gain_distance_m"]
+print(counted.groupby(["policy", "compliance"])[figures].mean().round(1).to_string())
