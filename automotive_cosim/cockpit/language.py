@@ -76,7 +76,7 @@ def word(message: str, language: str) -> str:
 
 def _told(text: Text, known: GNUTranslations) -> str:
     if text.plural:
-        form = known.ngettext(text.message, text.plural, text.count)
+        form = known.ngettext(text.message, text.plural, text.number)
     elif text.context:
         form = known.pgettext(text.context, text.message)
     else:

@@ -20,7 +20,7 @@ Value = str | int | float
 class Text(str):
     """An English text with what it was made from; equal to the same plain ``str``."""
 
-    __slots__ = ("context", "count", "fields", "message", "plural")
+    __slots__ = ("context", "fields", "message", "number", "plural")
 
     message: str
     """In English, with ``{name}`` for each field; for one, if it is counted."""
@@ -29,20 +29,21 @@ class Text(str):
     """Tells apart messages with the same words and different meanings; mostly empty."""
     plural: str
     """The message for several, if it is counted."""
-    count: int
+    number: int
+    """How many, if it is counted."""
 
     def __new__(
-        cls, message: str, fields: dict[str, Value], context: str = "", plural: str = "", count: int = 1
+        cls, message: str, fields: dict[str, Value], context: str = "", plural: str = "", number: int = 1
     ) -> Text:
         """Fills in the fields. Use ``say``, ``say_in``, ``counted`` or ``joined``, which catalogues know."""
-        form = plural if plural and count != 1 else message
+        form = plural if plural and number != 1 else message
         text = super().__new__(cls, form.format(**fields) if fields else form)
-        text.message, text.fields, text.context, text.plural, text.count = message, fields, context, plural, count
+        text.message, text.fields, text.context, text.plural, text.number = message, fields, context, plural, number
         return text
 
     def __reduce__(self) -> tuple[Any, ...]:
         """For copies and pickles, which keep what it was made from."""
-        return Text, (self.message, self.fields, self.context, self.plural, self.count)
+        return Text, (self.message, self.fields, self.context, self.plural, self.number)
 
 
 def say(message: str, /, **fields: Value) -> Text:
@@ -57,7 +58,7 @@ def say_in(context: str, message: str, /, **fields: Value) -> Text:
 
 def counted(one: str, several: str, n: int, /, **fields: Value) -> Text:
     """The message for so many, with ``{n}`` for the number; languages have one form, two or more."""
-    return Text(one, {"n": n, **fields}, plural=several, count=n)
+    return Text(one, {"n": n, **fields}, plural=several, number=n)
 
 
 def listed(parts: Sequence[str]) -> str:

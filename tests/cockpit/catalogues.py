@@ -7,7 +7,7 @@ python -m tests.cockpit.catalogues --renew    # adds what is missing, untranslat
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from io import SEEK_END, BytesIO
 from pathlib import Path
 
@@ -25,8 +25,8 @@ KEYWORDS = {"say": None, "say_in": ((1, "c"), 2), "counted": (1, 2)}
 """The functions of ``contracts.text`` and which of their arguments is what."""
 HEADERS = ("Language", "Plural-Forms", "MIME-Version", "Content-Type", "Content-Transfer-Encoding")
 
-Key = tuple[str | tuple[str, ...], str | None]
-"""A message, or its singular and plural, and its context."""
+Key = tuple[tuple[str, ...], str | None]
+"""A message, or its singular and plural; and its context."""
 
 
 def written() -> Catalog:
@@ -48,7 +48,7 @@ def known(language: str) -> Catalog:
 
 def keys(catalogue: Catalog) -> set[Key]:
     """Its messages, without the header."""
-    return {(message.id, message.context) for message in catalogue if message.id}
+    return {(strings(message.id), message.context) for message in catalogue if message.id}
 
 
 def renewed(language: str, now: Catalog) -> Catalog:
@@ -76,9 +76,9 @@ def differences(language: str, now: Catalog) -> Iterator[str]:
     yield from (f"{language} ? {message.id!r}" for message in stored if not all(strings(message.string)))
 
 
-def strings(given: str | tuple[str, ...]) -> tuple[str, ...]:
-    """The forms of a translation: one, or one for each plural."""
-    return given if isinstance(given, tuple) else (given,)
+def strings(given: str | Sequence[str] | None) -> tuple[str, ...]:
+    """The forms of a message or its translation: one, or one for each plural."""
+    return (given or "",) if isinstance(given, str | None) else tuple(given)
 
 
 def languages() -> tuple[str, ...]:
