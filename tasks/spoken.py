@@ -19,7 +19,8 @@ from functools import lru_cache
 from importlib.resources import files
 from typing import Any
 
-from automotive_cosim.cockpit.language import Language, Lexicon
+from automotive_cosim.cockpit.language import Language
+from automotive_cosim.tasking.lexicon import Lexicon
 from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.task import Task
 

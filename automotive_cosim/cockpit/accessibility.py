@@ -66,13 +66,13 @@ def _element(widget: Widget, scale: float) -> Element:
     rect, is_field = widget.rect, kind is Field
     chosen = isinstance(widget, Choice | Row) and widget.selected
     return Element(
-        text=_text(widget),
-        content_description=_description(widget),
+        text=str(_text(widget)),
+        content_description=str(_description(widget)),
         class_name=widget.class_name,
         bbox_pixels=_box(rect, scale),
         resource_id=resource_id(widget.key),
         package_name=PACKAGE,
-        hint_text=widget.hint if isinstance(widget, Field) else "",
+        hint_text=str(widget.hint) if isinstance(widget, Field) else "",
         is_checked=(isinstance(widget, Tile) and widget.checked) or (kind is Choice and chosen),
         is_checkable=kind is Tile or kind is Choice,
         is_clickable=widget.listens,

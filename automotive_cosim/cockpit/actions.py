@@ -32,6 +32,7 @@ from automotive_cosim.contracts import (
     lon_lat,
 )
 from automotive_cosim.contracts.ids import key_of
+from automotive_cosim.contracts.text import say
 from automotive_cosim.errors import ActionError, UnknownNameError
 from automotive_cosim.formats.words import shown
 
@@ -283,11 +284,15 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
     """
     kind = action.action_type
     if action.index is not None and not elements:
-        return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "there is no list of elements; give x and y")
+        return Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("there is no list of elements; give x and y"))
     if action.index is not None and not 0 <= action.index < len(elements):
         return Feedback(
             FeedbackCode.NO_SUCH_ELEMENT,
-            f"there is no element {action.index}; the list goes from 0 to {len(elements) - 1}",
+            say(
+                "there is no element {index}; the list goes from 0 to {last}",
+                index=action.index,
+                last=len(elements) - 1,
+            ),
         )
     if FIELDS[kind].target:
         return _touch(action, cockpit, *point(action, elements))
@@ -325,7 +330,9 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
         case ActionType.PULL_OVER:
             return cockpit.ask_road(PullOver())
         case ActionType.ESTIMATE_POSITION if position(action.text or "") is None:
-            return Feedback(FeedbackCode.REFUSED, 'no position; give "LON,LAT" in degrees, e.g. "2.3522,48.8566"')
+            return Feedback(
+                FeedbackCode.REFUSED, say('no position; give "LON,LAT" in degrees, e.g. "2.3522,48.8566"')
+            )
         case ActionType.ASK_DRIVER:
             return cockpit.ask_driver(action.text or "")
         case _:  # wait, answer, status, query, estimate_position: nothing in the cockpit moves

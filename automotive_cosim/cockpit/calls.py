@@ -11,8 +11,9 @@ from automotive_cosim.cockpit.signals import CALL, LINK
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Feedback, FeedbackCode
+from automotive_cosim.contracts.text import say
 
-NOT_LINKED = "No phone is connected: switch Bluetooth on first"
+NOT_LINKED = say("No phone is connected: switch Bluetooth on first")
 
 
 def dial(state: State, who: str) -> Feedback:
@@ -22,24 +23,24 @@ def dial(state: State, who: str) -> Feedback:
     state.phone = state.phone.called(who, state.clock, state.time_s)
     state.calls += (who,)
     tell(state)
-    return state.said(f"Calling {who}", Icon.CALL_OUT)
+    return state.said(say("Calling {who}", who=who), Icon.CALL_OUT)
 
 
 def hang_up(state: State) -> Feedback:
     """Ends the present call."""
     if state.phone.on_call is None:
-        return Feedback(FeedbackCode.NO_EFFECT, "there is no call")
+        return Feedback(FeedbackCode.NO_EFFECT, say("there is no call"))
     who = state.phone.on_call.who
     state.phone = replace(state.phone, on_call=None)
     tell(state)
-    return Feedback(FeedbackCode.OK, f"the call with {who} is over")
+    return Feedback(FeedbackCode.OK, say("the call with {who} is over", who=who))
 
 
 def answer(state: State) -> Feedback:
     """Answers the ringing call."""
     ringing = state.phone.ringing
     if ringing is None:
-        return Feedback(FeedbackCode.NO_EFFECT, "nobody is calling")
+        return Feedback(FeedbackCode.NO_EFFECT, say("nobody is calling"))
     state.phone = replace(
         state.phone.logged(PastCall(ringing.who, state.clock, "in")),
         ringing=None,
@@ -47,21 +48,21 @@ def answer(state: State) -> Feedback:
         taken=(*state.phone.taken, ringing.who),
     )
     tell(state)
-    return Feedback(FeedbackCode.OK, f"you are on the phone with {ringing.who}")
+    return Feedback(FeedbackCode.OK, say("you are on the phone with {who}", who=ringing.who))
 
 
 def decline(state: State) -> Feedback:
     """Declines the ringing call."""
     ringing = state.phone.ringing
     if ringing is None:
-        return Feedback(FeedbackCode.NO_EFFECT, "nobody is calling")
+        return Feedback(FeedbackCode.NO_EFFECT, say("nobody is calling"))
     state.phone = replace(
         state.phone.logged(PastCall(ringing.who, state.clock, "missed")),
         ringing=None,
         declined=(*state.phone.declined, ringing.who),
     )
     tell(state)
-    return Feedback(FeedbackCode.OK, f"the call of {ringing.who} is declined")
+    return Feedback(FeedbackCode.OK, say("the call of {who} is declined", who=ringing.who))
 
 
 def reply(state: State, to: str, text: str) -> Feedback:
@@ -72,7 +73,7 @@ def reply(state: State, to: str, text: str) -> Feedback:
         decline(state)
     state.phone = state.phone.answered(to, text)
     tell(state)
-    return state.said(f"Sent to {to}: {text}", Icon.REPLY)
+    return state.said(say("Sent to {to}: {text}", to=to, text=text), Icon.REPLY)
 
 
 def read(state: State, who: str) -> Feedback:
@@ -83,7 +84,9 @@ def read(state: State, who: str) -> Feedback:
     tell(state)
     words = " ".join(map(_sentence, thread.lines)) if thread else ""
     aloud = state.locked(Restriction.NO_TEXT_MESSAGE)
-    return Feedback(FeedbackCode.READ_OUT if aloud else FeedbackCode.OK, f"{who} wrote: {words}")
+    return Feedback(
+        FeedbackCode.READ_OUT if aloud else FeedbackCode.OK, say("{who} wrote: {text}", who=who, text=words)
+    )
 
 
 def _sentence(text: str) -> str:
@@ -138,14 +141,17 @@ def _ring(state: State, arrival: Arrival, linked: bool) -> None:
 def _missed(state: State, who: str) -> None:
     state.phone = state.phone.logged(PastCall(who, state.clock, "missed"))
     state.notify(
-        f"Missed call from {who}", Icon.CALL_MISSED, seen=state.phone.do_not_disturb, opens=("contact", who)
+        say("Missed call from {who}", who=who),
+        Icon.CALL_MISSED,
+        seen=state.phone.do_not_disturb,
+        opens=("contact", who),
     )
 
 
 def _take_in(state: State, arrival: Arrival) -> None:
     state.phone = state.phone.received_from(Received(arrival.who, state.clock, arrival.text))
     state.notify(
-        f"New message from {arrival.who}",
+        say("New message from {who}", who=arrival.who),
         Icon.MESSAGE,
         seen=state.phone.do_not_disturb,
         opens=("thread", arrival.who),

@@ -63,6 +63,7 @@ from automotive_cosim.contracts import (
     Surroundings,
     VehicleState,
 )
+from automotive_cosim.contracts.text import say, say_in
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
 
 W = TypeVar("W", bound=Widget)
@@ -85,6 +86,12 @@ APP_ALIASES = {
 """Other names by which an app opens."""
 
 
+DIRECTIONS = {
+    Direction.UP: say_in("towards", "up"),
+    Direction.DOWN: say_in("towards", "down"),
+    Direction.LEFT: say_in("towards", "left"),
+    Direction.RIGHT: say_in("towards", "right"),
+}
 OPPOSITE = {
     Direction.UP: Direction.DOWN,
     Direction.DOWN: Direction.UP,
@@ -257,7 +264,7 @@ class Cockpit:
         logical = self._logical(x, y)
         widget = self._screen.at(*logical)
         if widget is None:
-            return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) reacts to a tap")
+            return Feedback(FeedbackCode.NO_EFFECT, say("nothing at ({x}, {y}) reacts to a tap", x=x, y=y))
         if not widget.usable:
             return self._unusable(widget)
         if isinstance(widget, Slider):
@@ -280,7 +287,7 @@ class Cockpit:
             return self._unusable(widget)
         if isinstance(widget, Button) and widget.on_hold is not None:
             return self._perform(widget.on_hold)
-        return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) reacts to a long press")
+        return Feedback(FeedbackCode.NO_EFFECT, say("nothing at ({x}, {y}) reacts to a long press", x=x, y=y))
 
     def swipe(self, x: int, y: int, direction: Direction, distance_px: int | None = None) -> Feedback:
         """Drags the widget under the finger: a slider, a list or the map.
@@ -308,7 +315,10 @@ class Cockpit:
         view = self._under(x, y, MapView)
         if view is not None and view.pans:
             return self._pan(view, OPPOSITE[direction], far)
-        return Feedback(FeedbackCode.NO_EFFECT, f"nothing at ({x}, {y}) moves {direction}")
+        return Feedback(
+            FeedbackCode.NO_EFFECT,
+            say("nothing at ({x}, {y}) moves {direction}", x=x, y=y, direction=DIRECTIONS[direction]),
+        )
 
     def scroll(self, key: str, direction: Direction) -> Feedback:
         """Scrolls a list by a page; ``down`` reveals what is below.
@@ -320,27 +330,27 @@ class Cockpit:
         lists = [widget for widget in self._screen.walk() if isinstance(widget, Rows)]
         if key:
             if all(widget.key != key for widget in self._screen.walk()):
-                return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"{key} is not on the screen")
+                return Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("{name} is not on the screen", name=key))
             view = next((w for w in self._screen.walk() if w.key == key and isinstance(w, MapView)), None)
             if view is not None and view.pans:
                 return self._pan(view, direction)
             lists = [rows for rows in lists if any(widget.key == key for widget in rows.walk())]
         if not lists:
-            return Feedback(FeedbackCode.NO_EFFECT, "there is nothing to scroll here")
+            return Feedback(FeedbackCode.NO_EFFECT, say("there is nothing to scroll here"))
         return self._scroll(lists[0], direction)
 
     def type_text(self, text: str, clear: bool = False) -> Feedback:
         """Enters text into the focused field at once and closes the keyboard."""
         field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
         if field is None or not field.focused:
-            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "no text field has the focus; tap one first")
+            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("no text field has the focus; tap one first"))
         if field.locked:
             return self._unusable(field)
         kept = "" if clear else field.text
         update.write(self._state, field.key, kept + text)
         self._state.keyboard = False
         self._tree = None
-        return Feedback(FeedbackCode.OK, f"the field reads {self._state.typed[field.key]!r}")
+        return Feedback(FeedbackCode.OK, say("the field reads {text}", text=repr(self._state.typed[field.key])))
 
     def key_enter(self) -> Feedback:
         """Presses enter in the focused field, which usually selects the first result."""
@@ -348,9 +358,9 @@ class Cockpit:
             return Feedback(FeedbackCode.RESTRICTED, REASONS[Restriction.NO_KEYBOARD])
         field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
         if field is None or not field.focused:
-            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, "no text field has the focus; tap one first")
+            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("no text field has the focus; tap one first"))
         if field.on_enter is None:
-            return Feedback(FeedbackCode.REFUSED, f"nothing matches {field.text!r}")
+            return Feedback(FeedbackCode.REFUSED, say("nothing matches {text}", text=repr(field.text)))
         self._state.focus = ""
         return self._perform(field.on_enter)
 
@@ -368,18 +378,21 @@ class Cockpit:
         wanted = " ".join(name.casefold().split())
         wanted = APP_ALIASES.get(wanted, wanted)
         if wanted in PART_OF and wanted not in APPS:
-            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, f"{wanted} is no app; it is a page of {PART_OF[wanted]}")
+            return Feedback(
+                FeedbackCode.NO_SUCH_ELEMENT,
+                say("{name} is no app; it is a page of {app}", name=wanted, app=PART_OF[wanted]),
+            )
         if wanted not in APPS:
             close = get_close_matches(wanted, APPS, n=1)
             missing = repr(name[:40])
             return Feedback(
                 FeedbackCode.NO_SUCH_ELEMENT,
-                f"no app is named {missing}: did you mean {close[0]!r}?"
+                say("no app is named {name}: did you mean {other}?", name=missing, other=repr(close[0]))
                 if close
-                else f"no app is named {missing}; choose from {', '.join(APPS)}",
+                else say("no app is named {name}; choose from {apps}", name=missing, apps=", ".join(APPS)),
             )
         if wanted in desk.TOOLS and wanted not in self._state.desk.installed:
-            return Feedback(FeedbackCode.REFUSED, f"{wanted} is not installed; the store has it")
+            return Feedback(FeedbackCode.REFUSED, say("{app} is not installed; the store has it", app=wanted))
         self._tree = None
         return update.show(self._state, wanted)
 
@@ -523,11 +536,23 @@ class Cockpit:
         step = by * {Direction.DOWN: 1, Direction.UP: -1}.get(direction, 0)
         first = min(rows.last_first, max(0, rows.first + step))
         if first == rows.first:
-            return Feedback(FeedbackCode.NO_EFFECT, f"{rows.description} cannot move further {direction}")
+            return Feedback(
+                FeedbackCode.NO_EFFECT,
+                say(
+                    "{list} cannot move further {direction}", list=rows.description, direction=DIRECTIONS[direction]
+                ),
+            )
         self._state.scrolled = {**self._state.scrolled, rows.key: first}
         self._tree = None
         return Feedback(
-            FeedbackCode.OK, f"{rows.description} shows rows {first + 1} to {first + rows.shown} of {rows.total}"
+            FeedbackCode.OK,
+            say(
+                "{list} shows rows {first} to {last} of {total}",
+                list=rows.description,
+                first=first + 1,
+                last=first + rows.shown,
+                total=rows.total,
+            ),
         )
 
     def _pan(self, view: MapView, direction: Direction, far: float | None = None) -> Feedback:

@@ -11,14 +11,15 @@ import numpy as np
 from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
 from automotive_cosim.cockpit.signals import HMI, HVAC, MIRROR, SEAT, Signal, Signals
 from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts.text import say
 
 TOOLS: Mapping[str, tuple[str, Icon, str]] = {
-    "charging": ("Charging", Icon.CHARGING, "Charge limit, times and stations nearby"),
-    "parking": ("Parking", Icon.TICKET, "Pay for a parking space from the car"),
-    "manual": ("Manual", Icon.MANUAL, "The owner's handbook, to search in"),
-    "memo": ("Memos", Icon.MEMO, "Spoken notes"),
-    "trip": ("Trip", Icon.TRIP, "Distance, time and consumption"),
-    "calendar": ("Calendar", Icon.CALENDAR, "Today's appointments and how to get there"),
+    "charging": (say("Charging"), Icon.CHARGING, say("Charge limit, times and stations nearby")),
+    "parking": (say("Parking"), Icon.TICKET, say("Pay for a parking space from the car")),
+    "manual": (say("Manual"), Icon.MANUAL, say("The owner's handbook, to search in")),
+    "memo": (say("Memos"), Icon.MEMO, say("Spoken notes")),
+    "trip": (say("Trip"), Icon.TRIP, say("Distance, time and consumption")),
+    "calendar": (say("Calendar"), Icon.CALENDAR, say("Today's appointments and how to get there")),
 }
 """Apps that can be installed: title, icon and description."""
 PREINSTALLED = ("charging", "parking", "manual", "memo", "trip")
@@ -33,65 +34,80 @@ REMEMBERED: tuple[Signal[float], ...] = (
     MIRROR.PASSENGER_TILT,
 )
 """Signals stored in a seat memory."""
-PROFILES = ("Driver 1", "Driver 2", "Guest")
+PROFILES = (say("Driver 1"), say("Driver 2"), say("Guest"))
 NETWORKS = ("Home-5G", "CityFree", "Garage", "Coffee-Guest")
-DEVICES = ("Driver's phone", "Second phone", "Tablet")
+DEVICES = (say("Driver's phone"), say("Second phone"), say("Tablet"))
 MANUAL: tuple[tuple[str, Icon, str], ...] = (
     (
-        "Windows are fogged",
+        say("Windows are fogged"),
         Icon.DEFROST_FRONT,
-        "Fog inside: blow dry air at the windshield with the front defroster, and switch recirculation off. Fog "
-        "outside: use the wipers. The rear window has a heater of its own.",
+        say(
+            "Fog inside: blow dry air at the windshield with the front defroster, and switch recirculation off. "
+            "Fog outside: use the wipers. The rear window has a heater of its own."
+        ),
     ),
     (
-        "Fog lamps",
+        say("Fog lamps"),
         Icon.REAR_FOG,
-        "Front fog lamps work with position lamps or low beam, the rear one with low beam or front fog lamps. "
-        "When they may be lit is a matter of local law: the rear fog lamp dazzles those behind.",
+        say(
+            "Front fog lamps work with position lamps or low beam, the rear one with low beam or front fog lamps. "
+            "When they may be lit is a matter of local law: the rear fog lamp dazzles those behind."
+        ),
     ),
     (
-        "Tyre pressures",
+        say("Tyre pressures"),
         Icon.TYRE,
-        "Check them cold. The pressure falls by about a tenth of a bar for every ten degrees that it gets colder. "
-        "Add air when a tyre is a fifth below the value on the door frame.",
+        say(
+            "Check them cold. The pressure falls by about a tenth of a bar for every ten degrees that it gets "
+            "colder. Add air when a tyre is a fifth below the value on the door frame."
+        ),
     ),
     (
-        "Cruise control",
+        say("Cruise control"),
         Icon.CRUISE,
-        "It holds the set speed and, when adaptive, the chosen gap to the car in front. The limiter lets you "
-        "accelerate up to its speed but not beyond. Only one of them is active at a time.",
+        say(
+            "It holds the set speed and, when adaptive, the chosen gap to the car in front. The limiter lets you "
+            "accelerate up to its speed but not beyond. Only one of them is active at a time."
+        ),
     ),
     (
-        "Saving range",
+        say("Saving range"),
         Icon.BATTERY,
-        "Drive slower, use economy mode, and warm the seats rather than the air: a seat takes a tenth of it.",
+        say("Drive slower, use economy mode, and warm the seats rather than the air: a seat takes a tenth of it."),
     ),
     (
-        "Driving on ice",
+        say("Driving on ice"),
         Icon.SLIPPERY,
-        "Snow mode softens the throttle. Keep stability control on, leave a gap several times as long as usual, "
-        "and brake early and gently.",
+        say(
+            "Snow mode softens the throttle. Keep stability control on, leave a gap several times as long as "
+            "usual, and brake early and gently."
+        ),
     ),
     (
-        "Child safety",
+        say("Child safety"),
         Icon.CHILD,
-        "Child locks keep the rear doors from being opened from inside; the window lock blocks the rear switches.",
+        say(
+            "Child locks keep the rear doors from being opened from inside; the window lock blocks the rear "
+            "switches."
+        ),
     ),
     (
-        "After a crash",
+        say("After a crash"),
         Icon.PHONE_ALERT,
-        "Switch the hazard lights on, call for help from the safety centre, which sends the position, and wait "
-        "beyond the barrier.",
+        say(
+            "Switch the hazard lights on, call for help from the safety centre, which sends the position, and wait "
+            "beyond the barrier."
+        ),
     ),
     (
-        "Charging",
+        say("Charging"),
         Icon.CHARGING,
-        "For daily driving charge to 80 %. Above that the battery takes power ever more slowly.",
+        say("For daily driving charge to 80 %. Above that the battery takes power ever more slowly."),
     ),
     (
-        "Mirrors and seats",
+        say("Mirrors and seats"),
         Icon.SEAT,
-        "Set the seat first, then the mirrors. Up to three positions can be stored and recalled while parked.",
+        say("Set the seat first, then the mirrors. Up to three positions can be stored and recalled while parked."),
     ),
 )
 """Topic, icon and text."""
@@ -99,15 +115,15 @@ FILM_S = 40.0
 """Length of a topic's video."""
 APPOINTMENTS = 4
 _OCCASIONS = (
-    ("Check-up", PlaceKind.HOSPITAL),
-    ("Team meeting", PlaceKind.WORK),
-    ("A meal with Nora", PlaceKind.RESTAURANT),
-    ("Parents' evening", PlaceKind.SCHOOL),
-    ("Training", PlaceKind.GYM),
-    ("Groceries", PlaceKind.SHOP),
-    ("Meet the visitors", PlaceKind.STATION),
+    (say("Check-up"), PlaceKind.HOSPITAL),
+    (say("Team meeting"), PlaceKind.WORK),
+    (say("A meal with Nora"), PlaceKind.RESTAURANT),
+    (say("Parents' evening"), PlaceKind.SCHOOL),
+    (say("Training"), PlaceKind.GYM),
+    (say("Groceries"), PlaceKind.SHOP),
+    (say("Meet the visitors"), PlaceKind.STATION),
 )
-ZONES = ("Zone A", "Zone B", "Zone C")
+ZONES = tuple(say("Zone {letter}", letter=letter) for letter in "ABC")
 PRICES = {"Zone A": 4.0, "Zone B": 2.5, "Zone C": 1.2}
 """Price per hour."""
 
@@ -159,7 +175,7 @@ class Appointment:
     @property
     def name(self) -> str:
         """What it is told apart by, whatever its time."""
-        return f"{self.title}, {self.place}"
+        return say("{first}, {second}", first=self.title, second=self.place)
 
 
 @dataclass(frozen=True, slots=True)

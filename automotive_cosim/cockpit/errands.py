@@ -26,6 +26,7 @@ from automotive_cosim.cockpit.signals import BODY, DRIVE, ENERGY, LINK, MEDIA
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Feedback, FeedbackCode
+from automotive_cosim.contracts.text import say
 
 WASH_PCT = 2.0
 """Share of the washer's tank used per wash."""
@@ -55,7 +56,7 @@ def run(state: State, message: Message) -> Feedback:
         case Honk():
             state.horns += 1
             state.signals[DRIVE.HORN] = True
-            return Feedback(FeedbackCode.OK, "the horn sounds")
+            return Feedback(FeedbackCode.OK, say("the horn sounds"))
         case Wash():
             return _wash(state)
         case _:
@@ -64,12 +65,15 @@ def run(state: State, message: Message) -> Feedback:
 
 def _pay(state: State) -> Feedback:
     if not state.signals[LINK.ONLINE] or state.outside is None:
-        return state.refused("Paying needs a connection")
+        return state.refused(say("Paying needs a connection"))
     desk = state.desk
     until = state.clock_at(state.outside.local_time + timedelta(minutes=desk.minutes))
     ticket = Ticket(desk.zone, desk.minutes, price(desk.zone, desk.minutes), until)
     state.desk = replace(desk, tickets=(*desk.tickets, ticket))
-    return state.said(f"Paid {ticket.price:.2f}: {desk.zone} until {until}", Icon.TICKET)
+    return state.said(
+        say("Paid {price}: {zone} until {time}", price=f"{ticket.price:.2f}", zone=desk.zone, time=until),
+        Icon.TICKET,
+    )
 
 
 def price(zone: str, minutes: int) -> float:
@@ -81,22 +85,27 @@ def _record(state: State) -> Feedback:
     since = state.desk.recording_since_s
     if since is None:
         state.desk = replace(state.desk, recording_since_s=state.time_s)
-        return Feedback(FeedbackCode.OK, "the memo is being recorded")
+        return Feedback(FeedbackCode.OK, say("the memo is being recorded"))
     seconds = int(state.time_s - since)
-    memo = f"Memo {len(state.desk.memos) + 1}, {state.clock}, {seconds // 60}:{seconds % 60:02d}"
+    memo = say(
+        "Memo {number}, {time}, {length}",
+        number=len(state.desk.memos) + 1,
+        time=state.clock,
+        length=f"{seconds // 60}:{seconds % 60:02d}",
+    )
     state.desk = replace(state.desk, recording_since_s=None, memos=(*state.desk.memos, memo))
-    return Feedback(FeedbackCode.OK, f"{memo} is kept")
+    return Feedback(FeedbackCode.OK, say("{memo} is kept", memo=memo))
 
 
 def _reset_trip(state: State) -> Feedback:
     state.desk = replace(state.desk, resets=state.desk.resets + 1, trip_from=odometer(state))
-    return Feedback(FeedbackCode.OK, "the trip computer is reset")
+    return Feedback(FeedbackCode.OK, say("the trip computer is reset"))
 
 
 def _reset_trip_b(state: State) -> Feedback:
     meter = TripMeter(since=odometer(state), resets=state.desk.trip_b.resets + 1)
     state.desk = replace(state.desk, trip_b=meter)
-    return Feedback(FeedbackCode.OK, "trip B is reset")
+    return Feedback(FeedbackCode.OK, say("trip B is reset"))
 
 
 def odometer(state: State) -> tuple[float, float, float]:
@@ -108,10 +117,10 @@ def odometer(state: State) -> tuple[float, float, float]:
 def _wash(state: State) -> Feedback:
     left = state.signals[BODY.WASHER_FLUID]
     if left < WASH_PCT:
-        return state.refused("The washer's tank is empty")
+        return state.refused(say("The washer's tank is empty"))
     state.signals[BODY.WASHER_FLUID] = left - WASH_PCT
     state.washes += 1
-    return state.said("The windshield is washed", Icon.WASHER)
+    return state.said(say("The windshield is washed"), Icon.WASHER)
 
 
 # --- music ------------------------------------------------------------------------------------------------

@@ -1,24 +1,24 @@
-"""The cockpit in other languages: the finished widget tree, and its answers, translated by one table per language.
+"""The cockpit in other languages: the widget tree, and its answers, told from one gettext catalogue per language.
 
-Screens are written in English. A table (``languages/fr.toml`` and so on) maps texts to texts; one with ``{}``
-is a template whose variable parts are translated in turn: "Sent to {}: {}". Texts that are in no table stay as they
-are: names of people, places and music, numbers and units, messages, and signals in feedback.
+Screens are written in English, as texts that know how they were made (``contracts.text``). A catalogue
+(``languages/fr.po`` and so on) translates their messages; ``python -m tests.cockpit.catalogues --renew`` adds what
+is new to it.
 """
 
 from __future__ import annotations
 
-import re
-import tomllib
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from enum import StrEnum
 from functools import lru_cache
+from gettext import GNUTranslations
 from importlib.resources import files
-from types import MappingProxyType
+from io import BytesIO
 from typing import Any, TypeVar
 
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
 from automotive_cosim.contracts import Feedback
+from automotive_cosim.contracts.text import Text
 
 W = TypeVar("W", bound=Widget)
 
@@ -44,65 +44,54 @@ _OWN: Mapping[type[Widget], tuple[str, ...]] = {
     Tile: ("level",),
 }
 """Additional text fields of some widgets."""
-_WORD = re.compile(r"[^\W\d_]{2}")
-
-
-@dataclass(frozen=True, slots=True)
-class Lexicon:
-    """Texts in one language, by the English ones."""
-
-    words: Mapping[str, str]
-    forms: tuple[tuple[re.Pattern[str], str], ...]
-    """Templates, the most specific first."""
-    keys: Mapping[str, str]
-    """Texts of single widgets by their key, where an English word has several meanings."""
-
-    @classmethod
-    def of(cls, texts: Mapping[str, str], keys: Mapping[str, str] = MappingProxyType({})) -> Lexicon:
-        """Sorts whole texts from templates."""
-        forms = sorted((text for text in texts if "{}" in text), key=_fixed, reverse=True)
-        return cls(
-            {text: said for text, said in texts.items() if "{}" not in text},
-            tuple((_pattern(form), texts[form]) for form in forms),
-            keys,
-        )
-
-    def said(self, text: str) -> str:
-        """A text in that language; unchanged if it is not in the table."""
-        if not _WORD.search(text):
-            return text
-        if text in self.words:
-            return self.words[text]
-        for pattern, form in self.forms:
-            found = pattern.fullmatch(text)
-            if found is not None:
-                return form.format(*map(self.said, found.groups()))
-        return text
 
 
 @lru_cache
-def table(language: str, answers: bool = False) -> Lexicon:
-    """The table of a language other than English; with or without what only answers say."""
-    given: dict[str, dict[str, str]] = tomllib.loads(
-        files("automotive_cosim.cockpit").joinpath("languages", f"{language}.toml").read_text("utf-8")
-    )
-    texts = given["words"] | (given["answers"] if answers else {})
-    return Lexicon.of(texts, given["keys"])
+def catalogue(language: str) -> GNUTranslations:
+    """The catalogue of a language other than English."""
+    from babel.messages.mofile import write_mo  # takes a while to import, and English does without
+    from babel.messages.pofile import read_po
+
+    file = files("automotive_cosim.cockpit").joinpath("languages", f"{language}.po")
+    compiled = BytesIO()
+    with file.open("rb") as texts:
+        write_mo(compiled, read_po(texts))
+    compiled.seek(0)
+    return GNUTranslations(compiled)
 
 
-@lru_cache(maxsize=16384)
-def said(language: str, text: str, answers: bool = False) -> str:
-    """A text of the screens, or of feedback, in that language; unchanged if it is not in the table."""
-    return table(language, answers).said(text)
+def said(text: str, language: str) -> str:
+    """A text in that language. A plain ``str`` stays as it is."""
+    if not isinstance(text, Text):
+        return text
+    return str(text) if language == Language.ENGLISH else _told(text, catalogue(language))
+
+
+def word(message: str, language: str) -> str:
+    """What the screens say for a message without fields; unchanged if they do not say it."""
+    if not message or language == Language.ENGLISH:  # the empty message is a catalogue's header
+        return message
+    return catalogue(language).gettext(message)
+
+
+def _told(text: Text, known: GNUTranslations) -> str:
+    if text.plural:
+        form = known.ngettext(text.message, text.plural, text.number)
+    elif text.context:
+        form = known.pgettext(text.context, text.message)
+    else:
+        form = known.gettext(text.message)
+    if not text.fields:
+        return form
+    fields = {
+        name: _told(value, known) if isinstance(value, Text) else value for name, value in text.fields.items()
+    }
+    return form.format(**fields)
 
 
 def answered(feedback: Feedback, language: str) -> Feedback:
     """The feedback to an action in that language."""
-    return (
-        feedback
-        if language == Language.ENGLISH
-        else replace(feedback, text=said(language, feedback.text, answers=True))
-    )
+    return replace(feedback, text=said(feedback.text, language))
 
 
 def translated(widget: W, language: str) -> W:
@@ -112,19 +101,8 @@ def translated(widget: W, language: str) -> W:
     changes: dict[str, Any] = {}
     for name in (*_COMMON, *_OWN.get(type(widget), ())):
         text: str = getattr(widget, name)
-        if text and not (name == "text" and isinstance(widget, Field)):
-            changes[name] = said(language, text)
-    if widget.key in table(language).keys:
-        changes["text"] = table(language).keys[widget.key]
+        if isinstance(text, Text):
+            changes[name] = said(text, language)
     if widget.children:
         changes["children"] = tuple(translated(child, language) for child in widget.children)
-    return replace(widget, **changes)
-
-
-def _fixed(form: str) -> int:
-    """Number of fixed letters in a template."""
-    return len(form.replace("{}", ""))
-
-
-def _pattern(form: str) -> re.Pattern[str]:
-    return re.compile("(.+?)".join(map(re.escape, form.split("{}"))))
+    return replace(widget, **changes) if changes else widget

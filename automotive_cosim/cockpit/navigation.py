@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -12,15 +12,29 @@ from typing import Any
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Road
+from automotive_cosim.contracts.text import Text, say
 
 RECENTS = 12
 AVOIDABLE: Mapping[str, tuple[str, Icon]] = {
-    "motorways": ("Motorways", Icon.MOTORWAY),
-    "tolls": ("Toll roads", Icon.TOLL),
-    "tunnels": ("Tunnels", Icon.TUNNEL),
-    "ferries": ("Ferries", Icon.FERRY),
+    "motorways": (say("Motorways"), Icon.MOTORWAY),
+    "tolls": (say("Toll roads"), Icon.TOLL),
+    "tunnels": (say("Tunnels"), Icon.TUNNEL),
+    "ferries": (say("Ferries"), Icon.FERRY),
 }
 """What a route can avoid."""
+STRAIGHT_ON, U_TURN, ARRIVE = say("Go straight on"), say("Make a U-turn"), say("Arrive")
+KEEP_LEFT, KEEP_RIGHT = say("Keep left"), say("Keep right")
+TURN_LEFT, TURN_RIGHT = say("Turn left"), say("Turn right")
+_AHEAD: Mapping[Text, Callable[[str], Text]] = {
+    STRAIGHT_ON: lambda far: say("Go straight on in {distance}", distance=far),
+    KEEP_LEFT: lambda far: say("Keep left in {distance}", distance=far),
+    KEEP_RIGHT: lambda far: say("Keep right in {distance}", distance=far),
+    TURN_LEFT: lambda far: say("Turn left in {distance}", distance=far),
+    TURN_RIGHT: lambda far: say("Turn right in {distance}", distance=far),
+    U_TURN: lambda far: say("Make a U-turn in {distance}", distance=far),
+    ARRIVE: lambda far: say("Arrive in {distance}", distance=far),
+}
+"""How a manoeuvre is announced, by the distance to it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,12 +78,16 @@ class Navigation:
 class Turn:
     """A turn from one street to another."""
 
-    words: str
+    words: Text
     icon: Icon
     street: str
     """The street that it leads to."""
     after_m: float
     """Distance from the start of the route's first edge."""
+
+    def ahead(self, distance: str) -> Text:
+        """As it is announced at that distance."""
+        return _AHEAD[self.words](distance)
 
 
 @lru_cache(maxsize=16)
@@ -84,9 +102,9 @@ def turns(roads: RoadMap, route: tuple[str, ...]) -> tuple[Turn, ...]:
         if following.name == road.name and abs(angle) < 50:
             continue
         words, icon = _manoeuvre(angle, roads.network.left_hand)
-        found.append(Turn(words, icon, following.name or "Unnamed road", driven_m))
+        found.append(Turn(words, icon, following.name or say("Unnamed road"), driven_m))
     if known:
-        found.append(Turn("Arrive", Icon.GOAL, known[-1].name or "Unnamed road", driven_m + known[-1].length_m))
+        found.append(Turn(ARRIVE, Icon.GOAL, known[-1].name or say("Unnamed road"), driven_m + known[-1].length_m))
     return tuple(found)
 
 
@@ -98,13 +116,12 @@ def _angle_deg(road: Road, following: Road) -> float:
     return (math.degrees(before - after) + 180) % 360 - 180
 
 
-def _manoeuvre(angle_deg: float, left_hand: bool) -> tuple[str, Icon]:
-    side = "right" if angle_deg > 0 else "left"
+def _manoeuvre(angle_deg: float, left_hand: bool) -> tuple[Text, Icon]:
     turn = abs(angle_deg)
     if turn < 20:
-        return "Go straight on", Icon.STRAIGHT
+        return STRAIGHT_ON, Icon.STRAIGHT
     if turn < 50:
-        return f"Keep {side}", Icon.SLIGHT_RIGHT if side == "right" else Icon.SLIGHT_LEFT
+        return (KEEP_RIGHT, Icon.SLIGHT_RIGHT) if angle_deg > 0 else (KEEP_LEFT, Icon.SLIGHT_LEFT)
     if turn < 150:
-        return f"Turn {side}", Icon.TURN_RIGHT if side == "right" else Icon.TURN_LEFT
-    return "Make a U-turn", Icon.TURN_BACK_RIGHT if left_hand else Icon.TURN_BACK
+        return (TURN_RIGHT, Icon.TURN_RIGHT) if angle_deg > 0 else (TURN_LEFT, Icon.TURN_LEFT)
+    return U_TURN, Icon.TURN_BACK_RIGHT if left_hand else Icon.TURN_BACK

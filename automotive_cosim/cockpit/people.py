@@ -8,17 +8,18 @@ from typing import Any
 import numpy as np
 
 from automotive_cosim.cockpit.photos import Photo
+from automotive_cosim.contracts.text import counted, say
 
 CONTACTS = 60
 TEMPLATES = (
-    "On my way",
-    "I'm driving, I'll call later",
-    "I'll be 10 minutes late",
-    "Yes",
-    "No",
-    "Thank you",
-    "Where are you?",
-    "I've arrived",
+    say("On my way"),
+    say("I'm driving, I'll call later"),
+    say("I'll be 10 minutes late"),
+    say("Yes"),
+    say("No"),
+    say("Thank you"),
+    say("Where are you?"),
+    say("I've arrived"),
 )
 """Replies that one tap sends."""
 _FIRST = """Ada Bruno Carla Dario Elif Femi Greta Hugo Ines Jonas Kaya Lena Milo Nora Otis Petra Quinn Rosa Samir
@@ -235,5 +236,10 @@ def directory(rng: np.random.Generator) -> Directory:
 
 def _days(rng: np.random.Generator, count: int) -> list[str]:
     """Times of day, going back day by day."""
-    back = ["Yesterday", "Yesterday", *(f"{days} days ago" for days in range(2, count))]
-    return [f"{day} {rng.integers(8, 22):02d}:{rng.integers(60):02d}" for day in back[:count]]
+    times = [f"{rng.integers(8, 22):02d}:{rng.integers(60):02d}" for _ in range(count)]
+    return [
+        say("Yesterday {time}", time=time)
+        if back < 2
+        else counted("{n} day ago {time}", "{n} days ago {time}", back, time=time)
+        for back, time in enumerate(times)
+    ]

@@ -12,6 +12,7 @@ import numpy as np
 
 from automotive_cosim.cockpit.map import MOTORWAYS, RoadMap
 from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts.text import say
 
 PLACES = 80
 """Number of places, limited by the streets of the network."""
@@ -50,35 +51,41 @@ class Sort:
 
 
 SORTS: Mapping[PlaceKind, Sort] = {
-    PlaceKind.HOME: Sort("Home", Icon.HOME, 1, "Home", "Home"),
-    PlaceKind.WORK: Sort("Work", Icon.WORK, 1, "Work", "Work"),
+    PlaceKind.HOME: Sort(say("Home"), Icon.HOME, 1, "{}", "Home"),
+    PlaceKind.WORK: Sort(say("Work"), Icon.WORK, 1, "{}", "Work"),
     PlaceKind.CHARGING: Sort(
-        "Charging",
+        say("Charging"),
         Icon.CHARGING,
         10,
         "{} Charging",
         "Volta Lumen Amber Spark Pulse Helio Nova Plus Metro Ion Rapid",
     ),
     PlaceKind.PARKING: Sort(
-        "Parking", Icon.PARKING, 8, "{} Car Park", "Central North South Market Station Theatre Garden Bridge"
+        say("Parking"), Icon.PARKING, 8, "{} Car Park", "Central North South Market Station Theatre Garden Bridge"
     ),
     PlaceKind.RESTAURANT: Sort(
-        "Restaurants",
+        say("Restaurants"),
         Icon.RESTAURANT,
         10,
         "{} Kitchen",
         "Olive Basil Saffron Anchor Lantern Corner Ginger Cedar Bay Fig",
     ),
-    PlaceKind.CAFE: Sort("Cafés", Icon.CAFE, 8, "Café {}", "Horizon Luna Aroma Paloma Bloom Tempo Verde Azur"),
-    PlaceKind.SHOP: Sort("Shops", Icon.SHOP, 8, "{} Market", "Fresh Daily Green Family Golden Corner Union City"),
-    PlaceKind.HOSPITAL: Sort("Hospitals", Icon.HOSPITAL, 3, "{} Hospital", "General University Children's"),
-    PlaceKind.PHARMACY: Sort("Pharmacies", Icon.PHARMACY, 6, "{} Pharmacy", "Linden Crown Park Sun Eagle Bridge"),
-    PlaceKind.HOTEL: Sort("Hotels", Icon.HOTEL, 6, "Hotel {}", "Aurora Central Bellevue Meridian Royal Astoria"),
-    PlaceKind.STATION: Sort("Stations", Icon.STATION, 3, "{} Station", "Central East West"),
-    PlaceKind.MUSEUM: Sort("Museums", Icon.MUSEUM, 4, "{} Museum", "City Science Modern Maritime"),
-    PlaceKind.SCHOOL: Sort("Schools", Icon.SCHOOL, 4, "{} School", "Hill River Oak Meadow"),
-    PlaceKind.PARK: Sort("Parks", Icon.PARK, 4, "{} Park", "Lake Rose Castle Maple"),
-    PlaceKind.GYM: Sort("Gyms", Icon.GYM, 4, "{} Gym", "Iron Active Summit Pace"),
+    PlaceKind.CAFE: Sort(say("Cafés"), Icon.CAFE, 8, "Café {}", "Horizon Luna Aroma Paloma Bloom Tempo Verde Azur"),
+    PlaceKind.SHOP: Sort(
+        say("Shops"), Icon.SHOP, 8, "{} Market", "Fresh Daily Green Family Golden Corner Union City"
+    ),
+    PlaceKind.HOSPITAL: Sort(say("Hospitals"), Icon.HOSPITAL, 3, "{} Hospital", "General University Children's"),
+    PlaceKind.PHARMACY: Sort(
+        say("Pharmacies"), Icon.PHARMACY, 6, "{} Pharmacy", "Linden Crown Park Sun Eagle Bridge"
+    ),
+    PlaceKind.HOTEL: Sort(
+        say("Hotels"), Icon.HOTEL, 6, "Hotel {}", "Aurora Central Bellevue Meridian Royal Astoria"
+    ),
+    PlaceKind.STATION: Sort(say("Stations"), Icon.STATION, 3, "{} Station", "Central East West"),
+    PlaceKind.MUSEUM: Sort(say("Museums"), Icon.MUSEUM, 4, "{} Museum", "City Science Modern Maritime"),
+    PlaceKind.SCHOOL: Sort(say("Schools"), Icon.SCHOOL, 4, "{} School", "Hill River Oak Meadow"),
+    PlaceKind.PARK: Sort(say("Parks"), Icon.PARK, 4, "{} Park", "Lake Rose Castle Maple"),
+    PlaceKind.GYM: Sort(say("Gyms"), Icon.GYM, 4, "{} Gym", "Iron Active Summit Pace"),
 }
 """Counts add up to ``PLACES``."""
 
@@ -150,7 +157,10 @@ def atlas(roads: RoadMap, rng: np.random.Generator) -> Gazetteer:
 def _names(rng: np.random.Generator) -> list[tuple[PlaceKind, str]]:
     """One of each kind in turn, so that a small network has some of all."""
     left = {
-        kind: [sort.pattern.format(word) for word in rng.permutation(sort.words.split())[: sort.count]]
+        kind: [
+            sort.title if sort.count == 1 else sort.pattern.format(word)
+            for word in rng.permutation(sort.words.split())[: sort.count]
+        ]
         for kind, sort in SORTS.items()
     }
     names: list[tuple[PlaceKind, str]] = []
@@ -173,17 +183,26 @@ def _addresses(roads: RoadMap) -> tuple[int, ...]:
 def _place(roads: RoadMap, at: int, kind: PlaceKind, name: str, rng: np.random.Generator) -> Destination:
     road = roads.roads[at]
     x_m, y_m = road.shape_m[len(road.shape_m) // 2]
-    return Destination(name, kind, road.name or "Unnamed road", road.edge_id, x_m, y_m, _detail(kind, rng))
+    return Destination(name, kind, road.name or say("Unnamed road"), road.edge_id, x_m, y_m, _detail(kind, rng))
 
 
 def _detail(kind: PlaceKind, rng: np.random.Generator) -> str:
     if kind is PlaceKind.CHARGING:
         plugs = int(rng.integers(2, 9))
-        return f"{rng.choice([22, 50, 150, 300])} kW, {rng.integers(0, plugs + 1)} of {plugs} free"
+        return say(
+            "{power} kW, {free} of {total} free",
+            power=int(rng.choice([22, 50, 150, 300])),
+            free=int(rng.integers(0, plugs + 1)),
+            total=plugs,
+        )
     if kind is PlaceKind.PARKING:
-        return f"{rng.integers(3, 240)} spaces free, {rng.integers(10, 45) / 10:.1f} an hour"
+        return say(
+            "{free} spaces free, {price} an hour",
+            free=int(rng.integers(3, 240)),
+            price=f"{rng.integers(10, 45) / 10:.1f}",
+        )
     if kind in (PlaceKind.HOME, PlaceKind.WORK):
-        return "Your address"
+        return say("Your address")
     if kind is PlaceKind.HOSPITAL:
-        return "Emergency room, day and night"
-    return f"Open until {rng.integers(17, 24)}:00"
+        return say("Emergency room, day and night")
+    return say("Open until {time}", time=f"{rng.integers(17, 24)}:00")

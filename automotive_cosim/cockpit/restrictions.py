@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from enum import IntFlag, StrEnum
 
+from automotive_cosim.contracts.text import say
+
 
 class Restriction(IntFlag):
     """One bit per restriction."""
@@ -26,12 +28,12 @@ class Restriction(IntFlag):
 
 
 REASONS = {
-    Restriction.NO_DIALPAD: "The keypad is locked while driving",
-    Restriction.NO_KEYBOARD: "Typing is locked while driving",
-    Restriction.NO_VIDEO: "Videos play only while parked",
-    Restriction.LIMIT_CONTENT: "Long lists end here while driving",
-    Restriction.NO_SETUP: "This can be set up only while parked",
-    Restriction.NO_TEXT_MESSAGE: "Messages are read out while driving",
+    Restriction.NO_DIALPAD: say("The keypad is locked while driving"),
+    Restriction.NO_KEYBOARD: say("Typing is locked while driving"),
+    Restriction.NO_VIDEO: say("Videos play only while parked"),
+    Restriction.LIMIT_CONTENT: say("Long lists end here while driving"),
+    Restriction.NO_SETUP: say("This can be set up only while parked"),
+    Restriction.NO_TEXT_MESSAGE: say("Messages are read out while driving"),
 }
 """Texts shown for restrictions."""
 STANDING_KMH = 0.5

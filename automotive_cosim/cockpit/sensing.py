@@ -36,6 +36,7 @@ from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import DARK_BELOW_DEG
 from automotive_cosim.cockpit.warmth import display_contrast, seat_after
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, OtherVehicle, Surroundings, Weather
+from automotive_cosim.contracts.text import say
 
 MOVING_MPS = 0.1
 PREPARING_MIN = 30
@@ -179,7 +180,7 @@ def _prepare_climate(state: State, before: datetime, now: datetime) -> None:
     timer = state.desk.climate_at
     if timer.on and _minute(before) < timer.moved(-PREPARING_MIN).minute <= _minute(now):
         state.vehicle.command(HVAC.AUTO, True)
-        state.notify(f"The cabin is being prepared, as set for {timer.shown}", Icon.CLIMATE)
+        state.notify(say("The cabin is being prepared, as set for {time}", time=timer.shown), Icon.CLIMATE)
 
 
 def _end_film(state: State) -> None:

@@ -7,6 +7,7 @@ from datetime import UTC, datetime
 
 from automotive_cosim.cockpit.signals import ADAS, OUTSIDE, Signals
 from automotive_cosim.contracts import Surroundings, Weather
+from automotive_cosim.contracts.text import say
 
 LOW_SUN_DEG = 25.0
 """Elevation below which the sun shines through the windshield of a car that drives towards it."""
@@ -21,7 +22,13 @@ STREET_DUST, JAM_DUST, TUNNEL_DUST = 8.0, 15.0, 60.0
 """Fine dust in ug/m3: clean city air, what a jam adds and what a tunnel adds. Plausible assumptions."""
 FINE_SHARE = 0.15
 """Share of particles under 2.5 micrometres in a dust storm: an assumption."""
-GRADES = ((5.0, "Good"), (15.0, "Fair"), (50.0, "Moderate"), (90.0, "Poor"), (140.0, "Very poor"))
+GRADES = (
+    (5.0, say("Good")),
+    (15.0, say("Fair")),
+    (50.0, say("Moderate")),
+    (90.0, say("Poor")),
+    (140.0, say("Very poor")),
+)
 """Upper bounds of fine dust in ug/m3 (European Air Quality Index, EEA, since 2024); above is extremely poor."""
 
 
@@ -39,7 +46,7 @@ def feel(signals: Signals, surroundings: Surroundings) -> None:
 
 def air_grade(fine_dust: float) -> str:
     """The index's class."""
-    return next((word for bound, word in GRADES if fine_dust <= bound), "Extremely poor")
+    return next((word for bound, word in GRADES if fine_dust <= bound), say("Extremely poor"))
 
 
 def is_dusty(weather: Weather) -> bool:

@@ -56,30 +56,31 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
+from automotive_cosim.contracts.text import say
 
 ADVICE: dict[AlertKind, str] = {
-    AlertKind.SPEED: "Slow down",
-    AlertKind.DISTANCE: "Keep more distance",
-    AlertKind.COLLISION: "Danger of collision: brake",
-    AlertKind.LANE: "Stay in your lane",
-    AlertKind.FATIGUE: "Time for a break",
-    AlertKind.DISTRACTION: "Eyes on the road",
-    AlertKind.SEAT_BELT: "Fasten seat belts",
-    AlertKind.VISIBILITY: "Poor visibility",
-    AlertKind.SLIPPERY: "Slippery road",
-    AlertKind.WEATHER: "Dangerous weather",
-    AlertKind.TRAFFIC: "Traffic ahead",
-    AlertKind.CORRIDOR: "Form a rescue lane",
-    AlertKind.YIELD: "Give way to an emergency vehicle",
-    AlertKind.MOVE_OVER: "Move over: stopped vehicle ahead",
-    AlertKind.SCHOOL: "School zone",
-    AlertKind.TUNNEL: "Tunnel ahead",
-    AlertKind.VEHICLE: "Check the vehicle",
+    AlertKind.SPEED: say("Slow down"),
+    AlertKind.DISTANCE: say("Keep more distance"),
+    AlertKind.COLLISION: say("Danger of collision: brake"),
+    AlertKind.LANE: say("Stay in your lane"),
+    AlertKind.FATIGUE: say("Time for a break"),
+    AlertKind.DISTRACTION: say("Eyes on the road"),
+    AlertKind.SEAT_BELT: say("Fasten seat belts"),
+    AlertKind.VISIBILITY: say("Poor visibility"),
+    AlertKind.SLIPPERY: say("Slippery road"),
+    AlertKind.WEATHER: say("Dangerous weather"),
+    AlertKind.TRAFFIC: say("Traffic ahead"),
+    AlertKind.CORRIDOR: say("Form a rescue lane"),
+    AlertKind.YIELD: say("Give way to an emergency vehicle"),
+    AlertKind.MOVE_OVER: say("Move over: stopped vehicle ahead"),
+    AlertKind.SCHOOL: say("School zone"),
+    AlertKind.TUNNEL: say("Tunnel ahead"),
+    AlertKind.VEHICLE: say("Check the vehicle"),
 }
 """Texts of alerts without a text of their own."""
 
 
-FOLDED = "The keyboard is hidden"
+FOLDED = say("The keyboard is hidden")
 
 
 def perform(state: State, message: Message) -> Feedback:
@@ -101,7 +102,7 @@ def perform(state: State, message: Message) -> Feedback:
                 _rewind(state, key.removesuffix("list"))
             if key == "media.show" and value != state.picked.get(key):
                 _rewind(state, "media.entries")
-            return _change(state, "picked", {**state.picked, key: value}, "It is shown")
+            return _change(state, "picked", {**state.picked, key: value}, say("It is shown"))
         case WarnDriver(alert):
             return _warn(state) if alert is None else give_alert(state, alert)
         case AskSlowDown():
@@ -128,14 +129,16 @@ def perform(state: State, message: Message) -> Feedback:
             return _key(state, field, letters)
         case Zoom(by):
             return _change(
-                state, "zoom", min(len(ZOOMS_M_PER_PX) - 1, max(0, state.zoom + by)), "The map is zoomed"
+                state, "zoom", min(len(ZOOMS_M_PER_PX) - 1, max(0, state.zoom + by)), say("The map is zoomed")
             )
         case Pan(right, down):
-            return _change(state, "panned", panned(state, right, down), "The map is moved")
+            return _change(state, "panned", panned(state, right, down), say("The map is moved"))
         case Follow(north_up):
             if state.panned is not None:
-                return _change(state, "panned", None, "The map follows the car")
-            return _change(state, "north_up", north_up, "North is up" if north_up else "The map turns with the car")
+                return _change(state, "panned", None, say("The map follows the car"))
+            return _change(
+                state, "north_up", north_up, say("North is up") if north_up else say("The map turns with the car")
+            )
         case Drive(profile):
             return _drive(state, profile)
         case Play(uri, playlist):
@@ -149,27 +152,27 @@ def perform(state: State, message: Message) -> Feedback:
 def show(state: State, screen: str, item: str = "") -> Feedback:
     """Goes to a screen; the previous one can be returned to."""
     if screen == state.screen and item in ("", state.picked.get(screen)):
-        return Feedback(FeedbackCode.NO_EFFECT, f"{screen} is already shown")
+        return Feedback(FeedbackCode.NO_EFFECT, say("{screen} is already shown", screen=screen))
     state.past = (*state.past[-8:], (state.screen, state.picked.get(state.screen, "")))
     if item and item != state.picked.get(screen):
         state.picked = {**state.picked, screen: item}
         _rewind(state, f"{screen}.")
     _enter(state, screen)
-    return Feedback(FeedbackCode.OK, f"{item or screen} is shown")
+    return Feedback(FeedbackCode.OK, say("{screen} is shown", screen=item or screen))
 
 
 def back(state: State) -> Feedback:
     """Returns to the previous screen; with text in a field, first to the screen without it."""
     if state.focus or state.typed:
         state.focus, state.typed = "", {}
-        return Feedback(FeedbackCode.OK, "the search is closed")
+        return Feedback(FeedbackCode.OK, say("the search is closed"))
     if not state.past:
-        return Feedback(FeedbackCode.NO_EFFECT, "there is no screen to go back to")
+        return Feedback(FeedbackCode.NO_EFFECT, say("there is no screen to go back to"))
     *past, (last, item) = state.past
     state.past = tuple(past)
     state.picked = {**state.picked, last: item} if item else state.picked
     _enter(state, last)
-    return Feedback(FeedbackCode.OK, f"{last} is shown")
+    return Feedback(FeedbackCode.OK, say("{screen} is shown", screen=last))
 
 
 def write(state: State, field: str, text: str) -> None:
@@ -188,11 +191,13 @@ def command(state: State, signal: Signal[Any], value: Any) -> Feedback:
         return Feedback(FeedbackCode.REFUSED, refusal)
     settle(state)
     if before == state.signals.snapshot():
-        return Feedback(FeedbackCode.NO_EFFECT, f"{_short(signal)} is already {_said(value)}")
+        return Feedback(
+            FeedbackCode.NO_EFFECT, say("{signal} is already {value}", signal=_short(signal), value=_said(value))
+        )
     if signal is MEDIA.SOURCE:
         _rewind(state, "media.")
     _tell_road(state, before)
-    return Feedback(FeedbackCode.OK, f"{_short(signal)} is {_said(value)}")
+    return Feedback(FeedbackCode.OK, say("{signal} is {value}", signal=_short(signal), value=_said(value)))
 
 
 def command_all(state: State, values: tuple[tuple[Signal[Any], Any], ...], said: str) -> Feedback:
@@ -206,7 +211,7 @@ def command_all(state: State, values: tuple[tuple[Signal[Any], Any], ...], said:
     state.vehicle = vehicle
     settle(state)
     if before == state.signals.snapshot():
-        return Feedback(FeedbackCode.NO_EFFECT, "it is already set that way")
+        return Feedback(FeedbackCode.NO_EFFECT, say("it is already set that way"))
     _tell_road(state, before)
     return Feedback(FeedbackCode.OK, said)
 
@@ -232,16 +237,21 @@ def give_alert(state: State, alert: Alert) -> Feedback:
     """Alerts the driver, on screen and by voice, and passes the alert to the road."""
     name, icon = KINDS[alert.kind]
     if alert.speed_kmh is not None and not 0 < alert.speed_kmh <= 400:
-        return Feedback(FeedbackCode.REFUSED, f"{alert.speed_kmh:g} km/h is not a valid speed to advise")
+        return Feedback(
+            FeedbackCode.REFUSED, say("{speed} km/h is not a valid speed to advise", speed=f"{alert.speed_kmh:g}")
+        )
     text = " ".join(alert.text.split())[:STRING_LIMIT] or ADVICE[alert.kind]
     if alert.speed_kmh is not None and not alert.text:
-        text += (
-            f" to {alert.speed_kmh:.0f} km/h" if alert.kind is AlertKind.SPEED else f": {alert.speed_kmh:.0f} km/h"
+        kmh = f"{alert.speed_kmh:.0f}"
+        text = (
+            say("Slow down to {speed} km/h", speed=kmh)
+            if alert.kind is AlertKind.SPEED
+            else say("{name}: {value}", name=text, value=f"{kmh} km/h")
         )
     state.alerts += (AlertRecord(state.clock, alert),)
     state.pending += (alert,)
     state.notify(text, icon, alert.severity)
-    return Feedback(FeedbackCode.OK, f"{name} alert given to the driver: {text}")
+    return Feedback(FeedbackCode.OK, say("{kind} alert given to the driver: {text}", kind=name, text=text))
 
 
 def ask_road(state: State, request: RoadRequest) -> Feedback:
@@ -249,7 +259,10 @@ def ask_road(state: State, request: RoadRequest) -> Feedback:
     if isinstance(request, Alert):
         return give_alert(state, request)
     if isinstance(request, SlowDown) and not 0 <= request.speed_kmh <= 400:
-        return Feedback(FeedbackCode.REFUSED, f"{request.speed_kmh:g} km/h is not a valid speed to slow down to")
+        return Feedback(
+            FeedbackCode.REFUSED,
+            say("{speed} km/h is not a valid speed to slow down to", speed=f"{request.speed_kmh:g}"),
+        )
     words, icon = _asked(state, request)
     state.asked += (request,)
     state.pending += (request,)
@@ -280,7 +293,10 @@ def answered(state: State, request: RoadRequest, answer: Answer) -> None:
         state.notify(answer.reason, Icon.WARNING, Severity.WARNING)
     elif not isinstance(request, Alert | Hazards) and answer.reason:
         goal = _goal(state, request)
-        state.notify(f"{goal}: {answer.reason}" if goal else answer.reason, _asked(state, request)[1])
+        state.notify(
+            say("{name}: {value}", name=goal, value=answer.reason) if goal else answer.reason,
+            _asked(state, request)[1],
+        )
 
 
 def _goal(state: State, request: RoadRequest) -> str:
@@ -288,7 +304,11 @@ def _goal(state: State, request: RoadRequest) -> str:
     place = state.atlas.at(request.destination) if isinstance(request, Reroute) else None
     if place is None:
         return ""
-    return f"{place.name}, then {state.navigation.onward}" if state.navigation.onward else place.name
+    return (
+        say("{place}, then {onward}", place=place.name, onward=state.navigation.onward)
+        if state.navigation.onward
+        else place.name
+    )
 
 
 def _place_name(state: State, destination: str) -> str:
@@ -299,8 +319,8 @@ def _place_name(state: State, destination: str) -> str:
 def call_emergency(state: State) -> Feedback:
     """Calls the emergency services with the car's position."""
     state.calls += ("emergency",)
-    state.notify("Emergency call made", Icon.PHONE_ALERT, Severity.CRITICAL)
-    return Feedback(FeedbackCode.OK, "the emergency services are called")
+    state.notify(say("Emergency call made"), Icon.PHONE_ALERT, Severity.CRITICAL)
+    return Feedback(FeedbackCode.OK, say("the emergency services are called"))
 
 
 def _enter(state: State, screen: str) -> None:
@@ -315,7 +335,7 @@ def _enter(state: State, screen: str) -> None:
 
 def _change(state: State, name: str, value: Any, words: str) -> Feedback:
     if getattr(state, name) == value:
-        return Feedback(FeedbackCode.NO_EFFECT, "it is already set that way")
+        return Feedback(FeedbackCode.NO_EFFECT, say("it is already set that way"))
     setattr(state, name, value)
     return Feedback(FeedbackCode.OK, words)
 
@@ -323,7 +343,7 @@ def _change(state: State, name: str, value: Any, words: str) -> Feedback:
 def _warn(state: State) -> Feedback:
     draft = state.draft
     if draft.kind is None:
-        return Feedback(FeedbackCode.DISABLED, "choose what to warn about first")
+        return Feedback(FeedbackCode.DISABLED, say("choose what to warn about first"))
     state.draft = AlertDraft()
     return give_alert(state, Alert(draft.kind, draft.severity, "", draft.speed_kmh))
 
@@ -331,7 +351,7 @@ def _warn(state: State) -> Feedback:
 def _slow_down(state: State) -> Feedback:
     wanted = state.draft.speed_kmh or state.signals[ADAS.LIMIT_SIGN]
     if wanted is None:
-        why = "No limit sign is known: set an advised speed first"
+        why = say("No limit sign is known: set an advised speed first")
         state.notify(why, Icon.INFO)
         return Feedback(FeedbackCode.REFUSED, why)
     return ask_road(state, SlowDown(wanted))
@@ -339,11 +359,11 @@ def _slow_down(state: State) -> Feedback:
 
 def _drive(state: State, name: str) -> Feedback:
     profile = next(profile for profile in state.desk.profiles if profile.name == name)
-    feedback = command_all(state, profile.values, f"{name} is now the driver")
+    feedback = command_all(state, profile.values, say("{name} is now the driver", name=name))
     if feedback.code is FeedbackCode.REFUSED:
         return feedback
     state.desk = replace(state.desk, profile=name)
-    return Feedback(FeedbackCode.OK, f"{name} is now the driver")
+    return Feedback(FeedbackCode.OK, say("{name} is now the driver", name=name))
 
 
 def _rewind(state: State, lists: str) -> None:
@@ -353,18 +373,18 @@ def _rewind(state: State, lists: str) -> None:
 
 def _focus(state: State, field: str) -> Feedback:
     if state.is_typing and state.focus == field:
-        return Feedback(FeedbackCode.NO_EFFECT, "it is already set that way")
+        return Feedback(FeedbackCode.NO_EFFECT, say("it is already set that way"))
     state.focus, state.keyboard = field, bool(field)
-    return Feedback(FeedbackCode.OK, "The field takes text" if field else FOLDED)
+    return Feedback(FeedbackCode.OK, say("The field takes text") if field else FOLDED)
 
 
 def _key(state: State, field: str, letters: str) -> Feedback:
     text = state.typed.get(field, "")
     longer = text[:-1] if letters == BACKSPACE else text + letters
     if longer == text:
-        return Feedback(FeedbackCode.NO_EFFECT, "there is nothing to delete")
+        return Feedback(FeedbackCode.NO_EFFECT, say("there is nothing to delete"))
     write(state, field, longer)
-    return Feedback(FeedbackCode.OK, f"the field reads {state.typed[field]!r}")
+    return Feedback(FeedbackCode.OK, say("the field reads {text}", text=repr(state.typed[field])))
 
 
 def _play(state: State, uri: str, playlist: str) -> Feedback:
@@ -380,7 +400,7 @@ def _play(state: State, uri: str, playlist: str) -> Feedback:
         return feedback
     state.listening = replace(state.listening, playlist=playlist)
     errands.start(state, entry)
-    return Feedback(FeedbackCode.OK, f"{entry.title} plays")
+    return Feedback(FeedbackCode.OK, say("{title} plays", title=entry.title))
 
 
 def settle(state: State) -> None:
@@ -400,7 +420,7 @@ LOOKING = frozenset({"questions", "messages.read"})
 def ask_driver(state: State, text: str) -> Feedback:
     """Notes a question to the driver, and how many commands that change something came before it."""
     if not text.strip():
-        return Feedback(FeedbackCode.REFUSED, "The question has no words")
+        return Feedback(FeedbackCode.REFUSED, say("The question has no words"))
     before = sum(bool(deed.aims - LOOKING) for deed in state.deeds)
     state.questions += (QuestionRecord(text, before),)
     return Feedback(FeedbackCode.OK, "")
@@ -409,19 +429,23 @@ def ask_driver(state: State, text: str) -> Feedback:
 def _asked(state: State, request: RoadRequest) -> tuple[str, Icon]:
     match request:
         case SlowDown(speed_kmh):
-            return f"Asked to slow down to {speed_kmh:.0f} km/h", Icon.SLOWER
+            return say("Asked to slow down to {speed} km/h", speed=f"{speed_kmh:.0f}"), Icon.SLOWER
         case PullOver():
-            return "Asked to pull over", Icon.PULL_OVER
+            return say("Asked to pull over"), Icon.PULL_OVER
         case Reroute(destination):
             name = _place_name(state, destination)
-            return (f"Looking for a route to {name}" if name else "Looking for a faster route"), Icon.ROUTE
+            return (
+                say("Looking for a route to {place}", place=name) if name else say("Looking for a faster route")
+            ), Icon.ROUTE
         case Cruise(speed_kmh):
             return (
-                "Cruise control off" if speed_kmh is None else f"Cruise control at {speed_kmh:.0f} km/h",
+                say("Cruise control off")
+                if speed_kmh is None
+                else say("Cruise control at {speed} km/h", speed=f"{speed_kmh:.0f}"),
                 Icon.CRUISE,
             )
         case Hazards(on):
-            return "Hazard lights on" if on else "Hazard lights off", Icon.HAZARD
+            return say("Hazard lights on") if on else say("Hazard lights off"), Icon.HAZARD
         case Alert(kind):
             return ADVICE[kind], KINDS[kind][1]
 
@@ -432,5 +456,5 @@ def _short(signal: Signal[Any]) -> str:
 
 def _said(value: Any) -> str:
     if isinstance(value, bool):
-        return "on" if value else "off"
+        return say("on") if value else say("off")
     return f"{value:g}" if isinstance(value, float) else str(value)

@@ -25,6 +25,7 @@ from automotive_cosim.cockpit.signals import (
     Signal,
     Signals,
 )
+from automotive_cosim.contracts.text import say
 
 T = TypeVar("T")
 
@@ -73,13 +74,15 @@ def _paths(*signals: Signal[Any]) -> frozenset[str]:
 HELD: Mapping[str, str] = {
     **dict.fromkeys(
         _paths(SEAT.DRIVER_POSITION, SEAT.DRIVER_HEIGHT, SEAT.DRIVER_RECLINE),
-        "The driver's seat does not move while driving",
+        say("The driver's seat does not move while driving"),
     ),
-    **dict.fromkeys(_paths(MIRROR.DRIVER_FOLDED, MIRROR.PASSENGER_FOLDED), "Mirrors do not fold while driving"),
-    CABIN.TRUNK.path: "The trunk stays shut while driving",
-    ENERGY.CHARGE_FLAP.path: "The charging flap stays shut while driving",
-    DRIVE.PARKING_BRAKE.path: "The parking brake is for standing still",
-    SEAT.PASSENGER_AIRBAG.path: "The airbag is switched at a standstill",
+    **dict.fromkeys(
+        _paths(MIRROR.DRIVER_FOLDED, MIRROR.PASSENGER_FOLDED), say("Mirrors do not fold while driving")
+    ),
+    CABIN.TRUNK.path: say("The trunk stays shut while driving"),
+    ENERGY.CHARGE_FLAP.path: say("The charging flap stays shut while driving"),
+    DRIVE.PARKING_BRAKE.path: say("The parking brake is for standing still"),
+    SEAT.PASSENGER_AIRBAG.path: say("The airbag is switched at a standstill"),
 }
 """Actuators that are locked while the car moves, by path, and why."""
 
@@ -176,26 +179,28 @@ class Vehicle:
         if held:
             return held
         if signal is CABIN.SUNROOF_SHADE and value and now[CABIN.SUNROOF]:
-            return "The shade needs a closed sunroof: close it first"
+            return say("The shade needs a closed sunroof: close it first")
         if (
             signal is MEDIA.ACTION
             and value == "PLAY"
             and now[MEDIA.SOURCE] == "BLUETOOTH"
             and not now[LINK.BLUETOOTH]
         ):
-            return "The phone is not connected: switch Bluetooth on first"
+            return say("The phone is not connected: switch Bluetooth on first")
         if value is not True:
             return ""
         if signal is HVAC.AIR_CONDITIONING and any(now[window] > WINDOWS_PCT for window in WINDOWS):
-            return f"Cooling needs closed windows: close them to {WINDOWS_PCT:.0f} % or less first"
+            return say(
+                "Cooling needs closed windows: close them to {share} % or less first", share=f"{WINDOWS_PCT:.0f}"
+            )
         if signal is LIGHTS.HIGH_BEAM and not now[LIGHTS.LOW_BEAM]:
-            return "High beam needs low beam: switch the lights to low beam first"
+            return say("High beam needs low beam: switch the lights to low beam first")
         if signal is LIGHTS.FRONT_FOG and not now[LIGHTS.POSITION]:
-            return "Front fog lamps need position lamps: switch the lights on first"
+            return say("Front fog lamps need position lamps: switch the lights on first")
         if signal is LIGHTS.REAR_FOG and not (now[LIGHTS.LOW_BEAM] or now[LIGHTS.FRONT_FOG]):
-            return "The rear fog lamp needs low beam or front fog lamps: switch one of them on first"
+            return say("The rear fog lamp needs low beam or front fog lamps: switch one of them on first")
         if signal is ADAS.CRUISE_ACTIVE and not now[ADAS.CRUISE_ENABLED]:
-            return "Cruise control is disabled"
+            return say("Cruise control is disabled")
         return ""
 
     def _climate(self, signal: Signal[Any], value: Any) -> None:

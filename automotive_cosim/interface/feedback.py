@@ -17,8 +17,9 @@ from automotive_cosim.cockpit.actions import FIELDS, point
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.widgets import Field, Slider, Widget
 from automotive_cosim.contracts import Action, ActionType, Element, Feedback, FeedbackCode
+from automotive_cosim.contracts.text import say
 
-DONE, UNCHANGED = "done", "nothing changed"
+DONE, UNCHANGED = say("done"), say("nothing changed")
 _OUTCOMES = {FeedbackCode.OK: DONE, FeedbackCode.NO_EFFECT: UNCHANGED}
 
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from automotive_cosim.cockpit.language import Language, Lexicon, table
+from automotive_cosim.cockpit.language import Language, word
 from automotive_cosim.tasking.dialogue import Topic
+from automotive_cosim.tasking.lexicon import Lexicon
 from automotive_cosim.tasking.parameters import Parameter
 
 
@@ -36,7 +37,7 @@ class Speech:
         """A parameter's value as the driver says it: by his own word for it, or else as the car shows it."""
         if not isinstance(value, str):
             return value
-        return self.words.get(value) or table(self.language).words.get(value, value)
+        return self.words.get(value) or word(value, self.language)
 
     def topic(self, topic: Topic) -> Topic:
         """The topic, to be asked about in this language or in English, and answered in this one."""

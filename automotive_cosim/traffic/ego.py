@@ -23,6 +23,7 @@ from automotive_cosim.contracts import (
     Answer,
     Cruise,
     DrivingState,
+    EgoEnd,
     Hazards,
     PullOver,
     Reroute,
@@ -30,6 +31,7 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
+from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.base import EgoPlan, Event, HaltAt
 from automotive_cosim.traffic.instant import Instant
 from automotive_cosim.traffic.profiles import DriverProfile, profile
@@ -91,6 +93,12 @@ SLOW_TRAFFIC = 0.5
 """Relative speed of traffic below which driving slowly on a fast road hinders nobody."""
 
 
+_ENDS = {
+    EgoEnd.ARRIVED: say("arrived"),
+    EgoEnd.COLLIDED: say("collided"),
+    EgoEnd.TELEPORTED: say("teleported"),
+    EgoEnd.REMOVED: say("removed"),
+}
 FOR_GOOD_S = 86_400.0
 PARKS = "driver_parks"
 SETS_OFF = "driver_sets_off"
@@ -98,7 +106,12 @@ SETS_OFF = "driver_sets_off"
 
 
 class RefusedError(Exception):
-    """The car cannot do it now; the message says why."""
+    """The car cannot do it now."""
+
+    def __init__(self, why: str) -> None:
+        """With the reason, as a text of the screens."""
+        super().__init__(why)
+        self.why = why
 
 
 class Pedals(Protocol):
@@ -228,30 +241,30 @@ class Driver:
     def request(self, request: RoadRequest, state: DrivingState) -> Answer:
         """Receives a request. What does not depend on the driver happens now, the rest after the reaction time."""
         if state.end is not None:
-            return Answer(False, f"the drive has ended: {state.end}")
+            return Answer(False, say("the drive has ended: {end}", end=_ENDS[state.end]))
         match request:
             case Alert():
-                return self._hear(request, state, "the driver hears it")
+                return self._hear(request, state, say("the driver hears it"))
             case SlowDown(speed_kmh):
                 why_not = _too_slow(speed_kmh, state)
                 if why_not:
                     return Answer(False, why_not)
-                return self._hear(request, state, "the driver is asked to slow down")
+                return self._hear(request, state, say("the driver is asked to slow down"))
             case PullOver():
                 if state.road.in_tunnel:
-                    return Answer(False, "stopping in a tunnel is dangerous; ask again after it")
-                return self._hear(request, state, "the driver is asked to pull over")
+                    return Answer(False, say("stopping in a tunnel is dangerous; ask again after it"))
+                return self._hear(request, state, say("the driver is asked to pull over"))
             case Cruise(speed_kmh):
                 return self._cruise(speed_kmh, state)
             case Hazards(on):
                 self.hazard_lights = on
                 self.pedals.set_hazards(on)
-                return Answer(True, "hazard lights on" if on else "hazard lights off")
+                return Answer(True, say("hazard lights on") if on else say("hazard lights off"))
             case Reroute():
                 try:
                     return Answer(True, self.pedals.reroute(request, state))
                 except RefusedError as refusal:
-                    return Answer(False, str(refusal))
+                    return Answer(False, refusal.why)
 
     def tick(self, now: Instant) -> tuple[Event, ...]:
         """Does what is due and controls the speed; it takes effect from the next step."""
@@ -286,12 +299,12 @@ class Driver:
     def _cruise(self, speed_kmh: float | None, state: DrivingState) -> Answer:
         if speed_kmh is None:
             self._bounds.cruise = math.inf
-            return Answer(True, "no speed is set any more")
+            return Answer(True, say("no speed is set any more"))
         why_not = _too_slow(speed_kmh, state)
         if why_not:
             return Answer(False, why_not)
         self._bounds.cruise = speed_kmh / KMH_PER_MPS
-        return Answer(True, f"the car goes no faster than {speed_kmh:.0f} km/h")
+        return Answer(True, say("the car goes no faster than {speed} km/h", speed=f"{speed_kmh:.0f}"))
 
     def _act(self, intent: _Intent, state: DrivingState) -> tuple[Event, ...]:
         request, after = intent.request, f"{state.time_s - intent.asked_s:.1f} s after"
@@ -466,10 +479,14 @@ class Driver:
 def _too_slow(speed_kmh: float, state: DrivingState) -> str:
     """Why that speed would be dangerous or pointless; empty if it is not."""
     if not speed_kmh >= SLOWEST_REQUEST_KMH:
-        return f"{speed_kmh:g} km/h is not a valid speed; to stop, ask to pull over"
+        return say("{speed} km/h is not a valid speed; to stop, ask to pull over", speed=f"{speed_kmh:g}")
     limit_mps = state.road.limit.mps
     fast_kmh = (limit_mps or 130 / KMH_PER_MPS) * KMH_PER_MPS
     is_crawling = state.road.road_class in FAST_ROADS and speed_kmh < fast_kmh / 2
     if is_crawling and state.around.relative_speed > SLOW_TRAFFIC:
-        return f"{speed_kmh:g} km/h is dangerous where traffic drives {fast_kmh:.0f}"
+        return say(
+            "{speed} km/h is dangerous where traffic drives {others}",
+            speed=f"{speed_kmh:g}",
+            others=f"{fast_kmh:.0f}",
+        )
     return ""

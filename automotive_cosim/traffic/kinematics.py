@@ -21,6 +21,7 @@ from automotive_cosim.contracts import (
     SeenVehicle,
     SumoSignal,
 )
+from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.ego import EASING_MPS2, RefusedError
 from automotive_cosim.traffic.instant import KnownInstant, other_vehicle
@@ -145,7 +146,7 @@ class ScriptedCar:
         needed_m = state.speed_mps**2 / (2 * STOPPING_MPS2) + STOPPING_RESERVE_M
         stop_m = self._along_m + needed_m
         if stop_m >= self._layout.starts_m[-1] or self._layout.stretches[self._layout.index_at(stop_m)].in_tunnel:
-            raise RefusedError("there is no place to stop within the next metres")
+            raise RefusedError(say("there is no place to stop within the next metres"))
         self._stop_m, self._stop_s = stop_m, for_s
         return f"in {needed_m:.0f} m"
 
@@ -163,7 +164,7 @@ class ScriptedCar:
 
     def reroute(self, request: Reroute, state: DrivingState) -> str:
         """Refused: there is no other route."""
-        raise RefusedError("this road has no alternative route")
+        raise RefusedError(say("this road has no alternative route"))
 
     # --- kinematics ---------------------------------------------------------------------------------------
 

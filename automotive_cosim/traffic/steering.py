@@ -6,6 +6,7 @@ import math
 from itertools import pairwise
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, lon_lat
+from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.ego import RefusedError
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
@@ -41,7 +42,7 @@ STREET_CANDIDATES = 8
 WALK_M = 400.0
 """Acceptable walk from the car: five minutes at 1.35 m/s."""
 
-KEEPS_ROUTE = "this is the quickest route"
+KEEPS_ROUTE = say("this is the quickest route")
 """Answer to a request for the quickest route which changes nothing, not even in SUMO."""
 
 
@@ -128,7 +129,7 @@ class SumoPedals:
                     raise RefusedError(str(error)) from error
                 away_m = route.position_m(index, stop_m) - self._sensor.position_m
                 return f"in {away_m:.0f} m" + (f" on {edge.name}" if edge.name else "")
-        raise RefusedError("there is no place to stop on the rest of the route")
+        raise RefusedError(say("there is no place to stop on the rest of the route"))
 
     def is_parked(self) -> bool:
         """See ``ego.Pedals``."""
@@ -162,18 +163,22 @@ class SumoPedals:
     def reroute(self, request: Reroute, state: DrivingState) -> str:
         """Takes another route; the next turn stays if it is too near to change."""
         if state.road.edge_id.startswith(":"):
-            raise RefusedError("inside a junction the route is fixed; ask again after it")
+            raise RefusedError(say("inside a junction the route is fixed; ask again after it"))
         edges = self._given(request.edges) if request.edges else self._found(request.destination, state)
         if request == Reroute() and edges == self._rest():
             return KEEPS_ROUTE
         try:
             self._sumo.set_route(self._ego, edges)
         except self._sumo.refusals as error:
-            raise RefusedError(f"no such route: {error}") from error
+            raise RefusedError(say("no such route: {error}", error=str(error))) from error
         self._sensor.refresh()
         length_km = (self._sensor.route.length_m - self._sensor.position_m) / 1000
         name = self._network.edges[edges[-1]].name
-        return f"new route of {length_km:.1f} km to {name}" if name else f"new route of {length_km:.1f} km"
+        return (
+            say("new route of {length} km to {place}", length=f"{length_km:.1f}", place=name)
+            if name
+            else say("new route of {length} km", length=f"{length_km:.1f}")
+        )
 
     def _given(self, edge_ids: tuple[str, ...]) -> tuple[str, ...]:
         here, planned = self._fixed()
@@ -181,14 +186,22 @@ class SumoPedals:
             edge_ids = edge_ids[edge_ids.index(here) :]
         for edge_id in edge_ids:
             if edge_id not in self._network.edges:
-                raise RefusedError(f"there is no edge {edge_id!r}")
+                raise RefusedError(say("there is no edge {edge}", edge=repr(edge_id)))
         if edge_ids[0] != here:
-            raise RefusedError(f"the route must begin where the car is, on edge {here!r}, not on {edge_ids[0]!r}")
+            raise RefusedError(
+                say(
+                    "the route must begin where the car is, on edge {here}, not on {edge}",
+                    here=repr(here),
+                    edge=repr(edge_ids[0]),
+                )
+            )
         if edge_ids[: len(planned)] != planned:
-            raise RefusedError("the next junction is too near for another turn")
+            raise RefusedError(say("the next junction is too near for another turn"))
         for edge_id, following in pairwise(edge_ids):
             if following not in self._network.crossings.get(edge_id, {}):
-                raise RefusedError(f"there is no route from {edge_id!r} to {following!r}")
+                raise RefusedError(
+                    say("there is no route from {start} to {end}", start=repr(edge_id), end=repr(following))
+                )
         return edge_ids
 
     def _found(self, destination: str, state: DrivingState) -> tuple[str, ...]:
@@ -200,9 +213,9 @@ class SumoPedals:
                 is_better = bool(destination) or self._router.is_quicker(found, rest, self._driven_m())
                 return found if is_better else rest
         raise RefusedError(
-            f"there is no route to {destination} from here"
+            say("there is no route to {place} from here", place=destination)
             if destination
-            else "there is no route to the destination from here"
+            else say("there is no route to the destination from here")
         )
 
     def _beside(self, edge_id: str) -> tuple[str, ...]:
@@ -249,13 +262,13 @@ class SumoPedals:
             raise RefusedError(str(error)) from error
         if position is not None:
             if state.lon_deg is None:
-                raise RefusedError("this network has no place on earth")
+                raise RefusedError(say("this network has no place on earth"))
             if self._network.moved:
                 x_m, y_m = GeoReference(self._network.map).x_y(*position)
                 return (self._sumo.find_road(x_m, y_m, False, "passenger")[0],)
             return (self._sumo.find_road(*position, True, "passenger")[0],)
         named = [edge for edge in edges.values() if edge.name.casefold() == destination.casefold()]
         if not named:
-            raise RefusedError(f"there is no street or edge named {destination!r}")
+            raise RefusedError(say("there is no street or edge named {name}", name=repr(destination)))
         named.sort(key=lambda edge: math.dist(edge.shape_m[0], (state.x_m, state.y_m)))
         return tuple(edge.edge_id for edge in named[:STREET_CANDIDATES])

@@ -3,24 +3,33 @@
 from __future__ import annotations
 
 import ast
+import copy
+import json
+import pickle
 import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
+from string import Formatter
 from typing import Any
 
 import pytest
+from babel.messages.catalog import Catalog
 
 from automotive_cosim import cockpit as package
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.language import said, table
+from automotive_cosim.cockpit.language import said, word
+from automotive_cosim.cockpit.navigation import TURN_LEFT
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.theme import Weight, face
 from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import Answer, Feedback, FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import resource_id as shown_id
+from automotive_cosim.contracts.text import Text, counted, joined, listed, say, say_in
+
+from . import catalogues
 
 Make = Callable[..., Cockpit]
 LANGUAGES = tuple(language for language in HMI.LANGUAGE.allowed if language != "en")
@@ -40,11 +49,6 @@ TOLD = {"Feedback": 1, "Put": 2, "_change": -1, "SetAll": 1, "command_all": 2}
 """What shows a text in a notice, and what answers with one: the place of the text among the arguments."""
 SAYING = ("_refusal", "_too_slow", "reroute", "_asked")
 """Functions whose text is shown."""
-
-
-def entries(language: str) -> dict[str, str]:
-    forms = {pattern.pattern: form for pattern, form in table(language, answers=True).forms}
-    return {**table(language, answers=True).words, **forms}
 
 
 def written(node: ast.AST | None) -> Iterator[str]:
@@ -86,16 +90,13 @@ def source_texts(places: Mapping[str, int], returns: tuple[str, ...]) -> dict[st
     return found
 
 
-def from_table(text: str, names: frozenset[str], *, answers: bool = False) -> bool:
-    """Whether all words of an English text are in the tables, but for names, numbers and units."""
-    known = table(LANGUAGES[0], answers)
-    if text in names or text in known.words or not set(LATIN.findall(text)) - INTERNATIONAL:
-        return True
-    for pattern, _ in known.forms:
-        found = pattern.fullmatch(text)
-        if found is not None:
-            return all(from_table(part, names, answers=answers) for part in found.groups())
-    return False
+def untold(text: str, names: frozenset[str]) -> Iterator[str]:
+    """The parts of a text that no language would translate, but for names, numbers and units."""
+    if isinstance(text, Text):
+        fields = (value for value in text.fields.values() if isinstance(value, str))
+        yield from (part for value in fields for part in untold(value, names))
+    elif text not in names and set(LATIN.findall(text)) - INTERNATIONAL:
+        yield text
 
 
 def named(cockpit: Cockpit) -> frozenset[str]:
@@ -109,12 +110,8 @@ def named(cockpit: Cockpit) -> frozenset[str]:
     return frozenset(names | {"Home-5G", "CityFree", "Garage", "Coffee-Guest"})
 
 
-NOTHING = frozenset[str]()
-IDENTIFIER = re.compile(
-    r"\b(?:[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)+|[A-Z]+(?:_[A-Z0-9]+)*)\b"
-    r"|^[a-z0-9_]+(?= is (?:already )?shown)|(?<= is )\S+$|(?<= already )\S+$"
-)
-"""Resource ids and signals, their values, and screens' names."""
+IDENTIFIER = re.compile(r"#?[A-Za-z0-9_]+(?:\.[A-Za-z0-9_]+)*")
+"""A resource id, a signal, its value, or a screen's name."""
 
 
 def texts(widget: Widget) -> Iterator[str]:
@@ -127,40 +124,48 @@ def press(cockpit: Cockpit, key: str) -> FeedbackCode:
     return cockpit.tap((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2).code
 
 
-@pytest.mark.parametrize("language", LANGUAGES)
-def test_every_language_knows_the_same_texts(language: str) -> None:
-    assert entries(language).keys() == entries(LANGUAGES[0]).keys()
-    assert table(language).keys.keys() == table(LANGUAGES[0]).keys.keys()
-    assert all(words.strip() == words != "" for words in entries(language).values())
+@pytest.fixture(scope="module")
+def now() -> Catalog:
+    return catalogues.written()
+
+
+def messages(language: str) -> Iterator[tuple[tuple[str, ...], tuple[str, ...]]]:
+    """The forms of every message in English and in that language."""
+    for message in catalogues.known(language):
+        if message.id:
+            yield catalogues.strings(message.id), catalogues.strings(message.string)
+
+
+def fields(form: str) -> list[str]:
+    return sorted(name for _, name, _, _ in Formatter().parse(form) if name is not None)
+
+
+def test_there_is_a_catalogue_of_every_language() -> None:
+    assert catalogues.languages() == tuple(sorted(LANGUAGES))
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
-def test_a_form_keeps_all_that_varies(language: str) -> None:
-    for pattern, form in table(language, answers=True).forms:
-        parts = [f"<{at}>" for at in range(pattern.groups)]
-        assert all(form.format(*parts).count(part) == 1 for part in parts), form
+def test_a_catalogue_has_the_texts_of_the_code_and_no_others(language: str, now: Catalog) -> None:
+    """If not: ``python -m tests.cockpit.catalogues --renew``, and translate what is empty."""
+    assert len(catalogues.keys(now)) > 800
+    assert list(catalogues.differences(language, now)) == []
+    assert catalogues.text(catalogues.renewed(language, now)) == (catalogues.FOLDER / f"{language}.po").read_bytes()
 
 
-def test_no_table_has_a_text_that_no_screen_says() -> None:
-    """Every entry is a text in the cockpit's source, or one that another form or a drive makes of several."""
-    known = set()
-    for path in sorted(Path(package.__file__).parent.rglob("*.py")):
-        for node in ast.walk(ast.parse(path.read_text("utf-8"))):
-            if isinstance(node, ast.JoinedStr):
-                parts = (part.value if isinstance(part, ast.Constant) else "{}" for part in node.values)
-                known.add("".join(map(str, parts)))
-            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
-                known.add(node.value)
-    said_by_others = [text for text in table("fr", answers=True).words if text not in known]
-    assert len(said_by_others) < 0.1 * len(table("fr", answers=True).words), said_by_others
+@pytest.mark.parametrize("language", LANGUAGES)
+def test_a_translation_keeps_the_fields(language: str) -> None:
+    for english, told in messages(language):
+        assert all(fields(form) == fields(english[-1]) for form in (*english, *told)), english
+        assert all(form.strip() == form != "" for form in told), english
+    assert not any(message.fuzzy for message in catalogues.known(language) if message.id)
 
 
 @pytest.mark.parametrize("language", LANGUAGES)
 def test_every_letter_has_a_glyph(language: str) -> None:
-    for words in (*entries(language).values(), *table(language).keys.values()):
+    for words in (form for _, told in messages(language) for form in told):
         letters = face(words, Weight.MEDIUM, 20)
         missing = bytes(letters.getmask("\U0010fffe"))
-        for letter in words.replace("{}", "").replace(" ", ""):
+        for letter in re.sub(r"\{\w+\}| ", "", words):
             assert bytes(letters.getmask(letter)) != missing, f"{letter!r} in {words!r}"
 
 
@@ -186,19 +191,15 @@ def test_no_english_is_left_in_japanese(make: Make, around: Surroundings, walker
         own = {word for name in named(home) for word in LATIN.findall(name)}
         for view in walker(home):
             for text in texts(view.cockpit.tree):
-                words = LATIN.findall(said("ja", text))
+                words = LATIN.findall(said(text, "ja"))
                 left |= {(word, text) for word in words if word not in own | INTERNATIONAL}
     assert left == set()
 
 
-def test_every_text_of_a_notice_or_an_answer_is_in_the_tables() -> None:
+def test_every_text_of_a_notice_or_an_answer_can_be_told_in_other_languages() -> None:
     """As the source has them, whether or not a test comes by: notices, refusals, what the road and taps say."""
-    shown, told = source_texts(SHOWN, SAYING), source_texts(TOLD, ())
-    assert len(shown) > 50
-    assert len(told) > 80
-    for texts_of, answers in ((shown, False), (told, True)):
-        missing = {text: file for text, file in texts_of.items() if not from_table(text, NOTHING, answers=answers)}
-        assert missing == {}
+    plain = source_texts(SHOWN, SAYING) | source_texts(TOLD, ())
+    assert {text: file for text, file in plain.items() if LATIN.search(text.replace("{}", ""))} == {}
 
 
 EVERY_KIND = tuple(
@@ -214,15 +215,19 @@ def homes(make: Make, around: Surroundings) -> tuple[Cockpit, ...]:
     return make(), make(surroundings=standing, signals=parked, aboard=EVERY_KIND), make(arrivals=calls)
 
 
-def test_every_text_of_a_screen_is_in_the_tables(make: Make, around: Surroundings, walker: Any) -> None:
+def test_every_text_of_a_screen_can_be_told_in_other_languages(
+    make: Make, around: Surroundings, walker: Any
+) -> None:
     for home in homes(make, around):
         names = named(home)
         for view in walker(home):
-            assert [text for text in texts(view.cockpit.tree) if not from_table(text, names)] == [], view.name
+            assert [part for text in texts(view.cockpit.tree) for part in untold(text, names)] == [], view.name
 
 
 @pytest.mark.slow
-def test_every_answer_to_a_tap_is_in_the_tables(make: Make, around: Surroundings, walker: Any) -> None:
+def test_every_answer_to_a_tap_can_be_told_in_other_languages(
+    make: Make, around: Surroundings, walker: Any
+) -> None:
     """And the notice that goes with it. Resource ids, screens' names and signals stay as they are."""
     heard, unknown = set(), set()
     for home in homes(make, around):
@@ -234,13 +239,11 @@ def test_every_answer_to_a_tap_is_in_the_tables(make: Make, around: Surroundings
                 twin = view.cockpit.copy()
                 feedback = twin.tap(*widget.rect.centre)
                 for request in twin.drain_requests():
-                    twin.answered(request, Answer(False, "the next junction is too near for another turn"))
+                    twin.answered(request, Answer(False, say("the next junction is too near for another turn")))
                 heard.add(feedback.text)
-                forms = (feedback.text, IDENTIFIER.sub("0", feedback.text))
-                if not any(from_table(text, names, answers=True) for text in forms):
-                    unknown.add(feedback.text)
-                notices = [notice.text for notice in twin._state.notices]
-                assert [text for text in notices if not from_table(text, names)] == []
+                parts = [part for part in untold(feedback.text, names) if not IDENTIFIER.fullmatch(part)]
+                notices = (part for notice in twin._state.notices for part in untold(notice.text, names))
+                unknown |= {*parts, *notices}
     assert unknown == set()
     assert len(heard) > 200
 
@@ -255,18 +258,48 @@ def test_an_answer_is_told_in_the_language_of_the_screens(make: Make, language: 
         spoken = cockpit.spoken(feedback)
         assert spoken.code is feedback.code
         assert spoken.text != feedback.text
-    assert said(language, "Dinner is ready") == "Dinner is ready", "what people wrote is no answer"
+    assert said("Thank you", language) == "Thank you", "what people wrote is no text of the screens"
 
 
 def test_what_varies_is_translated_in_turn() -> None:
-    assert said("de", "Sent to Ada Adler: Thank you") == "An Ada Adler: Danke"
-    assert said("fr", "Turn left in 200 m") == "Tournez à gauche dans 200 m"
-    assert said("ja", "300 kW, 1 of 3 free") == "300 kW、3台中1台空き"
+    assert said(say("Sent to {to}: {text}", to="Ada Adler", text=say("Thank you")), "de") == "An Ada Adler: Danke"
+    assert said(TURN_LEFT, "fr") == "Tournez à gauche"
+    detail = say("{power} kW, {free} of {total} free", power=300, free=1, total=3)
+    assert said(detail, "ja") == "300 kW、3台中1台空き"
 
 
-def test_numbers_names_and_unknown_words_stay() -> None:
-    for text in ("21.5 °C", "14:05", "Rue de Rivoli", "Kaya Duval", "x"):
-        assert said("fr", text) == text
+def test_what_is_counted_has_the_forms_of_its_language() -> None:
+    told = {n: counted("{n} new message", "{n} new messages", n) for n in (0, 1, 2)}
+    assert list(told.values()) == ["0 new messages", "1 new message", "2 new messages"]
+    assert said(told[1], "de") == "1 neue Nachricht"
+    assert said(told[2], "de") == "2 neue Nachrichten"
+    assert said(told[0], "fr") == "0 nouveau message", "French counts none like one"
+
+
+def test_the_same_word_has_several_meanings() -> None:
+    assert said(say("Home"), "de") == "Zuhause"
+    assert said(say_in("dock", "Home"), "de") == "Start"
+
+
+def test_a_text_stays_one_on_its_way() -> None:
+    text = say("Sent to {to}: {text}", to="Ada", text=counted("{n} track", "{n} tracks", 2))
+    for copied in (copy.copy(text), copy.deepcopy(text), pickle.loads(pickle.dumps(text))):
+        assert copied == str(text) == "Sent to Ada: 2 tracks"
+        assert isinstance(copied, Text)
+        assert said(copied, "de") == said(text, "de") == "An Ada: 2 Titel"
+    assert hash(text) == hash(str(text))
+    assert json.dumps(text) == json.dumps(str(text))
+
+
+def test_braces_of_others_are_no_fields() -> None:
+    assert said(say("Sent to {to}: {text}", to="{x}", text="{0} {text}"), "de") == "An {x}: {0} {text}"
+    assert listed(("a", say("low beam"), "{b}")) == "a, low beam, {b}"
+    assert said(joined(" ", ("{a}", say("Thank you"))), "de") == "{a} Danke"
+
+
+def test_a_word_without_fields_is_found_by_itself() -> None:
+    assert (word("Locks", "de"), word("Kaya Duval", "de"), word("", "de")) == ("Schlösser", "Kaya Duval", "")
+    assert word("Locks", "en") == "Locks"
 
 
 def test_what_was_typed_stays(make: Make, around: Surroundings) -> None:

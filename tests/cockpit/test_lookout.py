@@ -160,6 +160,6 @@ def test_every_sight_is_translated(make: Make, around: Surroundings, language: s
         *told
     }
     for text in told:
-        words = said(language, text)
+        words = said(text, language)
         assert words != text or text.startswith("Tunnel")
         assert not {"Child", "Rear left"} & {words.partition(": ")[2]}

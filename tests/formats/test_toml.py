@@ -16,7 +16,7 @@ ROOT = Path(str(files("automotive_cosim")))
 SHIPPED = [
     *ROOT.glob("sumo_scenarios/*/scenario.toml"),
     *ROOT.glob("geo/data/*.toml"),
-    *ROOT.glob("cockpit/languages/*.toml"),
+    *ROOT.glob("tasks/phrasings/*.toml"),
 ]
 AWKWARD = '''# a = 1
 a = 1

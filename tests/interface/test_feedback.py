@@ -9,7 +9,7 @@ import pytest
 
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.language import table
+from automotive_cosim.cockpit.language import word
 from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import Action, ActionType, Direction, Element, Feedback, FeedbackCode
@@ -23,9 +23,7 @@ from ..cockpit.conftest import outside, town
 
 SIGNAL = re.compile(r"\b(?:Is[A-Z]|[A-Z][a-z]+[A-Z])\w*|[A-Za-z_]\.\w|(?:is|reads) (?:already )?(?:on|off|\d|')")
 OUTCOMES = tuple(
-    known.get(outcome, outcome)
-    for outcome in ("done", "nothing changed")
-    for known in ({}, *(table(language, True).words for language in HMI.LANGUAGE.allowed if language != "en"))
+    word(outcome, language) for outcome in ("done", "nothing changed") for language in HMI.LANGUAGE.allowed
 )
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.cockpit.aboard import Seat
-from automotive_cosim.cockpit.language import Language, table
+from automotive_cosim.cockpit.language import Language, word
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
@@ -99,7 +99,7 @@ def test_every_value_that_is_said_has_its_word(task: Task, language: Language):
         for value in values:
             if not isinstance(value, str) or not re.search(r"[^\W\d_]{2}", value):
                 continue
-            shown = table(language).words.get(value, value)
+            shown = word(value, language)
             assert value in speech.words or shown != value, f"no word for {value!r}"
             assert shown in (value, speech.word(value)), f"the car shows {shown!r} for {value!r}"
 

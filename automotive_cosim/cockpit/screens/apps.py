@@ -12,22 +12,23 @@ from automotive_cosim.cockpit.screens.parts import content, note, rows, title
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Row, Widget
+from automotive_cosim.contracts.text import say
 
 
 def apps(state: State) -> tuple[Widget, ...]:
     """All installed apps, and a link to the store."""
     offered: list[tuple[str, str, Icon]] = [
         *((name, TOOLS[name][0], TOOLS[name][1]) for name in state.desk.installed),
-        ("cabin", "Cabin", Icon.CONTACTS),
-        ("store", "Store", Icon.STORE),
-        ("notifications", "Notices", Icon.BELL),
+        ("cabin", say("Cabin"), Icon.CONTACTS),
+        ("store", say("Store"), Icon.STORE),
+        ("notifications", say("Notices"), Icon.BELL),
         *((name, text, icon) for name, (text, icon) in DOCK.items() if name not in ("home", "apps")),
     ]
     return (
         rows(
             content(state),
             "apps.all",
-            "Apps",
+            say("Apps"),
             state,
             len(offered),
             lambda index, cell: Button(
@@ -64,13 +65,13 @@ def store(state: State) -> tuple[Widget, ...]:
             raised=True,
             text=text,
             detail=about,
-            trail="Remove" if there else "Install",
+            trail=say("Remove") if there else say("Install"),
             icon=icon,
             locked=locked,
             on_tap=Put(
                 "desk",
                 state.desk.with_app(name, not there),
-                f"{text} is removed" if there else f"{text} is installed",
+                say("{name} is removed", name=text) if there else say("{app} is installed", app=text),
             ),
         )
 
@@ -78,8 +79,8 @@ def store(state: State) -> tuple[Widget, ...]:
         Card(
             rect=area,
             children=(
-                title(inner.top(40), Icon.STORE, "Store"),
-                rows(inner.below(56), "store.apps", "Apps", state, len(names), line, height=68, gap=8),
+                title(inner.top(40), Icon.STORE, say("Store")),
+                rows(inner.below(56), "store.apps", say("Apps"), state, len(names), line, height=68, gap=8),
             ),
         ),
     )
@@ -100,23 +101,23 @@ def notifications(state: State) -> tuple[Widget, ...]:
         Card(
             rect=area,
             children=(
-                title(inner.top(56).left(600), Icon.BELL, "Notifications"),
+                title(inner.top(56).left(600), Icon.BELL, say("Notifications")),
                 Button(
                     rect=inner.top(56).right_part(200),
                     key="notifications.clear",
-                    text="Clear all",
+                    text=say("Clear all"),
                     icon=Icon.DELETE,
-                    on_tap=Put("notices", (), "The notifications are cleared"),
+                    on_tap=Put("notices", (), say("The notifications are cleared")),
                     disabled=""
                     if state.notices
-                    else "These go when they are dealt with"
+                    else say("These go when they are dealt with")
                     if lines
-                    else "There is nothing to clear",
+                    else say("There is nothing to clear"),
                 ),
                 rows(
                     inner.below(72),
                     "notifications.all",
-                    "Notifications",
+                    say("Notifications"),
                     state,
                     len(lines),
                     lambda index, cell: Row(
@@ -132,7 +133,7 @@ def notifications(state: State) -> tuple[Widget, ...]:
                     height=60,
                 )
                 if lines
-                else note(inner.below(72), "notifications.empty", "No notifications"),
+                else note(inner.below(72), "notifications.empty", say("No notifications")),
             ),
         ),
     )

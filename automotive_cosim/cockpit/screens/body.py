@@ -30,21 +30,22 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.vehicle import LOCKS, WINDOWS
 from automotive_cosim.cockpit.widgets import Button, CameraView, Card, Choice, Label, Tile, Widget
+from automotive_cosim.contracts.text import say
 
 MODES = {
-    "NORMAL": ("normal", "Normal"),
-    "ECONOMY": ("economy", "Economy"),
-    "SPORT": ("sport", "Sport"),
-    "SNOW": ("snow", "Snow"),
-    "RAIN": ("rain", "Rain"),
+    "NORMAL": ("normal", say("Normal")),
+    "ECONOMY": ("economy", say("Economy")),
+    "SPORT": ("sport", say("Sport")),
+    "SNOW": ("snow", say("Snow")),
+    "RAIN": ("rain", say("Rain")),
 }
-MASSAGE_LEVELS = ((0.0, "Off"), (50.0, "Low"), (100.0, "High"))
+MASSAGE_LEVELS = ((0.0, say("Off")), (50.0, say("Low")), (100.0, say("High")))
 COLOURS = {
-    "#FFE3B0": ("warm", "Warm"),
-    "#4FA8FF": ("blue", "Blue"),
-    "#45D18A": ("green", "Green"),
-    "#B57BFF": ("violet", "Violet"),
-    "#FF5C5C": ("red", "Red"),
+    "#FFE3B0": ("warm", say("Warm")),
+    "#4FA8FF": ("blue", say("Blue")),
+    "#45D18A": ("green", say("Green")),
+    "#B57BFF": ("violet", say("Violet")),
+    "#FF5C5C": ("red", say("Red")),
 }
 
 
@@ -73,7 +74,7 @@ def driving(state: State) -> tuple[Widget, ...]:
         Card(
             rect=mode,
             children=(
-                heading(inner.top(28), "Drive mode"),
+                heading(inner.top(28), say("Drive mode")),
                 choices(
                     inner.bottom_part(68),
                     "drive.mode",
@@ -87,11 +88,11 @@ def driving(state: State) -> tuple[Widget, ...]:
         Card(
             rect=left,
             children=(
-                heading(hold.top(28), "Brake and horn"),
+                heading(hold.top(28), say("Brake and horn")),
                 switch(
                     tiles[0],
                     "drive.parking_brake",
-                    "Parking brake",
+                    say("Parking brake"),
                     Icon.PARKING_BRAKE,
                     DRIVE.PARKING_BRAKE,
                     signals,
@@ -100,16 +101,18 @@ def driving(state: State) -> tuple[Widget, ...]:
                 switch(
                     tiles[1],
                     "drive.parking_brake_auto",
-                    "Automatic parking brake",
+                    say("Automatic parking brake"),
                     Icon.PARKING_BRAKE,
                     DRIVE.PARKING_BRAKE_AUTO,
                     signals,
                 ),
-                Button(rect=tiles[2], key="drive.horn", text="Horn", icon=Icon.WARN, on_tap=Honk()),
+                Button(rect=tiles[2], key="drive.horn", text=say("Horn"), icon=Icon.WARN, on_tap=Honk()),
                 Card(
                     rect=tiles[3],
                     look="none",
-                    children=fact(tiles[3], "drive.washer", "Washer fluid", f"{signals[BODY.WASHER_FLUID]:.0f} %"),
+                    children=fact(
+                        tiles[3], "drive.washer", say("Washer fluid"), f"{signals[BODY.WASHER_FLUID]:.0f} %"
+                    ),
                 ),
             ),
         ),
@@ -120,14 +123,14 @@ def driving(state: State) -> tuple[Widget, ...]:
 def _tyres(rect: Rect, state: State) -> Widget:
     inner = rect.inset(20, 16)
     corners = (
-        ("front_left", "Front left", TYRE.FRONT_LEFT),
-        ("front_right", "Front right", TYRE.FRONT_RIGHT),
-        ("rear_left", "Rear left", TYRE.REAR_LEFT),
-        ("rear_right", "Rear right", TYRE.REAR_RIGHT),
+        ("front_left", say("Front left"), say("Front left tyre"), TYRE.FRONT_LEFT),
+        ("front_right", say("Front right"), say("Front right tyre"), TYRE.FRONT_RIGHT),
+        ("rear_left", say("Rear left"), say("Rear left tyre"), TYRE.REAR_LEFT),
+        ("rear_right", say("Rear right"), say("Rear right tyre"), TYRE.REAR_RIGHT),
     )
     cells = [cell for line in inner.below(36).rows(2, 12) for cell in line.columns(2, 12)]
-    children: list[Widget] = [heading(inner.top(28), "Tyre pressures")]
-    for cell, (key, name, signal) in zip(cells, corners, strict=True):
+    children: list[Widget] = [heading(inner.top(28), say("Tyre pressures"))]
+    for cell, (key, name, tyre, signal) in zip(cells, corners, strict=True):
         low = state.signals[signal] < LOW_KPA
         children.append(
             Card(
@@ -136,7 +139,7 @@ def _tyres(rect: Rect, state: State) -> Widget:
                 children=(
                     Label(
                         rect=cell.inset(16, 12).top(26),
-                        text=f"{name}: low" if low else name,
+                        text=say("{name}: {value}", name=name, value=say("low")) if low else name,
                         style=Type.LABEL,
                         tone="text" if low else "muted",
                     ),
@@ -144,7 +147,7 @@ def _tyres(rect: Rect, state: State) -> Widget:
                         rect=cell.inset(16, 12).bottom_part(48),
                         key=f"tyre.{key}",
                         text=pressure(state.signals, state.signals[signal]),
-                        description=f"{name} tyre",
+                        description=tyre,
                         style=Type.TITLE,
                     ),
                 ),
@@ -168,33 +171,33 @@ def doors(state: State) -> tuple[Widget, ...]:
         Card(
             rect=upper,
             children=(
-                heading(head, "Locks and trunk"),
+                heading(head, say("Locks and trunk")),
                 Tile(
                     rect=cells[0],
                     key="door.all",
-                    text="Lock all",
+                    text=say("Lock all"),
                     icon=Icon.LOCK if locked else Icon.UNLOCKED,
                     checked=locked,
                     on_tap=SetAll(
                         tuple((lock, not locked) for lock in LOCKS),
-                        "all doors are unlocked" if locked else "all doors are locked",
+                        say("all doors are unlocked") if locked else say("all doors are locked"),
                     ),
                 ),
                 *(
                     grouped(
                         switch(cell, f"door.{key}", name, icon, signal, signals, state.vehicle.held(signal)),
-                        "Doors" if signal is CABIN.TRUNK else "Locks",
+                        say("Doors") if signal is CABIN.TRUNK else say("Locks"),
                     )
                     for cell, (key, name, icon, signal) in zip(
                         cells[1:],
                         (
-                            ("driver", "Driver", Icon.DOOR, CABIN.DRIVER_LOCK),
-                            ("passenger", "Passenger", Icon.DOOR, CABIN.PASSENGER_LOCK),
-                            ("rear_left", "Rear left", Icon.DOOR, CABIN.REAR_LEFT_LOCK),
-                            ("rear_right", "Rear right", Icon.DOOR, CABIN.REAR_RIGHT_LOCK),
-                            ("child_left", "Left child lock", Icon.CHILD, CABIN.LEFT_CHILD_LOCK),
-                            ("child_right", "Right child lock", Icon.CHILD, CABIN.RIGHT_CHILD_LOCK),
-                            ("trunk", "Trunk", Icon.TRUNK, CABIN.TRUNK),
+                            ("driver", say("Driver"), Icon.DOOR, CABIN.DRIVER_LOCK),
+                            ("passenger", say("Passenger"), Icon.DOOR, CABIN.PASSENGER_LOCK),
+                            ("rear_left", say("Rear left"), Icon.DOOR, CABIN.REAR_LEFT_LOCK),
+                            ("rear_right", say("Rear right"), Icon.DOOR, CABIN.REAR_RIGHT_LOCK),
+                            ("child_left", say("Left child lock"), Icon.CHILD, CABIN.LEFT_CHILD_LOCK),
+                            ("child_right", say("Right child lock"), Icon.CHILD, CABIN.RIGHT_CHILD_LOCK),
+                            ("trunk", say("Trunk"), Icon.TRUNK, CABIN.TRUNK),
                         ),
                         strict=True,
                     )
@@ -210,17 +213,17 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
     head, _, body, _, acts = column(rect, 28, 4, REST, 8, 56)
     cells = [cell for line in body.rows(2, 4) for cell in line.columns(3, 24)]
     panes = (
-        ("driver", "Driver", CABIN.DRIVER_WINDOW),
-        ("passenger", "Passenger", CABIN.PASSENGER_WINDOW),
-        ("sunroof", "Sunroof", CABIN.SUNROOF),
-        ("rear_left", "Rear left", CABIN.REAR_LEFT_WINDOW),
-        ("rear_right", "Rear right", CABIN.REAR_RIGHT_WINDOW),
-        ("shade", "Shade closed", CABIN.SUNROOF_SHADE),
+        ("driver", say("Driver"), CABIN.DRIVER_WINDOW),
+        ("passenger", say("Passenger"), CABIN.PASSENGER_WINDOW),
+        ("sunroof", say("Sunroof"), CABIN.SUNROOF),
+        ("rear_left", say("Rear left"), CABIN.REAR_LEFT_WINDOW),
+        ("rear_right", say("Rear right"), CABIN.REAR_RIGHT_WINDOW),
+        ("shade", say("Shade closed"), CABIN.SUNROOF_SHADE),
     )
     closed = all(signals[window] == 0 for window in WINDOWS)
     buttons = acts.columns(3, 24)
     return (
-        heading(head, "Windows and roof"),
+        heading(head, say("Windows and roof")),
         *(
             slider(cell, f"window.{key}", name, Icon.WINDOW, signal, signals)
             for cell, (key, name, signal) in zip(cells, panes, strict=True)
@@ -228,20 +231,22 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=buttons[0],
             key="window.close_all",
-            text="Close all windows",
+            text=say("Close all windows"),
             icon=Icon.WINDOW,
-            on_tap=SetAll(tuple((window, 0.0) for window in WINDOWS), "all windows are closed"),
-            disabled="All windows are closed" if closed else "",
+            on_tap=SetAll(tuple((window, 0.0) for window in WINDOWS), say("all windows are closed")),
+            disabled=say("All windows are closed") if closed else "",
         ),
         Button(
             rect=buttons[1],
             key="window.vent",
-            text="Open a little",
+            text=say("Open a little"),
             icon=Icon.WINDOW,
-            on_tap=SetAll(tuple((window, 20.0) for window in WINDOWS), "all windows are open a little"),
-            disabled="They are already open a little" if all(signals[window] == 20 for window in WINDOWS) else "",
+            on_tap=SetAll(tuple((window, 20.0) for window in WINDOWS), say("all windows are open a little")),
+            disabled=say("They are already open a little")
+            if all(signals[window] == 20 for window in WINDOWS)
+            else "",
         ),
-        switch(buttons[2], "window.lock", "Window lock", Icon.CHILD, CABIN.WINDOW_LOCK, signals),
+        switch(buttons[2], "window.lock", say("Window lock"), Icon.CHILD, CABIN.WINDOW_LOCK, signals),
     )
 
 
@@ -249,16 +254,16 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 _SEATS: dict[str, tuple[tuple[str, str, Signal[float], str, StepWords], ...]] = {
     "driver": (
-        ("position", "Position", SEAT.DRIVER_POSITION, "mm", forward_back),
-        ("height", "Height", SEAT.DRIVER_HEIGHT, "mm", lower_higher),
-        ("recline", "Backrest", SEAT.DRIVER_RECLINE, "°", upright_back),
-        ("lumbar", "Lumbar", SEAT.DRIVER_LUMBAR, "%", lower_higher),
+        ("position", say("Position"), SEAT.DRIVER_POSITION, "mm", forward_back),
+        ("height", say("Height"), SEAT.DRIVER_HEIGHT, "mm", lower_higher),
+        ("recline", say("Backrest"), SEAT.DRIVER_RECLINE, "°", upright_back),
+        ("lumbar", say("Lumbar"), SEAT.DRIVER_LUMBAR, "%", lower_higher),
     ),
     "passenger": (
-        ("position", "Position", SEAT.PASSENGER_POSITION, "mm", forward_back),
-        ("height", "Height", SEAT.PASSENGER_HEIGHT, "mm", lower_higher),
-        ("recline", "Backrest", SEAT.PASSENGER_RECLINE, "°", upright_back),
-        ("lumbar", "Lumbar", SEAT.PASSENGER_LUMBAR, "%", lower_higher),
+        ("position", say("Position"), SEAT.PASSENGER_POSITION, "mm", forward_back),
+        ("height", say("Height"), SEAT.PASSENGER_HEIGHT, "mm", lower_higher),
+        ("recline", say("Backrest"), SEAT.PASSENGER_RECLINE, "°", upright_back),
+        ("lumbar", say("Lumbar"), SEAT.PASSENGER_LUMBAR, "%", lower_higher),
     ),
 }
 
@@ -282,7 +287,7 @@ def seats(state: State) -> tuple[Widget, ...]:
                     "seat.who",
                     [
                         (key, text, Icon.SEAT, who == key, Pick("seats", key))
-                        for key, text in (("driver", "Driver"), ("passenger", "Passenger"))
+                        for key, text in (("driver", say("Driver")), ("passenger", say("Passenger")))
                     ],
                 ),
                 *(
@@ -290,7 +295,9 @@ def seats(state: State) -> tuple[Widget, ...]:
                     for line, (key, name, signal, unit, ways) in zip(lines, _SEATS[who], strict=False)
                     for part in _adjust(line, f"seat.{who}.{key}", name, signal, unit, ways, state)
                 ),
-                levels(lines[4], f"seat.{who}.massage", "Massage", Icon.MASSAGE, massage, signals, MASSAGE_LEVELS),
+                levels(
+                    lines[4], f"seat.{who}.massage", say("Massage"), Icon.MASSAGE, massage, signals, MASSAGE_LEVELS
+                ),
             ),
         ),
         _memory(right, state),
@@ -307,7 +314,7 @@ def _adjust(
         *stepper(
             rect.right_part(rect.width - 160),
             key,
-            f"Seats: {name}",
+            say("Seats: {name}", name=name),
             signal,
             state.signals,
             shown,
@@ -323,18 +330,18 @@ def _memory(rect: Rect, state: State) -> Widget:
     lines = inner.below(40).rows(3, 14)
     held = state.vehicle.held(SEAT.DRIVER_POSITION)
     now = tuple(state.signals[signal] for signal in REMEMBERED)
-    children: list[Widget] = [heading(inner.top(30), "Driver's memory")]
+    children: list[Widget] = [heading(inner.top(30), say("Driver's memory"))]
     for slot, line in enumerate(lines):
         recall: Message = SetAll(
             tuple(zip(REMEMBERED, state.desk.memory[slot], strict=True)),
-            f"seat and mirrors are set as in {slot + 1}",
+            say("seat and mirrors are set as in {position}", position=slot + 1),
         )
         same = state.desk.memory[slot] == now
         children += [
             Choice(
                 rect=line.left(line.width - 84),
                 key=f"seat.memory.{slot + 1}",
-                text=f"Recall {slot + 1}",
+                text=say("Recall {position}", position=slot + 1),
                 icon=Icon.SEAT,
                 selected=same,
                 look="boxed",
@@ -344,10 +351,14 @@ def _memory(rect: Rect, state: State) -> Widget:
             Button(
                 rect=line.right_part(72),
                 key=f"seat.store.{slot + 1}",
-                description=f"Store the seat as position {slot + 1}",
+                description=say("Store the seat as position {position}", position=slot + 1),
                 icon=Icon.SAVE,
-                on_tap=Put("desk", state.desk.with_memory(slot, state.signals), f"Position {slot + 1} is stored"),
-                disabled="The seat is already in this position" if same else "",
+                on_tap=Put(
+                    "desk",
+                    state.desk.with_memory(slot, state.signals),
+                    say("Position {position} is stored", position=slot + 1),
+                ),
+                disabled=say("The seat is already in this position") if same else "",
             ),
         ]
     return Card(rect=rect, children=tuple(children))
@@ -365,18 +376,20 @@ def mirrors(state: State) -> tuple[Widget, ...]:
     cameras = tuple(
         CameraView(
             rect=rect,
-            key=f"camera.{name.lower()}",
-            description=f"{name} camera",
-            scene=scene(driving, night=night, beside=name == "Door", left_hand=state.roads.network.left_hand),
+            key=f"camera.{key}",
+            description=name,
+            scene=scene(driving, night=night, beside=key == "door", left_hand=state.roads.network.left_hand),
         )
-        for rect, name in zip(lower.columns(2, GAP), ("Rear", "Door"), strict=True)
+        for rect, (key, name) in zip(
+            lower.columns(2, GAP), (("rear", say("Rear camera")), ("door", say("Door camera"))), strict=True
+        )
     )
     return _page(
         state,
         _mirror(
             left,
             "driver",
-            "Driver's mirror",
+            say("Driver's mirror"),
             (MIRROR.DRIVER_PAN, MIRROR.DRIVER_TILT),
             (MIRROR.DRIVER_FOLDED, MIRROR.DRIVER_HEATING),
             state,
@@ -384,13 +397,19 @@ def mirrors(state: State) -> tuple[Widget, ...]:
         _mirror(
             right,
             "passenger",
-            "Passenger's mirror",
+            say("Passenger's mirror"),
             (MIRROR.PASSENGER_PAN, MIRROR.PASSENGER_TILT),
             (MIRROR.PASSENGER_FOLDED, MIRROR.PASSENGER_HEATING),
             state,
         ),
         *cameras,
     )
+
+
+_ANGLES = {
+    "driver": (say("Driver's mirror sideways"), say("Driver's mirror up, down")),
+    "passenger": (say("Passenger's mirror sideways"), say("Passenger's mirror up, down")),
+}
 
 
 def _mirror(
@@ -406,16 +425,17 @@ def _mirror(
     pan, tilt, last = inner.below(30).rows(3, 8)
     fold, heat = last.columns(2, 10)
     children: list[Widget] = [heading(inner.top(28), name)]
-    for line, key, text, signal, ways in (
-        (pan, "pan", "Sideways", angles[0], right_left),
-        (tilt, "tilt", "Up, down", angles[1], lower_higher),
+    sideways, upwards = _ANGLES[who]
+    for line, key, text, told, signal, ways in (
+        (pan, "pan", say("Sideways"), sideways, angles[0], right_left),
+        (tilt, "tilt", say("Up, down"), upwards, angles[1], lower_higher),
     ):
         children += [
             Label(rect=line.left(110), text=text, style=Type.LABEL, tone="muted"),
             *stepper(
                 line.right_part(line.width - 116),
                 f"mirror.{who}.{key}",
-                f"{name} {text.lower()}",
+                told,
                 signal,
                 signals,
                 f"{signals[signal]:+.0f}" if signals[signal] else "0",
@@ -428,7 +448,7 @@ def _mirror(
             switch(
                 fold,
                 f"mirror.{who}.fold",
-                "Fold",
+                say("Fold"),
                 Icon.MIRROR,
                 switches[0],
                 signals,
@@ -436,7 +456,7 @@ def _mirror(
             ),
             name,
         ),
-        grouped(switch(heat, f"mirror.{who}.heat", "Heat", Icon.HEAT, switches[1], signals), name),
+        grouped(switch(heat, f"mirror.{who}.heat", say("Heat"), Icon.HEAT, switches[1], signals), name),
     ]
     return Card(rect=rect, children=tuple(children))
 
@@ -457,12 +477,12 @@ def _inside(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            heading(head, "Interior lights"),
-            switch(tiles[0], "light.dome", "Dome light", Icon.DOME_LIGHT, CABIN.DOME_LIGHT, signals),
+            heading(head, say("Interior lights")),
+            switch(tiles[0], "light.dome", say("Dome light"), Icon.DOME_LIGHT, CABIN.DOME_LIGHT, signals),
             switch(
                 tiles[1],
                 "light.driver_reading",
-                "Driver's reading light",
+                say("Driver's reading light"),
                 Icon.READING_LIGHT,
                 CABIN.DRIVER_READING_LIGHT,
                 signals,
@@ -470,13 +490,13 @@ def _inside(rect: Rect, state: State) -> Widget:
             switch(
                 tiles[2],
                 "light.passenger_reading",
-                "Passenger's reading light",
+                say("Passenger's reading light"),
                 Icon.READING_LIGHT,
                 CABIN.PASSENGER_READING_LIGHT,
                 signals,
             ),
-            slider(glow, "light.ambient", "Ambient light", Icon.PALETTE, CABIN.AMBIENT_LIGHT, signals),
-            heading(name, "Colour"),
+            slider(glow, "light.ambient", say("Ambient light"), Icon.PALETTE, CABIN.AMBIENT_LIGHT, signals),
+            heading(name, say("Colour")),
             choices(
                 hues,
                 "light.colour",

@@ -11,23 +11,24 @@ from automotive_cosim.cockpit.signals import HMI, HVAC, SEAT
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
+from automotive_cosim.contracts.text import say
 
 PLAN_WIDTH = 736
 LINE = 32
 SEATS = {
-    Seat.DRIVER: "Driver",
-    Seat.PASSENGER: "Passenger",
-    Seat.REAR_LEFT: "Rear left",
-    Seat.REAR_MIDDLE: "Rear middle",
-    Seat.REAR_RIGHT: "Rear right",
+    Seat.DRIVER: say("Driver"),
+    Seat.PASSENGER: say("Passenger"),
+    Seat.REAR_LEFT: say("Rear left"),
+    Seat.REAR_MIDDLE: say("Rear middle"),
+    Seat.REAR_RIGHT: say("Rear right"),
 }
 KINDS = {
-    Kind.ADULT: ("Adult", Icon.ACCOUNT),
-    Kind.ELDERLY: ("Elderly person", Icon.ELDERLY),
-    Kind.CHILD: ("Child", Icon.CHILD_STANDING),
-    Kind.BABY: ("Baby", Icon.CHILD),
-    Kind.PET: ("Pet", Icon.PET),
-    Kind.OBJECT: ("Object", Icon.OBJECT),
+    Kind.ADULT: (say("Adult"), Icon.ACCOUNT),
+    Kind.ELDERLY: (say("Elderly person"), Icon.ELDERLY),
+    Kind.CHILD: (say("Child"), Icon.CHILD_STANDING),
+    Kind.BABY: (say("Baby"), Icon.CHILD),
+    Kind.PET: (say("Pet"), Icon.PET),
+    Kind.OBJECT: (say("Object"), Icon.OBJECT),
 }
 AHEAD_MIN = (10, int(MINUTES), 30)
 """Minutes after which the forecast is shown."""
@@ -47,7 +48,7 @@ def _plan(rect: Rect, state: State) -> Widget:
     cells = (*front.columns(2, 12), *rear.columns(3, 12))
     aboard = {one.seat: one for one in seated(state.signals)}
     tiles = (_seat(cell, seat, aboard.get(seat)) for cell, seat in zip(cells, SEATS, strict=True))
-    return Card(rect=rect, children=(heading(head, "Who is aboard"), *tiles))
+    return Card(rect=rect, children=(heading(head, say("Who is aboard")), *tiles))
 
 
 def _seat(rect: Rect, seat: Seat, one: Occupant | None) -> Widget:
@@ -56,13 +57,13 @@ def _seat(rect: Rect, seat: Seat, one: Occupant | None) -> Widget:
     key = f"cabin.{seat}"
     name = heading(title, SEATS[seat])
     if one is None:
-        empty = Label(rect=what.top(40), key=key, text="Empty", description=SEATS[seat], tone="muted")
+        empty = Label(rect=what.top(40), key=key, text=say("Empty"), description=SEATS[seat], tone="muted")
         return Card(rect=rect, look="raised", children=(name, empty))
     kind, icon = KINDS[one.kind]
     told = [(f"{key}.weight", f"{one.weight_kg:g} kg")]
     if one.kind is not Kind.OBJECT:
-        told.append((f"{key}.awake", "Asleep" if one.asleep else "Awake"))
-    told.append((f"{key}.belt", "Belt closed" if one.belted else "Belt open"))
+        told.append((f"{key}.awake", say("Asleep") if one.asleep else say("Awake")))
+    told.append((f"{key}.belt", say("Belt closed") if one.belted else say("Belt open")))
     return Card(
         rect=rect,
         look="raised",
@@ -83,27 +84,31 @@ def _forecast(rect: Rect, state: State) -> Widget:
     head, _, table, _, keep = column(rect.inset(20, 16), 30, 10, 160, REST, 60)
     lines = table.rows(4, 0)
     children: list[Widget] = [
-        heading(head, "Cabin once you have left"),
+        heading(head, say("Cabin once you have left")),
         *(
             Label(rect=cell, text=text, style=Type.LABEL, tone="muted", align="right")
-            for cell, text in zip(_columns(lines[0])[1:], ("Climate off", "Climate on"), strict=True)
+            for cell, text in zip(_columns(lines[0])[1:], (say("Climate off"), say("Climate on")), strict=True)
         ),
     ]
     for line, minutes in zip(lines[1:], AHEAD_MIN, strict=True):
         name, *values = _columns(line)
-        children.append(Label(rect=name, text=f"In {minutes} min", style=Type.LABEL, tone="muted"))
+        children.append(
+            Label(rect=name, text=say("In {minutes} min", minutes=minutes), style=Type.LABEL, tone="muted")
+        )
         for cell, climate in zip(values, (False, True), strict=True):
             children.append(
                 Label(
                     rect=cell,
                     key=f"cabin.forecast.{'on' if climate else 'off'}.{minutes}",
                     text=temperature(state.signals, cabin_c(state.vehicle, minutes, climate=climate), 0),
-                    description=f"Climate {'on' if climate else 'off'}, in {minutes} min",
+                    description=say("Climate on, in {minutes} min", minutes=minutes)
+                    if climate
+                    else say("Climate off, in {minutes} min", minutes=minutes),
                     style=Type.STRONG,
                     align="right",
                 )
             )
-    kept = switch(keep, "cabin.keep_climate", "Keep climate on", Icon.CLIMATE, HVAC.KEPT, state.signals)
+    kept = switch(keep, "cabin.keep_climate", say("Keep climate on"), Icon.CLIMATE, HVAC.KEPT, state.signals)
     return Card(rect=rect, children=(*children, kept))
 
 
@@ -122,17 +127,22 @@ def _for_them(rect: Rect, state: State) -> Widget:
         rect=rect,
         children=(
             switch(
-                reminder, "cabin.belt_reminder", "Belt chime", Icon.SEAT_BELT, SEAT.BELT_REMINDER, state.signals
+                reminder,
+                "cabin.belt_reminder",
+                say("Belt chime"),
+                Icon.SEAT_BELT,
+                SEAT.BELT_REMINDER,
+                state.signals,
             ),
             switch(
                 airbag,
                 "cabin.passenger_airbag",
-                "Passenger airbag",
+                say("Passenger airbag"),
                 Icon.AIRBAG,
                 SEAT.PASSENGER_AIRBAG,
                 signals,
                 state.vehicle.held(SEAT.PASSENGER_AIRBAG),
             ),
-            slider(lower, "cabin.rear_screen", "Rear screen", Icon.SCREEN, HMI.REAR_SCREEN, signals),
+            slider(lower, "cabin.rear_screen", say("Rear screen"), Icon.SCREEN, HMI.REAR_SCREEN, signals),
         ),
     )

@@ -25,10 +25,13 @@ from automotive_cosim.cockpit.signals import GLASS, HVAC, SEAT, Signal
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Label, Tile, Widget
+from automotive_cosim.contracts.text import Text, say
 
-SEAT_LEVELS = ((0.0, "Off"), (50.0, "Low"), (100.0, "High"))
-AIRING_LEVELS = ((0.0, "Off"), (-50.0, "Low"), (-100.0, "High"))
-WHEEL_LEVELS = ((0.0, "Off"), (100.0, "On"))
+SEAT_LEVELS = ((0.0, say("Off")), (50.0, say("Low")), (100.0, say("High")))
+AIRING_LEVELS = ((0.0, say("Off")), (-50.0, say("Low")), (-100.0, say("High")))
+_SET = {"driver": say("Driver's temperature"), "passenger": say("Passenger's temperature")}
+"""Names of what is set, by the seat."""
+WHEEL_LEVELS = ((0.0, say("Off")), (100.0, say("On")))
 
 
 def climate(state: State) -> tuple[Widget, ...]:
@@ -38,8 +41,8 @@ def climate(state: State) -> tuple[Widget, ...]:
         driver, passenger = passenger, driver
     air, _, switches, _, glass = column(middle, 240, GAP, 188, GAP, REST)
     return (
-        _zone(driver, "driver", "Driver", HVAC.DRIVER_TEMPERATURE, SEAT.DRIVER_HEATING, state),
-        _zone(passenger, "passenger", "Passenger", HVAC.PASSENGER_TEMPERATURE, SEAT.PASSENGER_HEATING, state),
+        _zone(driver, "driver", say("Driver"), HVAC.DRIVER_TEMPERATURE, SEAT.DRIVER_HEATING, state),
+        _zone(passenger, "passenger", say("Passenger"), HVAC.PASSENGER_TEMPERATURE, SEAT.PASSENGER_HEATING, state),
         _air(air, state),
         *_switches(switches, state),
         _glass(glass, state),
@@ -64,14 +67,14 @@ def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[f
         levels(
             tiles[2],
             "hvac.steering_wheel_heating",
-            "Wheel",
+            say("Wheel"),
             Icon.STEERING,
             SEAT.STEERING_WHEEL_HEATING,
             signals,
             WHEEL_LEVELS,
         )
         if who == "driver"
-        else switch(tiles[2], "hvac.sync", "Sync", Icon.SYNC, HVAC.SYNC, signals)
+        else switch(tiles[2], "hvac.sync", say("Sync"), Icon.SYNC, HVAC.SYNC, signals)
     )
     return Card(
         rect=rect,
@@ -81,20 +84,32 @@ def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[f
                 rect=shown,
                 key=f"hvac.{who}_temperature",
                 text=temperature(signals, signals[warmth]),
-                description=f"{name}'s temperature",
+                description=_SET[who],
                 style=Type.DISPLAY,
                 align="centre",
             ),
-            *_plus_minus(steps, who, name, warmth, state),
+            *_plus_minus(steps, who, warmth, state),
             grouped(
                 levels(
-                    tiles[0], f"hvac.{who}_seat_heating", "Seat heat", Icon.SEAT_HEATER, seat, signals, SEAT_LEVELS
+                    tiles[0],
+                    f"hvac.{who}_seat_heating",
+                    say("Seat heat"),
+                    Icon.SEAT_HEATER,
+                    seat,
+                    signals,
+                    SEAT_LEVELS,
                 ),
                 name,
             ),
             grouped(
                 levels(
-                    tiles[1], f"hvac.{who}_seat_airing", "Seat air", Icon.SEAT_COOLER, seat, signals, AIRING_LEVELS
+                    tiles[1],
+                    f"hvac.{who}_seat_airing",
+                    say("Seat air"),
+                    Icon.SEAT_COOLER,
+                    seat,
+                    signals,
+                    AIRING_LEVELS,
                 ),
                 name,
             ),
@@ -103,8 +118,8 @@ def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[f
     )
 
 
-def _plus_minus(rect: Rect, who: str, name: str, warmth: Signal[float], state: State) -> tuple[Widget, ...]:
-    less, _, more = stepper(rect, f"hvac.{who}_temperature", f"{name}'s temperature", warmth, state.signals, "")
+def _plus_minus(rect: Rect, who: str, warmth: Signal[float], state: State) -> tuple[Widget, ...]:
+    less, _, more = stepper(rect, f"hvac.{who}_temperature", _SET[who], warmth, state.signals, "")
     return less, more
 
 
@@ -114,22 +129,22 @@ def _air(rect: Rect, state: State) -> Widget:
     fan, _, fastest = row(blower, REST, 20, 88)
     flow = signals[HVAC.AIR_DISTRIBUTION]
     ways = (
-        ("up", "Windshield", Icon.AIR_UP, "UP"),
-        ("middle", "Face", Icon.AIR_MIDDLE, "MIDDLE"),
-        ("down", "Feet", Icon.AIR_DOWN, "DOWN"),
+        ("up", say("Windshield"), Icon.AIR_UP, "UP"),
+        ("middle", say("Face"), Icon.AIR_MIDDLE, "MIDDLE"),
+        ("down", say("Feet"), Icon.AIR_DOWN, "DOWN"),
     )
     return Card(
         rect=rect,
         children=(
-            slider(fan, "hvac.fan", "Fan speed", Icon.CLIMATE, HVAC.FAN_SPEED, signals),
+            slider(fan, "hvac.fan", say("Fan speed"), Icon.CLIMATE, HVAC.FAN_SPEED, signals),
             Button(
                 rect=fastest.middle(88, 64),
                 key="hvac.fan.max",
-                text="Max",
-                description="Fan at full speed",
+                text=say("Max"),
+                description=say("Fan at full speed"),
                 on_tap=Set(HVAC.FAN_SPEED, HVAC.FAN_SPEED.high),
             ),
-            heading(name, "Air to"),
+            heading(name, say("Air to")),
             choices(
                 ways_to,
                 "hvac.air",
@@ -147,14 +162,14 @@ def _switches(rect: Rect, state: State) -> tuple[Widget, ...]:
     upper, lower = rect.rows(2, 12)
     cells = (*upper.columns(4, 12), *lower.columns(4, 12))
     known = (
-        ("hvac.air_conditioning", "A/C", Icon.SNOWFLAKE, HVAC.AIR_CONDITIONING),
-        ("hvac.auto", "Auto", Icon.AUTO, HVAC.AUTO),
-        ("hvac.recirculation", "Recirculate", Icon.RECIRCULATION, HVAC.RECIRCULATION),
-        ("hvac.max_cooling", "Max A/C", Icon.SNOWFLAKE, HVAC.MAX_COOLING),
-        ("hvac.front_defroster", "Front defrost", Icon.DEFROST_FRONT, HVAC.FRONT_DEFROSTER),
-        ("hvac.rear_defroster", "Rear defrost", Icon.DEFROST_REAR, HVAC.REAR_DEFROSTER),
-        ("hvac.max_defrost", "Max defrost", Icon.DEFROST_FRONT, HVAC.MAX_DEFROST),
-        ("hvac.purifier", "Purifier", Icon.PURIFIER, HVAC.PURIFIER),
+        ("hvac.air_conditioning", say("A/C"), Icon.SNOWFLAKE, HVAC.AIR_CONDITIONING),
+        ("hvac.auto", say("Auto"), Icon.AUTO, HVAC.AUTO),
+        ("hvac.recirculation", say("Recirculate"), Icon.RECIRCULATION, HVAC.RECIRCULATION),
+        ("hvac.max_cooling", say("Max A/C"), Icon.SNOWFLAKE, HVAC.MAX_COOLING),
+        ("hvac.front_defroster", say("Front defrost"), Icon.DEFROST_FRONT, HVAC.FRONT_DEFROSTER),
+        ("hvac.rear_defroster", say("Rear defrost"), Icon.DEFROST_REAR, HVAC.REAR_DEFROSTER),
+        ("hvac.max_defrost", say("Max defrost"), Icon.DEFROST_FRONT, HVAC.MAX_DEFROST),
+        ("hvac.purifier", say("Purifier"), Icon.PURIFIER, HVAC.PURIFIER),
     )
     return tuple(
         switch(cell, key, name, icon, signal, signals)
@@ -168,13 +183,13 @@ def _cabin(rect: Rect, state: State) -> tuple[Widget, ...]:
         Label(
             rect=rect.top(32),
             key="hvac.cabin_temperature",
-            text=f"Cabin {temperature(signals, signals[HVAC.CABIN_TEMPERATURE])}",
+            text=say("Cabin {temperature}", temperature=temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
             style=Type.LABEL,
         ),
         Label(
             rect=rect.bottom_part(30),
             key="hvac.cabin_humidity",
-            text=f"Humidity {signals[HVAC.CABIN_HUMIDITY]:.0f} %",
+            text=say("Humidity {humidity} %", humidity=f"{signals[HVAC.CABIN_HUMIDITY]:.0f}"),
             style=Type.CAPTION,
             tone="muted",
         ),
@@ -186,8 +201,8 @@ def _glass(rect: Rect, state: State) -> Widget:
     signals = state.signals
     glazing, _, cabin, _, beside = row(rect.inset(20, 10), 344, 20, REST, 12, 112)
     panes = (
-        ("windshield", "Windshield", signals[GLASS.WINDSHIELD_FOG], signals[GLASS.WINDSHIELD_FILM]),
-        ("rear_window", "Rear window", signals[GLASS.REAR_FOG], signals[GLASS.REAR_FILM]),
+        ("windshield", say("Windshield"), signals[GLASS.WINDSHIELD_FOG], signals[GLASS.WINDSHIELD_FILM]),
+        ("rear_window", say("Rear window"), signals[GLASS.REAR_FOG], signals[GLASS.REAR_FILM]),
     )
     children: list[Widget] = []
     for half, (key, name, fog, film) in zip(glazing.columns(2, 20), panes, strict=True):
@@ -197,7 +212,7 @@ def _glass(rect: Rect, state: State) -> Widget:
             Label(
                 rect=words,
                 key=f"glass.{key}",
-                text=f"{name} {glass_words(fog, film)}",
+                text=say("{pane} {state}", pane=name, state=glass_words(fog, film)[1]),
                 style=Type.LABEL,
                 lines=2,
             ),
@@ -210,21 +225,22 @@ def _glass(rect: Rect, state: State) -> Widget:
     more = Button(
         rect=beside,
         key="hvac.comfort",
-        text="More",
-        description="Rear seats and schedule",
+        text=say("More"),
+        description=say("Rear seats and schedule"),
         icon=Icon.CLOCK,
         on_tap=Show("comfort"),
     )
     return Card(rect=rect, children=(*children, *_cabin(cabin, state), more))
 
 
-def glass_words(fog: float, film: float) -> str:
-    """How clear a pane is: fog inside, film outside, each 0 to 1."""
+def glass_words(fog: float, film: float) -> tuple[Text, Text]:
+    """How clear a pane is, by itself and after its name: fog inside, film outside, each 0 to 1."""
     if fog < 0.05 and film < 0.05:
-        return "clear"
+        return say("Clear"), say("clear")
+    share = f"{max(fog, film) * 100:.0f}"
     if fog >= film:
-        return f"fogged inside {fog * 100:.0f} %"
-    return f"wet outside {film * 100:.0f} %"
+        return say("Fogged inside {share} %", share=share), say("fogged inside {share} %", share=share)
+    return say("Wet outside {share} %", share=share), say("wet outside {share} %", share=share)
 
 
 def comfort(state: State) -> tuple[Widget, ...]:
@@ -238,20 +254,20 @@ def _rear(rect: Rect, state: State) -> Widget:
     head, _, seats, _, air, _, facts = column(rect.inset(28, 24), 40, 20, 120, 40, 40, 16, 212)
     tiles = seats.columns(2, 16)
     known = (
-        ("temperature", "Temperature", temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
-        ("humidity", "Humidity", f"{signals[HVAC.CABIN_HUMIDITY]:.0f} %"),
-        ("air", "Air comes from", "Inside" if signals[HVAC.RECIRCULATION] else "Outside"),
-        ("purifier", "Purifier", "On" if signals[HVAC.PURIFIER] else "Off"),
-        ("fine_dust", "Fine dust", f"{signals[HVAC.CABIN_FINE_DUST]:.0f} µg/m³"),
+        ("temperature", say("Temperature"), temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
+        ("humidity", say("Humidity"), f"{signals[HVAC.CABIN_HUMIDITY]:.0f} %"),
+        ("air", say("Air comes from"), say("Inside") if signals[HVAC.RECIRCULATION] else say("Outside")),
+        ("purifier", say("Purifier"), say("On") if signals[HVAC.PURIFIER] else say("Off")),
+        ("fine_dust", say("Fine dust"), f"{signals[HVAC.CABIN_FINE_DUST]:.0f} µg/m³"),
     )
     return Card(
         rect=rect,
         children=(
-            title(head, Icon.SEAT_HEATER, "Rear seats"),
+            title(head, Icon.SEAT_HEATER, say("Rear seats")),
             levels(
                 tiles[0],
                 "hvac.rear_left_seat_heating",
-                "Left",
+                say("Left"),
                 Icon.SEAT_HEATER,
                 SEAT.REAR_LEFT_HEATING,
                 signals,
@@ -260,13 +276,13 @@ def _rear(rect: Rect, state: State) -> Widget:
             levels(
                 tiles[1],
                 "hvac.rear_right_seat_heating",
-                "Right",
+                say("Right"),
                 Icon.SEAT_HEATER,
                 SEAT.REAR_RIGHT_HEATING,
                 signals,
                 SEAT_LEVELS,
             ),
-            title(air, Icon.AIR_QUALITY, "Cabin air"),
+            title(air, Icon.AIR_QUALITY, say("Cabin air")),
             *(
                 widget
                 for line, (key, name, value) in zip(facts.rows(5, 8), known, strict=True)
@@ -283,29 +299,31 @@ def _schedule(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            title(head, Icon.CLOCK, "Schedule"),
+            title(head, Icon.CLOCK, say("Schedule")),
             Tile(
                 rect=prepare,
                 key="climate.schedule",
-                text="Prepare the cabin",
+                text=say("Prepare the cabin"),
                 icon=Icon.CLIMATE,
                 checked=on,
                 on_tap=Put(
                     "desk",
                     replace(state.desk, climate_at=replace(timer, on=not on)),
-                    "The schedule is off" if on else f"The cabin is prepared for {timer.shown}",
+                    say("The schedule is off") if on else say("The cabin is prepared for {time}", time=timer.shown),
                 ),
             ),
             *time_setter(
                 time,
                 "climate.schedule",
                 timer,
-                lambda moved: Put("desk", replace(state.desk, climate_at=moved), f"The time is {moved.shown}"),
+                lambda moved: Put(
+                    "desk", replace(state.desk, climate_at=moved), say("The time is {time}", time=moved.shown)
+                ),
             ),
             Label(
                 rect=about,
                 key="climate.schedule.about",
-                text="The climate control starts half an hour before, and the cabin is ready at this time.",
+                text=say("The climate control starts half an hour before, and the cabin is ready at this time."),
                 style=Type.CAPTION,
                 tone="muted",
                 lines=3,

@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.screens.parts import content, note, title
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Widget
+from automotive_cosim.contracts.text import joined, say
 
 MOVES_MIN = (
     ("hour_earlier", "-1 h", -60),
@@ -31,7 +32,7 @@ def appointment(state: State) -> tuple[Widget, ...]:
     agenda = state.desk.agenda
     at = _at(state, "appointment", [entry.name for entry in agenda])
     if at is None:
-        return _gone(inner, "appointment", "This appointment is no longer there")
+        return _gone(inner, "appointment", say("This appointment is no longer there"))
     entry = agenda[at]
 
     def put(others: tuple[Appointment, ...], said: str) -> Put:
@@ -41,7 +42,9 @@ def appointment(state: State) -> tuple[Widget, ...]:
         hours, minutes = map(int, entry.at.split(":"))
         then = (60 * hours + minutes + by_min) % 1440
         new = replace(entry, at=f"{then // 60:02d}:{then % 60:02d}")
-        return put((*agenda[:at], new, *agenda[at + 1 :]), f"{entry.title} is at {new.at}")
+        return put(
+            (*agenda[:at], new, *agenda[at + 1 :]), say("{title} is at {time}", title=entry.title, time=new.at)
+        )
 
     cells = times.columns(len(MOVES_MIN), 12)
     back, there, remove = acts.columns(3, 16)
@@ -49,32 +52,32 @@ def appointment(state: State) -> tuple[Widget, ...]:
         Card(
             rect=area,
             children=(
-                title(head, Icon.CALENDAR, f"{entry.at} {entry.title}", "appointment.title"),
+                title(head, Icon.CALENDAR, joined(" ", (entry.at, entry.title)), "appointment.title"),
                 Label(
                     rect=where,
                     key="appointment.place",
                     text=entry.place,
-                    description="Place",
+                    description=say("Place"),
                     style=Type.HEADLINE,
                 ),
                 *(
                     Button(rect=cell, key=f"appointment.{key}", text=text, icon=Icon.CLOCK, on_tap=moved(by_min))
                     for cell, (key, text, by_min) in zip(cells, MOVES_MIN, strict=True)
                 ),
-                Button(rect=back, key="appointment.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+                Button(rect=back, key="appointment.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
                 Button(
                     rect=there,
                     key="appointment.place_there",
-                    text="Show the place",
+                    text=say("Show the place"),
                     icon=Icon.GOAL,
                     on_tap=Show("place", entry.place),
                 ),
                 Button(
                     rect=remove,
                     key="appointment.remove",
-                    text="Remove",
+                    text=say("Remove"),
                     icon=Icon.DELETE,
-                    on_tap=put((*agenda[:at], *agenda[at + 1 :]), f"{entry.title} is removed"),
+                    on_tap=put((*agenda[:at], *agenda[at + 1 :]), say("{name} is removed", name=entry.title)),
                 ),
             ),
         ),
@@ -89,24 +92,24 @@ def memo_note(state: State) -> tuple[Widget, ...]:
     memos = state.desk.memos
     at = _at(state, "note", memos)
     if at is None:
-        return _gone(inner, "note", "This memo is no longer there")
+        return _gone(inner, "note", say("This memo is no longer there"))
     back, _, delete = acts.columns(3, 16)
     return (
         Card(
             rect=area,
             children=(
-                title(head, Icon.MEMO, "Memo"),
+                title(head, Icon.MEMO, say("Memo")),
                 Label(rect=words, key="note.text", text=memos[at], style=Type.HEADLINE, lines=3),
-                Button(rect=back, key="note.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+                Button(rect=back, key="note.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
                 Button(
                     rect=delete,
                     key="note.delete",
-                    text="Delete",
+                    text=say("Delete"),
                     icon=Icon.DELETE,
                     on_tap=Put(
                         "desk",
                         replace(state.desk, memos=(*memos[:at], *memos[at + 1 :])),
-                        f"{memos[at]} is deleted",
+                        say("{memo} is deleted", memo=memos[at]),
                     ),
                 ),
             ),
@@ -119,7 +122,7 @@ def _gone(rect: Rect, screen: str, words: str) -> tuple[Widget, ...]:
     back = rect.bottom_part(72).columns(3, 16)[0]
     return (
         note(rect, f"{screen}.gone", words),
-        Button(rect=back, key=f"{screen}.back", text="Back", icon=Icon.BACK, on_tap=Back()),
+        Button(rect=back, key=f"{screen}.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
     )
 
 

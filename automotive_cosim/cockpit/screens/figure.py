@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 from automotive_cosim.cockpit.layout import REST, column, row
@@ -13,14 +13,15 @@ from automotive_cosim.cockpit.screens.parts import choices, heading
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Widget
+from automotive_cosim.contracts.text import Text, say
 
 
 @dataclass(frozen=True, slots=True)
 class Sentence:
     """What can be said with a figure."""
 
-    text: str
-    """With ``{}`` for the figure."""
+    text: Callable[[str], Text]
+    """The message with its figure."""
     label: str
     start: float
     fine: float
@@ -28,21 +29,33 @@ class Sentence:
     coarse: float
     most: float
 
-    def said(self, value: float) -> str:
+    def said(self, value: float) -> Text:
         """The whole message."""
         if self.label == "Arrival":
-            return self.text.format(f"{int(value) // 60:02d}:{int(value) % 60:02d}")
-        return self.text.format(f"{value:.1f}" if self.fine < 1 else f"{value:.0f}")
+            return self.text(f"{int(value) // 60:02d}:{int(value) % 60:02d}")
+        return self.text(f"{value:.1f}" if self.fine < 1 else f"{value:.0f}")
 
 
 SENTENCES: Mapping[str, Sentence] = {
-    "arrive": Sentence("I'll be there at {}", "Arrival", 12 * 60, 5, 60, 1439),
-    "late": Sentence("I'll be {} minutes late", "Delay", 0, 5, 30, 600),
-    "driven": Sentence("I have driven {} km", "Distance", 0, 1, 10, 990),
-    "used": Sentence("I used {} kWh per 100 km", "Use", 15.0, 0.1, 1, 99),
-    "level": Sentence("The battery has {} %", "Battery", 50, 1, 10, 100),
-    "pressure": Sentence("The tyre has {} psi", "Tyre", 30, 1, 10, 60),
-    "paid": Sentence("I paid {}", "Price", 0, 0.1, 1, 200),
+    "arrive": Sentence(
+        lambda figure: say("I'll be there at {time}", time=figure), say("Arrival"), 12 * 60, 5, 60, 1439
+    ),
+    "late": Sentence(
+        lambda figure: say("I'll be {minutes} minutes late", minutes=figure), say("Delay"), 0, 5, 30, 600
+    ),
+    "driven": Sentence(
+        lambda figure: say("I have driven {distance} km", distance=figure), say("Distance"), 0, 1, 10, 990
+    ),
+    "used": Sentence(
+        lambda figure: say("I used {energy} kWh per 100 km", energy=figure), say("Use"), 15.0, 0.1, 1, 99
+    ),
+    "level": Sentence(
+        lambda figure: say("The battery has {share} %", share=figure), say("Battery"), 50, 1, 10, 100
+    ),
+    "pressure": Sentence(
+        lambda figure: say("The tyre has {pressure} psi", pressure=figure), say("Tyre"), 30, 1, 10, 60
+    ),
+    "paid": Sentence(lambda figure: say("I paid {price}", price=figure), say("Price"), 0, 0.1, 1, 200),
 }
 """By key; the distance is in kilometres whatever the display's unit."""
 
@@ -62,7 +75,7 @@ def figure(state: State) -> tuple[Widget, ...]:
         return put(replace(draft, value=value))
 
     _, page = handset_and_page(state)
-    bar, _, say, _, sentences, _, card, _, sizes_row, _, send = column(
+    bar, _, label, _, sentences, _, card, _, sizes_row, _, send = column(
         page, 64, GAP, 28, 8, 56, 16, 64, 12, 72, 16, 72
     )
     back, _, name = row(bar, 64, 16, REST)
@@ -71,9 +84,9 @@ def figure(state: State) -> tuple[Widget, ...]:
     sizes = (("less", -sentence.coarse), ("down", -sentence.fine), ("up", sentence.fine), ("more", sentence.coarse))
     return (
         handset(state),
-        Button(rect=back, key="figure.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Button(rect=back, key="figure.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()),
         Label(rect=name, key="figure.who", text=who, style=Type.TITLE),
-        heading(say, "Say"),
+        heading(label, say("Say")),
         choices(
             sentences,
             "figure.say",
@@ -95,7 +108,7 @@ def figure(state: State) -> tuple[Widget, ...]:
                     rect=card.inset(20, 8),
                     key="figure.words",
                     text=words,
-                    description="Message",
+                    description=say("Message"),
                     style=Type.TITLE,
                 ),
             ),
@@ -107,7 +120,7 @@ def figure(state: State) -> tuple[Widget, ...]:
         Button(
             rect=send,
             key="figure.send",
-            text="Send",
+            text=say("Send"),
             icon=Icon.REPLY,
             look=Look.ACCENT,
             on_tap=SendReply(who, words),

@@ -31,20 +31,29 @@ from automotive_cosim.cockpit.widgets import (
     Widget,
 )
 from automotive_cosim.contracts import Severity
+from automotive_cosim.contracts.text import counted, say, say_in
 
 DOCK: dict[str, tuple[str, Icon]] = {
-    "home": ("Home", Icon.HOME),
-    "map": ("Map", Icon.MAP),
-    "climate": ("Climate", Icon.CLIMATE),
-    "safety": ("Safety", Icon.SAFETY),
-    "vehicle": ("Vehicle", Icon.VEHICLE),
-    "outside": ("Outside", Icon.OUTSIDE),
-    "media": ("Media", Icon.MEDIA),
-    "phone": ("Phone", Icon.PHONE),
-    "apps": ("Apps", Icon.APPS),
-    "settings": ("Settings", Icon.SETTINGS),
+    "home": (say("Home"), Icon.HOME),
+    "map": (say("Map"), Icon.MAP),
+    "climate": (say("Climate"), Icon.CLIMATE),
+    "safety": (say("Safety"), Icon.SAFETY),
+    "vehicle": (say("Vehicle"), Icon.VEHICLE),
+    "outside": (say("Outside"), Icon.OUTSIDE),
+    "media": (say("Media"), Icon.MEDIA),
+    "phone": (say("Phone"), Icon.PHONE),
+    "apps": (say("Apps"), Icon.APPS),
+    "settings": (say("Settings"), Icon.SETTINGS),
 }
 """The apps in the dock: name on screen and icon."""
+SHORT = {
+    "home": say_in("dock", "Home"),
+    "phone": say_in("dock", "Phone"),
+    "safety": say_in("dock", "Safety"),
+    "settings": say_in("dock", "Settings"),
+    "vehicle": say_in("dock", "Vehicle"),
+}
+"""Names that are others in the dock, where languages have little room."""
 APPS = (*DOCK, *TOOLS, "store", "notifications", "cabin")
 """Everything that opens by its name."""
 PART_OF = {
@@ -140,27 +149,27 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             rect=bar.clock,
             key="status.clock",
             text=state.clock,
-            description="Local time",
+            description=say("Local time"),
             style=Type.TITLE,
         ),
         Label(
             rect=bar.air,
             key="status.outside_temperature",
             text=temperature(signals, signals[OUTSIDE.TEMPERATURE], 0),
-            description="Outside temperature",
+            description=say("Outside temperature"),
             style=Type.LABEL,
             tone="muted",
         ),
         Button(
             rect=bar.bell,
             key="status.notifications",
-            description=f"Notifications: {len(wanting(state)) + len(state.notices)}",
+            description=say("Notifications: {count}", count=len(wanting(state)) + len(state.notices)),
             icon=Icon.BELL_OFF if state.phone.do_not_disturb else Icon.BELL,
             icon_size=24,
             look=Look.PLAIN,
             on_tap=Back() if state.screen == "notifications" else Show("notifications"),
         ),
-        Telltales(rect=bar.lamps, key="status.telltales", description="Telltales", lit=lit(state)),
+        Telltales(rect=bar.lamps, key="status.telltales", description=say("Telltales"), lit=lit(state)),
         *_links(bar.links, state),
         *_motion(bar.motion, state),
     )
@@ -175,7 +184,7 @@ def callouts(state: State) -> tuple[Widget, ...]:
     elif state.notice is not None:
         told = (_pill(bar.notice, state.notice, state),)
     elif state.phone.on_call is not None:
-        words = f"On the phone with {state.phone.on_call.who}"
+        words = say("On the phone with {who}", who=state.phone.on_call.who)
         told = (
             Pill(
                 rect=bar.notice,
@@ -191,7 +200,7 @@ def callouts(state: State) -> tuple[Widget, ...]:
 
 def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
     """The newest notice. A tap leads to its subject, or removes it."""
-    seen = Put("notices", (*state.notices[:-1], replace(notice, seen=True)), "The notification is dismissed")
+    seen = Put("notices", (*state.notices[:-1], replace(notice, seen=True)), say("The notification is dismissed"))
     here = (state.screen, state.picked.get(state.screen, ""))
     return Pill(
         rect=rect,
@@ -213,14 +222,14 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
             rect=name,
             key="call.incoming",
             text=who,
-            description="Incoming call",
+            description=say("Incoming call"),
             style=Type.LABEL,
             lines=2,
         ),
         Button(
             rect=answer,
             key="call.answer",
-            description="Answer the call",
+            description=say("Answer the call"),
             icon=Icon.PHONE,
             look=Look.ACCENT,
             on_tap=TakeCall(),
@@ -228,7 +237,7 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
         Button(
             rect=decline,
             key="call.decline",
-            description="Decline the call",
+            description=say("Decline the call"),
             icon=Icon.HANG_UP,
             look=Look.CRITICAL,
             on_tap=DeclineCall(),
@@ -236,10 +245,10 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
         Button(
             rect=message,
             key="call.reply",
-            description="Answer with a message",
+            description=say("Answer with a message"),
             icon=Icon.MESSAGE,
             on_tap=Show("thread", who),
-            disabled="Choose an answer below"
+            disabled=say("Choose an answer below")
             if (state.screen, state.picked.get("thread")) == ("thread", who)
             else "",
         ),
@@ -251,9 +260,14 @@ def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, 
     outside = state.outside
     online = state.signals[LINK.ONLINE] and outside is not None
     bars = outside.connectivity.signal_bars if outside is not None else 0
-    words = "Offline"
+    words = say("Offline")
     if outside is not None and online:
-        words = f"Wi-Fi {state.wifi}" if state.wifi else f"{outside.connectivity.kind.upper()}, {bars} bars"
+        network = outside.connectivity.kind.upper()
+        words = (
+            say("Wi-Fi {network}", network=state.wifi)
+            if state.wifi
+            else counted("{network}, {n} bar", "{network}, {n} bars", bars, network=network)
+        )
     fix = outside is not None and outside.gps is not None and outside.gps.has_fix
     level = state.signals[ENERGY.LEVEL]
     return (
@@ -268,7 +282,7 @@ def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, 
         Glyph(
             rect=satellites,
             key="status.gps",
-            description="GPS fix" if fix else "No GPS fix",
+            description=say("GPS fix") if fix else say("No GPS fix"),
             icon=Icon.GPS if fix else Icon.GPS_OFF,
             size=24,
             tone="text" if fix else "muted",
@@ -278,7 +292,7 @@ def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, 
             rect=charge,
             key="status.battery",
             text=f"{level:.0f} %",
-            description="Battery",
+            description=say("Battery"),
             style=Type.LABEL,
         ),
     )
@@ -292,7 +306,7 @@ def _motion(boxes: tuple[Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:
             rect=gear,
             key="status.gear",
             text=signals[MOTION.GEAR],
-            description="Gear",
+            description=say("Gear"),
             style=Type.STRONG,
             align="centre",
             plate=True,
@@ -301,7 +315,7 @@ def _motion(boxes: tuple[Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:
             rect=pace,
             key="status.speed",
             text=speed(signals, signals[MOTION.SPEED]),
-            description=f"Speed in {speed_unit(signals)}",
+            description=say("Speed in {unit}", unit=speed_unit(signals)),
             style=Type.HEADLINE,
             align="right",
         ),
@@ -320,7 +334,11 @@ def _limit_sign(rect: Rect, state: State) -> tuple[Widget, ...]:
     if not state.sign_camera or limit is None:
         return ()
     shown = speed(state.signals, limit)
-    return (LimitSign(rect=rect, key="status.limit_sign", text=shown, description=f"Limit sign {shown}"),)
+    return (
+        LimitSign(
+            rect=rect, key="status.limit_sign", text=shown, description=say("Limit sign {limit}", limit=shown)
+        ),
+    )
 
 
 def dock(state: State) -> tuple[Widget, ...]:
@@ -348,7 +366,7 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
         Choice(
             rect=cell,
             key=f"dock.{name}",
-            text=text,
+            text=SHORT.get(name, text),
             icon=icon,
             selected=name == here,
             on_tap=Show(name),
@@ -364,7 +382,7 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
         *stepper(
             right if left_hand else left,
             "dock.driver_temperature",
-            "Driver's temperature",
+            say("Driver's temperature"),
             HVAC.DRIVER_TEMPERATURE,
             signals,
             temperature(signals, driver),
@@ -376,7 +394,7 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
         *stepper(
             left if left_hand else right,
             "dock.passenger_temperature",
-            "Passenger's temperature",
+            say("Passenger's temperature"),
             HVAC.PASSENGER_TEMPERATURE,
             signals,
             temperature(signals, passenger),
@@ -392,7 +410,7 @@ def _quick(rect: Rect, where: str, icon: Icon, signals: Signals) -> Tile:
     return Tile(
         rect=tile.rect,
         key=tile.key,
-        description=f"{where.capitalize()} defroster",
+        description=say("Front defroster") if where == "front" else say("Rear defroster"),
         icon=icon,
         checked=tile.checked,
         on_tap=tile.on_tap,

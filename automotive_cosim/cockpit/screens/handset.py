@@ -14,6 +14,7 @@ from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Tile, Widget
+from automotive_cosim.contracts.text import counted, say, say_in
 
 
 def handset_and_page(state: State) -> tuple[Rect, Rect]:
@@ -38,21 +39,21 @@ def handset(state: State) -> Widget:
             Tile(
                 rect=quiet,
                 key="phone.do_not_disturb",
-                text="Do not disturb",
+                text=say("Do not disturb"),
                 icon=Icon.BELL_OFF,
                 checked=calls.do_not_disturb,
                 on_tap=Put(
                     "phone",
                     replace(calls, do_not_disturb=not calls.do_not_disturb),
-                    "Calls and messages are announced"
+                    say("Calls and messages are announced")
                     if calls.do_not_disturb
-                    else "Calls and messages stay silent",
+                    else say("Calls and messages stay silent"),
                 ),
             ),
             Button(
                 rect=emergency,
                 key="phone.emergency_call",
-                text="Emergency call",
+                text=say("Emergency call"),
                 icon=Icon.PHONE_ALERT,
                 look=Look.CRITICAL,
                 on_tap=Show("emergency"),
@@ -79,16 +80,16 @@ def _linked(picture: Rect, name: Rect, line: Rect, act: Rect, state: State) -> t
         Label(
             rect=name,
             key="phone.device",
-            text=state.desk.device if on else "No phone paired",
+            text=state.desk.device if on else say("No phone paired"),
             style=Type.STRONG,
             align="centre",
         ),
         Label(
             rect=line,
             key="phone.state",
-            text=(f"{count} unread message{'s' if count != 1 else ''}" if count else "No new messages")
+            text=(counted("{n} unread message", "{n} unread messages", count) if count else say("No new messages"))
             if on
-            else "Bluetooth is off",
+            else say("Bluetooth is off"),
             style=Type.LABEL,
             tone="muted",
             align="centre",
@@ -96,7 +97,7 @@ def _linked(picture: Rect, name: Rect, line: Rect, act: Rect, state: State) -> t
         Button(
             rect=act,
             key="phone.devices",
-            text="Devices",
+            text=say("Devices"),
             icon=Icon.BLUETOOTH,
             on_tap=Show("connections"),
         ),
@@ -111,7 +112,7 @@ def _on_call(picture: Rect, name: Rect, line: Rect, acts: Rect, call: OnCall, st
             rect=name,
             key="call.who",
             text=call.who,
-            description="On the phone with",
+            description=say("On the phone with"),
             style=Type.STRONG,
             align="centre",
         ),
@@ -126,19 +127,19 @@ def _on_call(picture: Rect, name: Rect, line: Rect, acts: Rect, call: OnCall, st
         Tile(
             rect=mute,
             key="call.mute",
-            text="Mute",
+            text=say("Mute"),
             icon=Icon.MICROPHONE_OFF,
             checked=call.muted,
             on_tap=Put(
                 "phone",
                 replace(state.phone, on_call=replace(call, muted=not call.muted)),
-                "The microphone is on" if call.muted else "The microphone is off",
+                say("The microphone is on") if call.muted else say("The microphone is off"),
             ),
         ),
         Button(
             rect=end,
             key="call.end",
-            text="End",
+            text=say("End"),
             icon=Icon.HANG_UP,
             icon_size=32,
             look=Look.CRITICAL,
@@ -156,13 +157,13 @@ def _ringing(picture: Rect, name: Rect, line: Rect, acts: Rect, who: str) -> tup
             rect=name,
             key="phone.ringing",
             text=who,
-            description="Is calling",
+            description=say("Is calling"),
             style=Type.STRONG,
             align="centre",
         ),
         Label(
             rect=line,
-            text="Incoming call",
+            text=say("Incoming call"),
             style=Type.LABEL,
             tone="muted",
             align="centre",
@@ -170,7 +171,7 @@ def _ringing(picture: Rect, name: Rect, line: Rect, acts: Rect, who: str) -> tup
         Button(
             rect=answer,
             key="phone.answer",
-            text="Answer",
+            text=say_in("call", "Answer"),
             icon=Icon.PHONE,
             icon_size=32,
             look=Look.ACCENT,
@@ -180,7 +181,7 @@ def _ringing(picture: Rect, name: Rect, line: Rect, acts: Rect, who: str) -> tup
         Button(
             rect=decline,
             key="phone.decline",
-            text="Decline",
+            text=say("Decline"),
             icon=Icon.HANG_UP,
             icon_size=32,
             look=Look.CRITICAL,

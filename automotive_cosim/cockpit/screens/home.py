@@ -20,11 +20,14 @@ from automotive_cosim.cockpit.screens.parts import (
     speed_unit,
     temperature,
 )
+from automotive_cosim.cockpit.screens.safety import KINDS
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, GLASS, HVAC, MEDIA, MOTION
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Cover, Glyph, Label, Look, Telltales, Widget
+from automotive_cosim.contracts import AlertKind
+from automotive_cosim.contracts.text import counted, say
 
 METRES_PER_PIXEL = 1.6
 """Scale of the small map."""
@@ -90,7 +93,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
                         rect=name.moved(0, 4) if turn else words,
                         key="home.street",
                         text=street(state),
-                        description="Current road",
+                        description=say("Current road"),
                         style=Type.STRONG,
                     ),
                     *(
@@ -98,8 +101,8 @@ def _map_card(rect: Rect, state: State) -> Widget:
                             Label(
                                 rect=then,
                                 key="home.turn",
-                                text=f"{turn[0].words} in {distance(state.signals, turn[1])}",
-                                description="Next turn",
+                                text=turn[0].ahead(distance(state.signals, turn[1])),
+                                description=say("Next turn"),
                                 style=Type.CAPTION,
                                 tone="muted",
                             ),
@@ -111,7 +114,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
                         rect=left,
                         key="home.route_left",
                         text=way,
-                        description="Distance to the destination",
+                        description=say("Distance to the destination"),
                         tone="muted",
                         align="right",
                         style=Type.LABEL,
@@ -138,7 +141,7 @@ def drive_card(rect: Rect, state: State) -> Widget:
                 rect=figure,
                 key="home.speed",
                 text=shown,
-                description=f"Speed in {speed_unit(signals)}",
+                description=say("Speed in {unit}", unit=speed_unit(signals)),
                 style=Type.HUGE,
             ),
             Label(
@@ -151,22 +154,22 @@ def drive_card(rect: Rect, state: State) -> Widget:
             Telltales(
                 rect=lamps.left(LAMPS_WIDTH).middle(LAMPS_WIDTH, LAMPS_WIDTH),
                 key="home.telltales",
-                description="Telltales",
+                description=say("Telltales"),
                 lit=lit(state),
             ),
-            heading(head, "Range"),
+            heading(head, say("Range")),
             Label(
                 rect=far,
                 key="home.range",
                 text=distance(signals, signals[ENERGY.RANGE]),
-                description="Range",
+                description=say("Range"),
                 style=Type.TITLE,
             ),
             Label(
                 rect=charge,
                 key="home.battery",
                 text=f"{level:.0f} %",
-                description="Battery",
+                description=say("Battery"),
                 align="right",
                 tone="muted",
             ),
@@ -205,24 +208,24 @@ def _climate_card(rect: Rect, state: State) -> Widget:
     signals = state.signals
     value, note = _lines(rect)
     is_fogged = signals[GLASS.WINDSHIELD_FOG] >= NOTICED
-    words = f"Humidity {signals[HVAC.CABIN_HUMIDITY]:.0f} %"
+    words = say("Humidity {humidity} %", humidity=f"{signals[HVAC.CABIN_HUMIDITY]:.0f}")
     if is_fogged:
-        words = "Windows fogging"
+        words = say("Windows fogging")
     elif signals[MOTION.GEAR] == "P":
-        words = f"If you leave: {temperature(signals, signals[HVAC.FORECAST], 0)}"
+        words = say("If you leave: {temperature}", temperature=temperature(signals, signals[HVAC.FORECAST], 0))
     elif any(signals[pane] > 0 for pane in (*WINDOWS, CABIN.SUNROOF)):
-        words = "Windows open"
+        words = say("Windows open")
     return _live(
         rect,
         "home.climate",
-        "Climate",
+        say("Climate"),
         Icon.CLIMATE,
         "climate",
         Label(
             rect=value,
             key="home.cabin_temperature",
             text=temperature(signals, signals[HVAC.CABIN_TEMPERATURE]),
-            description="Cabin temperature",
+            description=say("Cabin temperature"),
             style=Type.HEADLINE,
         ),
         Label(rect=note, key="home.cabin_note", text=words, style=Type.LABEL, tone="muted"),
@@ -238,44 +241,50 @@ def _outside_card(rect: Rect, state: State) -> Widget:
     return _live(
         rect,
         "home.outside",
-        "Outside",
+        say("Outside"),
         Icon.OUTSIDE if calm else worst.icon,
         "outside",
         Label(
             rect=value,
             key="home.outside.value",
-            text="No bad weather" if calm else readings[worst].word,
-            description="Outside",
+            text=say("No bad weather") if calm else readings[worst].word,
+            description=say("Outside"),
             style=Type.TITLE,
         ),
         Label(
             rect=note,
             key="home.outside.note",
-            text="Rain, fog, ice, dust, wind" if calm else f"{worst.title}: {readings[worst].value}",
+            text=say("Rain, fog, ice, dust, wind")
+            if calm
+            else say("{name}: {value}", name=worst.title, value=readings[worst].value),
             style=Type.LABEL,
             tone="muted",
         ),
     )
 
 
+_WORDS = {kind: name for kind, (name, _) in KINDS.items()} | {
+    AlertKind.SLIPPERY: say("Slippery"),
+    AlertKind.CORRIDOR: say("Corridor"),
+    AlertKind.YIELD: say("Yield"),
+}
+"""Names of alerts in this card."""
+
+
 def _safety_card(rect: Rect, state: State) -> Widget:
     value, note = _lines(rect)
     last = state.alerts[-1] if state.alerts else None
-    title = "Warn driver" if last is None else f"{_words(last.alert.kind)} alert"
-    words = "No alerts given" if last is None else f"Given at {last.clock}"
+    title = say("Warn driver") if last is None else say("{kind} alert", kind=_WORDS[last.alert.kind])
+    words = say("No alerts given") if last is None else say("Given at {time}", time=last.clock)
     return _live(
         rect,
         "home.safety",
-        "Safety centre",
+        say("Safety centre"),
         Icon.SAFETY,
         "safety",
         Label(rect=value, key="home.last_alert", text=title, style=Type.TITLE),
         Label(rect=note, key="home.alert_note", text=words, style=Type.LABEL, tone="muted"),
     )
-
-
-def _words(kind: str) -> str:
-    return kind.replace("_", " ").capitalize()
 
 
 def _phone_card(rect: Rect, state: State) -> Widget:
@@ -284,7 +293,7 @@ def _phone_card(rect: Rect, state: State) -> Widget:
     return _live(
         rect,
         "home.phone",
-        "Phone",
+        say("Phone"),
         icon,
         "phone",
         Label(rect=value, key="home.phone.value", text=words, style=Type.TITLE),
@@ -296,11 +305,11 @@ def _phone_line(state: State) -> tuple[Icon, str, str]:
     """The state of the phone: icon, text and its subject."""
     phone, count = state.phone, len(state.directory.unread(state.phone))
     if phone.ringing is not None:
-        return Icon.CALL_IN, phone.ringing.who, "Is calling"
+        return Icon.CALL_IN, phone.ringing.who, say("Is calling")
     if phone.on_call is not None:
-        return Icon.IN_CALL, phone.on_call.who, "On the phone"
-    new = f"{count} new message{'s' if count != 1 else ''}" if count else "No new messages"
-    return Icon.PHONE, new, "Do not disturb" if phone.do_not_disturb else state.desk.device
+        return Icon.IN_CALL, phone.on_call.who, say("On the phone")
+    new = counted("{n} new message", "{n} new messages", count) if count else say("No new messages")
+    return Icon.PHONE, new, say("Do not disturb") if phone.do_not_disturb else state.desk.device
 
 
 def media_card(rect: Rect, state: State) -> Widget:
@@ -314,20 +323,20 @@ def media_card(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         key="home.media",
-        description="Media",
+        description=say("Media"),
         on_tap=Show("media"),
         children=(
             Cover(
                 rect=art,
                 key="home.media.cover",
-                description="Cover",
+                description=say("Cover"),
                 name=f"{signals[MEDIA.TRACK]}, {signals[MEDIA.ARTIST]}",
             ),
             Label(
                 rect=name,
                 key="home.media.title",
                 text=signals[MEDIA.TRACK],
-                description="Playing" if playing else "Paused",
+                description=say("Playing") if playing else say("Paused"),
                 style=Type.STRONG,
                 lines=2,
             ),
@@ -341,7 +350,7 @@ def media_card(rect: Rect, state: State) -> Widget:
             Button(
                 rect=buttons[0],
                 key="home.media.previous",
-                description="Previous",
+                description=say("Previous"),
                 icon=Icon.PREVIOUS,
                 look=Look.PLAIN,
                 on_tap=Skip(-1),
@@ -349,14 +358,14 @@ def media_card(rect: Rect, state: State) -> Widget:
             Button(
                 rect=buttons[1],
                 key="home.media.play",
-                description="Pause" if playing else "Play",
+                description=say("Pause") if playing else say("Play"),
                 icon=Icon.PAUSE if playing else Icon.PLAY,
                 on_tap=Set(MEDIA.ACTION, "STOP" if playing else "PLAY"),
             ),
             Button(
                 rect=buttons[2],
                 key="home.media.next",
-                description="Next",
+                description=say("Next"),
                 icon=Icon.NEXT,
                 look=Look.PLAIN,
                 on_tap=Skip(1),

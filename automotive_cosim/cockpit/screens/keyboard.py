@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Field, Look, MapView, Rows, Widget
+from automotive_cosim.contracts.text import say
 
 LETTERS = {
     "en": ("qwertyuiop", "asdfghjkl", "zxcvbnm"),
@@ -68,26 +69,26 @@ def _lowest(line: Rect, field: Field) -> tuple[Widget, ...]:
         Button(
             rect=hide,
             key="keyboard.hide",
-            description="Hide the keyboard",
+            description=say("Hide the keyboard"),
             icon=Icon.KEYBOARD_CLOSE,
             on_tap=Focus(""),
         ),
         Button(
             rect=erase,
             key="keyboard.backspace",
-            description="Delete the last character",
+            description=say("Delete the last character"),
             icon=Icon.ERASE,
             on_tap=Key(field.key, BACKSPACE),
-            disabled="" if field.text else "There is nothing to delete",
+            disabled="" if field.text else say("There is nothing to delete"),
         ),
-        Button(rect=space, key="keyboard.space", text="Space", on_tap=Key(field.key, " ")),
+        Button(rect=space, key="keyboard.space", text=say("Space"), on_tap=Key(field.key, " ")),
         Button(
             rect=enter,
             key="keyboard.enter",
-            description="Take the first result",
+            description=say("Take the first result"),
             icon=Icon.CHECK,
             look=Look.ACCENT,
             on_tap=Enter(field.on_enter),
-            disabled="" if field.on_enter else "No matches yet",
+            disabled="" if field.on_enter else say("No matches yet"),
         ),
     )

@@ -5,10 +5,10 @@ It states measurements and messages, whether or not anything follows from them.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from itertools import accumulate
 
-from automotive_cosim.cockpit.aboard import Seat, seated
+from automotive_cosim.cockpit.aboard import Kind, Seat, seated
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.reach import (
     BLUE_LIGHT_M,
@@ -16,6 +16,7 @@ from automotive_cosim.cockpit.reach import (
     HORIZON_M,
     REAR_RADAR_M,
 )
+from automotive_cosim.cockpit.screens.cabin import KINDS, SEATS
 from automotive_cosim.cockpit.screens.notices import LOW_KPA
 from automotive_cosim.cockpit.screens.parts import distance, pressure, speed, speed_unit
 from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOTION, OCCUPANT, SEAT, TYRE, Signals
@@ -23,6 +24,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Sight, SightKind
+from automotive_cosim.contracts.text import Text, say
 
 LINE_PX, LINES = 38, 8
 """Height of a line on the screen, and how many there are room for."""
@@ -49,20 +51,21 @@ ICONS: Mapping[SightKind, Icon] = {
     SightKind.CLOSURE: Icon.CLOSURE,
 }
 TYRE_NAMES = {
-    TYRE.FRONT_LEFT: "Front left tyre",
-    TYRE.FRONT_RIGHT: "Front right tyre",
-    TYRE.REAR_LEFT: "Rear left tyre",
-    TYRE.REAR_RIGHT: "Rear right tyre",
+    TYRE.FRONT_LEFT: say("Front left tyre"),
+    TYRE.FRONT_RIGHT: say("Front right tyre"),
+    TYRE.REAR_LEFT: say("Rear left tyre"),
+    TYRE.REAR_RIGHT: say("Rear right tyre"),
 }
-PHONE = {"HAND": "Phone in the driver's hand", "CRADLE": "Phone in use in its cradle"}
-AHEAD = {
-    SightKind.TUNNEL: "Tunnel",
-    SightKind.SCHOOL_ZONE: "School zone",
-    SightKind.JAM: "Traffic jam",
-    SightKind.BREAKDOWN: "Broken-down vehicle",
-    SightKind.ROADWORKS: "Roadworks",
-    SightKind.CLOSURE: "Road closed",
+PHONE = {"HAND": say("Phone in the driver's hand"), "CRADLE": say("Phone in use in its cradle")}
+AHEAD: Mapping[SightKind, Callable[[str], Text]] = {
+    SightKind.TUNNEL: lambda far: say("Tunnel in {distance}", distance=far),
+    SightKind.SCHOOL_ZONE: lambda far: say("School zone in {distance}", distance=far),
+    SightKind.JAM: lambda far: say("Traffic jam in {distance}", distance=far),
+    SightKind.BREAKDOWN: lambda far: say("Broken-down vehicle in {distance}", distance=far),
+    SightKind.ROADWORKS: lambda far: say("Roadworks in {distance}", distance=far),
+    SightKind.CLOSURE: lambda far: say("Road closed in {distance}", distance=far),
 }
+WHO = {kind: name for kind, (name, _) in KINDS.items()} | {Kind.ELDERLY: say("Elderly")}
 
 
 def sights(state: State) -> tuple[Sight, ...]:
@@ -77,29 +80,37 @@ def sights(state: State) -> tuple[Sight, ...]:
 def _aboard(state: State) -> Iterator[Sight]:
     signals = state.signals
     if not signals[SEAT.DRIVER_BELT] and signals[MOTION.GEAR] != "P":
-        yield Sight(SightKind.DRIVER_BELT, "Driver's belt is open")
+        yield Sight(SightKind.DRIVER_BELT, say("Driver's belt is open"))
     others = sorted(
         (one for one in seated(signals) if one.seat is not Seat.DRIVER), key=lambda one: not one.kind.needs_care
     )
     unbelted = [one for one in others if not one.belted]
     if unbelted and signals[MOTION.GEAR] != "P":
-        yield Sight(SightKind.PASSENGER_BELT, f"Belt is open: {unbelted[0].seat.words.capitalize()}")
+        yield Sight(SightKind.PASSENGER_BELT, say("Belt is open: {seat}", seat=SEATS[unbelted[0].seat]))
     if state.parked_s is not None and not signals[OCCUPANT.DRIVER.occupied]:
-        who = f"aboard: {others[0].kind.capitalize()}" if others else "nobody aboard"
-        yield Sight(SightKind.WITHOUT_DRIVER, f"Driver has left, {who}")
+        left = (
+            say("Driver has left, aboard: {who}", who=WHO[others[0].kind])
+            if others
+            else say("Driver has left, nobody aboard")
+        )
+        yield Sight(SightKind.WITHOUT_DRIVER, left)
     if signals[CALL.PHONE] != "AWAY":
         yield Sight(SightKind.PHONE, PHONE[signals[CALL.PHONE]])
     if signals[CABIN.TRUNK]:
-        yield Sight(SightKind.TAILGATE, "Tailgate is open")
+        yield Sight(SightKind.TAILGATE, say("Tailgate is open"))
     if signals[ENERGY.CHARGE_FLAP]:
-        yield Sight(SightKind.CHARGE_FLAP, "Charging flap is open")
+        yield Sight(SightKind.CHARGE_FLAP, say("Charging flap is open"))
     softest = min(TYRE_NAMES, key=lambda tyre: signals[tyre])
     if signals[softest] < LOW_KPA:
         kpa = signals[softest]
-        yield Sight(SightKind.TYRE, f"{TYRE_NAMES[softest]}: {pressure(signals, kpa)}", value=kpa)
+        yield Sight(
+            SightKind.TYRE,
+            say("{name}: {value}", name=TYRE_NAMES[softest], value=pressure(signals, kpa)),
+            value=kpa,
+        )
     minutes = int((state.driven_s + state.time_s - state.departed_s) / 60)
     if minutes >= 60:
-        said = f"Driving for {minutes // 60} h {minutes % 60:02d} min"
+        said = say("Driving for {hours} h {minutes} min", hours=minutes // 60, minutes=f"{minutes % 60:02d}")
         yield Sight(SightKind.DRIVING_TIME, said, value=minutes / 60)
 
 
@@ -107,12 +118,12 @@ def _behind(state: State, driving: DrivingState) -> Iterator[Sight]:
     around = driving.around
     blue, follower = around.emergency_behind, around.follower
     if blue is not None and blue.gap_m <= BLUE_LIGHT_M:
-        said = f"Emergency vehicle {_near(state.signals, blue.gap_m)} behind"
+        said = say("Emergency vehicle {distance} behind", distance=_near(state.signals, blue.gap_m))
         yield Sight(SightKind.EMERGENCY_VEHICLE, said, blue.gap_m, blue.speed_mps - driving.speed_mps)
     if follower is not None and follower.gap_m <= REAR_RADAR_M:
         closing_mps = follower.speed_mps - driving.speed_mps
         if closing_mps >= CLOSING_MPS:
-            said = f"Vehicle {_near(state.signals, follower.gap_m)} behind comes closer"
+            said = say("Vehicle {distance} behind comes closer", distance=_near(state.signals, follower.gap_m))
             yield Sight(SightKind.VEHICLE_BEHIND, said, follower.gap_m, closing_mps)
 
 
@@ -120,18 +131,29 @@ def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
     signals, ahead = state.signals, driving.ahead
     gap_m = signals[ADAS.LEADER_DISTANCE]
     if gap_m is not None:
-        yield Sight(SightKind.VEHICLE_AHEAD, f"Vehicle ahead: {_near(signals, gap_m)}", gap_m)
+        yield Sight(
+            SightKind.VEHICLE_AHEAD, say("Vehicle ahead: {distance}", distance=_near(signals, gap_m)), gap_m
+        )
     limit, limit_m = ahead.next_limit, ahead.next_limit_distance_m
     if state.sign_camera and limit is not None and limit.is_posted and limit_m is not None and limit_m <= HORIZON_M:
         kmh = None if limit.mps is None else limit.mps * KMH_PER_MPS
-        told = "No limit" if kmh is None else f"Limit {speed(signals, kmh)} {speed_unit(signals)}"
-        yield Sight(SightKind.LIMIT, f"{told} in {_near(signals, limit_m)}", limit_m, kmh)
+        far = _near(signals, limit_m)
+        told = (
+            say("No limit in {distance}", distance=far)
+            if kmh is None
+            else say(
+                "Limit {speed} in {distance}",
+                speed=f"{speed(signals, kmh)} {speed_unit(signals)}",
+                distance=far,
+            )
+        )
+        yield Sight(SightKind.LIMIT, told, limit_m, kmh)
     if driving.road.in_tunnel:
-        yield Sight(SightKind.TUNNEL, "In a tunnel", 0.0)
+        yield Sight(SightKind.TUNNEL, say("In a tunnel"), 0.0)
     elif ahead.tunnel_distance_m is not None:
         yield from _told(state, SightKind.TUNNEL, ahead.tunnel_distance_m)
     if driving.road.school_zone:
-        yield Sight(SightKind.SCHOOL_ZONE, "In a school zone", 0.0)
+        yield Sight(SightKind.SCHOOL_ZONE, say("In a school zone"), 0.0)
     yield from _mapped(state, driving)
 
 
@@ -177,7 +199,7 @@ def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
 
 def _told(state: State, kind: SightKind, away_m: float) -> Iterator[Sight]:
     if 0 <= away_m <= HORIZON_M:
-        yield Sight(kind, f"{AHEAD[kind]} in {_near(state.signals, away_m)}", away_m)
+        yield Sight(kind, AHEAD[kind](_near(state.signals, away_m)), away_m)
 
 
 def _near(signals: Signals, metres: float) -> str:

@@ -31,16 +31,22 @@ from automotive_cosim.cockpit.widgets import (
     Widget,
 )
 from automotive_cosim.contracts import IncidentKind, Road, RoadHere
+from automotive_cosim.contracts.text import say
 
 INCIDENTS: Mapping[IncidentKind, tuple[str, Icon]] = {
-    IncidentKind.CLOSURE: ("Road closed", Icon.CLOSURE),
-    IncidentKind.BREAKDOWN: ("Broken-down vehicle", Icon.HAZARD),
-    IncidentKind.ROADWORKS: ("Roadworks", Icon.ROADWORKS),
-    IncidentKind.JAM: ("Traffic jam", Icon.JAM),
-    IncidentKind.SCHOOL_ZONE: ("School zone", Icon.CHILD),
+    IncidentKind.CLOSURE: (say("Road closed"), Icon.CLOSURE),
+    IncidentKind.BREAKDOWN: (say("Broken-down vehicle"), Icon.HAZARD),
+    IncidentKind.ROADWORKS: (say("Roadworks"), Icon.ROADWORKS),
+    IncidentKind.JAM: (say("Traffic jam"), Icon.JAM),
+    IncidentKind.SCHOOL_ZONE: (say("School zone"), Icon.CHILD),
 }
 """Incidents of live traffic, the most serious first: of overlapping marks, the first is shown."""
-_CLASSES = {"motorway": "Motorway", "trunk": "Expressway", "service": "Service road", "residential": "Side street"}
+_CLASSES = {
+    "motorway": say("Motorway"),
+    "trunk": say("Expressway"),
+    "service": say("Service road"),
+    "residential": say("Side street"),
+}
 PANEL_WIDTH, PANEL_HEIGHT = 372, 544
 RESULTS = ENTRIES_LIMIT
 CHARGER = 28
@@ -101,7 +107,7 @@ def sight(state: State) -> Widget:
             Button(
                 rect=voice,
                 key="map.voice",
-                description="Guidance is silent" if silent else "Guidance speaks",
+                description=say("Guidance is silent") if silent else say("Guidance speaks"),
                 icon=Icon.MUTE if silent else Icon.VOICE,
                 look=Look.FLOATING,
                 on_tap=Set(VOICE.GUIDANCE, "UNMUTED" if silent else "MUTED"),
@@ -109,20 +115,20 @@ def sight(state: State) -> Widget:
             Button(
                 rect=closer,
                 key="map.zoom_in",
-                description="Zoom in",
+                description=say("Zoom in"),
                 icon=Icon.PLUS,
                 look=Look.FLOATING,
                 on_tap=Zoom(-1),
-                disabled="" if state.zoom > 0 else "The map cannot zoom in further",
+                disabled="" if state.zoom > 0 else say("The map cannot zoom in further"),
             ),
             Button(
                 rect=further,
                 key="map.zoom_out",
-                description="Zoom out",
+                description=say("Zoom out"),
                 icon=Icon.MINUS,
                 look=Look.FLOATING,
                 on_tap=Zoom(1),
-                disabled="" if state.zoom < len(ZOOMS_M_PER_PX) - 1 else "The map cannot zoom out further",
+                disabled="" if state.zoom < len(ZOOMS_M_PER_PX) - 1 else say("The map cannot zoom out further"),
             ),
         ),
     )
@@ -134,17 +140,17 @@ def sign_view(rect: Rect, key: str, state: State) -> tuple[SignView, ...]:
         return ()
     sign = state.last_sign
     figure = "" if sign is None or sign.limit_kmh is None else speed(state.signals, sign.limit_kmh)
-    return (SignView(rect=rect, key=key, description="Last sign", sign=sign, figure=figure),)
+    return (SignView(rect=rect, key=key, description=say("Last sign"), sign=sign, figure=figure),)
 
 
 def _orientation(rect: Rect, state: State) -> Button:
     """Back to the car if the map was moved away; otherwise turns the map."""
     if state.panned is not None:
-        words, icon, message = "Back to the car", Icon.GPS, Follow(state.north_up)
+        words, icon, message = say("Back to the car"), Icon.GPS, Follow(state.north_up)
     elif state.north_up:
-        words, icon, message = "North is up", Icon.COMPASS, Follow(False)
+        words, icon, message = say("North is up"), Icon.COMPASS, Follow(False)
     else:
-        words, icon, message = "The map turns with the car", Icon.NAVIGATION, Follow(True)
+        words, icon, message = say("The map turns with the car"), Icon.NAVIGATION, Follow(True)
     return Button(
         rect=rect, key="map.orientation", description=words, icon=icon, look=Look.FLOATING, on_tap=message
     )
@@ -187,10 +193,13 @@ def map_view(
 
 def _sight(state: State) -> str:
     """A description of the map; without live traffic, also the time of the last report."""
-    around = f"Map around {street(state)}"
     if state.heard is None or state.heard is state.outside:
-        return around
-    return f"{around}, traffic as of {state.clock_at(state.heard.local_time)}"
+        return say("Map around {street}", street=street(state))
+    return say(
+        "Map around {street}, traffic as of {time}",
+        street=street(state),
+        time=state.clock_at(state.heard.local_time),
+    )
 
 
 def _chargers(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Badge, ...]:
@@ -212,13 +221,13 @@ def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) ->
     A mark that would cover the car stands beside it.
     """
     known: list[tuple[str, str, Icon, tuple[float, float] | None]] = [
-        ("jam", "A jam begins here", Icon.JAM, jam(state)),
-        ("end", "The route ends here", Icon.GOAL, goal(state)),
+        ("jam", say("A jam begins here"), Icon.JAM, jam(state)),
+        ("end", say("The route ends here"), Icon.GOAL, goal(state)),
     ]
     told = enumerate(incidents(state, besides_jam=known[0][3] is not None))
     for at, (kind, road, place) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
         words, icon = INCIDENTS[kind]
-        known.append((f"incident.{at}", f"{words}: {road_name(road)}", icon, place))
+        known.append((f"incident.{at}", say("{name}: {value}", name=words, value=road_name(road)), icon, place))
     here = ego(state)
     car = None if here is None else box_of(camera, rect, here[:2], 48)
     found: list[Badge] = []
@@ -236,13 +245,13 @@ def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) ->
 
 def road_name(road: Road | RoadHere) -> str:
     """Name of a road, or its kind."""
-    return road.name or _CLASSES.get(road.road_class, "Unnamed road")
+    return road.name or _CLASSES.get(road.road_class, say("Unnamed road"))
 
 
 def street(state: State) -> str:
     """Name of the present road, or its kind."""
     if state.outside is None:
-        return "Locating"
+        return say("Locating")
     return road_name(state.outside.driving.road)
 
 
@@ -272,14 +281,14 @@ def _turn_plate(rect: Rect, ahead: tuple[Turn, float], state: State) -> Widget:
                 rect=far.inset(0, 8),
                 key="map.next_turn.distance",
                 text=distance(state.signals, away_m),
-                description="Distance to the next turn",
+                description=say("Distance to the next turn"),
                 style=Type.TITLE,
             ),
             Label(
                 rect=words.inset(0, 8),
                 key="map.next_turn",
-                text=f"{turn.words}: {turn.street}",
-                description="Next turn",
+                text=say("{name}: {value}", name=turn.words, value=turn.street),
+                description=say("Next turn"),
                 style=Type.LABEL,
                 lines=2,
             ),
@@ -301,13 +310,13 @@ def street_plate(rect: Rect, state: State) -> Widget:
                 size=26,
                 tone="accent",
                 key="map.tunnel" if tunnel else "",
-                description="In a tunnel" if tunnel else "",
+                description=say("In a tunnel") if tunnel else "",
             ),
             Label(
                 rect=words,
                 key="map.street",
                 text=street(state),
-                description="Current road",
+                description=say("Current road"),
                 style=Type.STRONG,
             ),
         ),
@@ -324,15 +333,15 @@ def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
         tabs,
         "map.list",
         [
-            ("saved", "Saved", Icon.STAR, shown == "saved", Pick("map.list", "saved")),
-            ("recent", "Recent", Icon.HISTORY, shown == "recent", Pick("map.list", "recent")),
-            ("explore", "Near", Icon.PLACE, False, Show("explore", "all")),
+            ("saved", say("Saved"), Icon.STAR, shown == "saved", Pick("map.list", "saved")),
+            ("recent", say("Recent"), Icon.HISTORY, shown == "recent", Pick("map.list", "recent")),
+            ("explore", say("Near"), Icon.PLACE, False, Show("explore", "all")),
         ],
     )
     empty = Label(
         rect=listed.top(60),
         key="map.places.empty",
-        text="No street or place with this name" if typed else "No destinations yet",
+        text=say("No street or place with this name") if typed else say("No destinations yet"),
         tone="muted",
         style=Type.LABEL,
         align="centre",
@@ -341,16 +350,16 @@ def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
         search(
             wanted,
             "map.search",
-            "Search for a place or street",
-            "Where to?",
+            say("Search for a place or street"),
+            say("Where to?"),
             state,
             _first(found if typed else ()),
         ),
-        heading(tabs.moved(4, 14).top(28), "Results", "map.results") if typed else lists,
+        heading(tabs.moved(4, 14).top(28), say("Results"), "map.results") if typed else lists,
         rows(
             listed,
             "map.places",
-            "Destinations",
+            say("Destinations"),
             state,
             len(names),
             lambda index, cell: destination(cell, f"map.place.{index}", names[index], state),
@@ -374,7 +383,7 @@ def destination(rect: Rect, key: str, name: str, state: State) -> Row:
         rect=rect,
         key=key,
         text=name,
-        detail=place.street if place else "Street",
+        detail=place.street if place else say("Street"),
         trail=away(state, name),
         icon=place.icon if place else Icon.ROUTE,
         selected=name == state.navigation.destination,
@@ -408,10 +417,10 @@ def _way(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            heading(head, f"To {goal}" if goal else "Arrival", "map.goal"),
+            heading(head, say("To {place}", place=goal) if goal else say("Arrival"), "map.goal"),
             *arrival(when, "map", state),
-            Button(rect=faster, key="map.faster_route", text="Faster", icon=Icon.ROUTE, on_tap=Guide("")),
-            Button(rect=details, key="map.route", text="Route", icon=Icon.TURNS, on_tap=Show("route")),
+            Button(rect=faster, key="map.faster_route", text=say("Faster"), icon=Icon.ROUTE, on_tap=Guide("")),
+            Button(rect=details, key="map.route", text=say("Route"), icon=Icon.TURNS, on_tap=Show("route")),
         ),
     )
 
@@ -423,15 +432,19 @@ def arrival(rect: Rect, key: str, state: State) -> tuple[Widget, ...]:
     if state.outside is not None and ahead is not None:
         at = state.clock_at(state.outside.local_time + timedelta(seconds=ahead.eta_s))
         left = distance(state.signals, ahead.route_left_m)
-        late = f"{ahead.delay_s / 60:.0f} min delay" if ahead.delay_s >= 30 else "No delay"
+        late = (
+            say("{minutes} min delay", minutes=f"{ahead.delay_s / 60:.0f}")
+            if ahead.delay_s >= 30
+            else say("No delay")
+        )
     cells = rect.columns(2, 12)
     return (
-        Label(rect=cells[0], key=f"{key}.arrival", text=at, description="Arrival time", style=Type.HEADLINE),
+        Label(rect=cells[0], key=f"{key}.arrival", text=at, description=say("Arrival time"), style=Type.HEADLINE),
         Label(
             rect=cells[1].top(26),
             key=f"{key}.route_left",
             text=left,
-            description="Distance left",
+            description=say("Distance left"),
             style=Type.LABEL,
             align="right",
         ),
@@ -439,7 +452,7 @@ def arrival(rect: Rect, key: str, state: State) -> tuple[Widget, ...]:
             rect=cells[1].bottom_part(24),
             key=f"{key}.delay",
             text=late,
-            description="Traffic delay",
+            description=say("Traffic delay"),
             style=Type.CAPTION,
             tone="muted",
             align="right",

@@ -11,13 +11,14 @@ from automotive_cosim.cockpit.signals import LINK, MEDIA
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Cover, Label, Look, Row, Tile, Widget
+from automotive_cosim.contracts.text import counted, say, say_in
 
 SOURCES = (
-    ("bluetooth", "Phone", Icon.BLUETOOTH),
+    ("bluetooth", say("Phone"), Icon.BLUETOOTH),
     ("fm", "FM", Icon.RADIO),
     ("dab", "DAB", Icon.RADIO_TOWER),
     ("usb", "USB", Icon.USB),
-    ("internet", "Podcasts", Icon.PODCAST),
+    ("internet", say_in("source", "Podcasts"), Icon.PODCAST),
 )
 FOUND = 21
 
@@ -44,8 +45,8 @@ def media(state: State) -> tuple[Widget, ...]:
         search(
             words,
             "media.search",
-            "Search music, stations and podcasts",
-            "Search",
+            say("Search music, stations and podcasts"),
+            say("Search"),
             state,
             Play(found[0].uri) if found else None,
         ),
@@ -57,7 +58,7 @@ def media(state: State) -> tuple[Widget, ...]:
 def _filters(rect: Rect, state: State) -> Widget:
     shown = state.picked["media.list"]
     tracks = state.signals[MEDIA.SOURCE] in ("BLUETOOTH", "USB")
-    kinds = [("all", "All"), ("liked", "Liked"), *([("playlists", "Playlists")] if tracks else [])]
+    kinds = [("all", say("All")), ("liked", say("Liked")), *([("playlists", say("Playlists"))] if tracks else [])]
     return choices(
         rect, "media.list", [(key, text, None, shown == key, Pick("media.list", key)) for key, text in kinds]
     )
@@ -81,7 +82,7 @@ def _entries(rect: Rect, entries: tuple[Entry, ...], state: State) -> tuple[Widg
             Label(
                 rect=rect.top(60),
                 key="media.empty",
-                text="Nothing here",
+                text=say("Nothing here"),
                 tone="muted",
                 style=Type.LABEL,
                 align="centre",
@@ -91,7 +92,7 @@ def _entries(rect: Rect, entries: tuple[Entry, ...], state: State) -> tuple[Widg
         rows(
             rect,
             "media.entries",
-            "Tracks and stations",
+            say("Tracks and stations"),
             state,
             len(entries),
             lambda index, cell: entry_row(
@@ -123,14 +124,14 @@ def _playlists(rect: Rect, state: State) -> tuple[Widget, ...]:
         rows(
             rect,
             "media.playlists",
-            "Playlists",
+            say("Playlists"),
             state,
             len(lists),
             lambda index, cell: Row(
                 rect=cell,
                 key=f"media.playlist.{index}",
                 text=lists[index].name,
-                detail=f"{len(lists[index].uris)} tracks",
+                detail=counted("{n} track", "{n} tracks", len(lists[index].uris)),
                 icon=Icon.PLAYLIST,
                 selected=lists[index].name == state.listening.playlist,
                 on_tap=Show("playlist", lists[index].name),
@@ -144,14 +145,14 @@ def _shows(rect: Rect, state: State) -> tuple[Widget, ...]:
     """Podcasts on the left, episodes of the chosen one on the right."""
     shows = state.library.shows
     chosen = state.picked["media.show"]
-    offline = "" if state.signals[LINK.ONLINE] else "Podcasts need a connection"
+    offline = "" if state.signals[LINK.ONLINE] else say("Podcasts need a connection")
     episodes = tuple(entry for entry in state.library.of("INTERNET") if entry.by == chosen)
     left, _, right = row(rect, 300, 12, REST)
     return (
         rows(
             left,
             "media.shows",
-            "Podcasts",
+            say("Podcasts"),
             state,
             len(shows),
             lambda index, cell: Row(
@@ -167,7 +168,7 @@ def _shows(rect: Rect, state: State) -> tuple[Widget, ...]:
         rows(
             right,
             "media.entries",
-            "Episodes",
+            say("Episodes"),
             state,
             len(episodes),
             lambda index, cell: Row(
@@ -198,34 +199,38 @@ def playlist(state: State) -> tuple[Widget, ...]:
     fits = playing.length_s is not None and not playing.uri.startswith("podcast")
     return (
         _now(now, state),
-        Button(rect=back, key="playlist.back", description="All music", icon=Icon.BACK, on_tap=Show("media")),
+        Button(rect=back, key="playlist.back", description=say("All music"), icon=Icon.BACK, on_tap=Show("media")),
         Label(rect=title, key="playlist.name", text=name, style=Type.TITLE),
         Button(
             rect=start,
             key="playlist.play",
-            text="Play all",
+            text=say("Play all"),
             icon=Icon.PLAY,
             look=Look.ACCENT,
             on_tap=Play(tracks[0].uri if tracks else "", name),
-            disabled="" if tracks else "It is empty",
+            disabled="" if tracks else say("It is empty"),
         ),
         Button(
             rect=change,
             key="playlist.change",
-            text="Remove" if inside else "Add this",
-            description=f"{playing.title}: {'remove it' if inside else 'add it'}",
+            text=say("Remove") if inside else say("Add this"),
+            description=say("{title}: remove it", title=playing.title)
+            if inside
+            else say("{title}: add it", title=playing.title),
             icon=Icon.PLAYLIST_REMOVE if inside else Icon.PLAYLIST_ADD,
             on_tap=Put(
                 "listening",
                 state.listening.with_track(name, playing.uri, not inside),
-                f"{playing.title} is removed from {name}" if inside else f"{playing.title} is added to {name}",
+                say("{title} is removed from {playlist}", title=playing.title, playlist=name)
+                if inside
+                else say("{title} is added to {playlist}", title=playing.title, playlist=name),
             ),
-            disabled="" if fits else "Only tracks go into a playlist",
+            disabled="" if fits else say("Only tracks go into a playlist"),
         ),
         rows(
             body,
             "playlist.tracks",
-            "Tracks",
+            say("Tracks"),
             state,
             len(tracks),
             lambda index, cell: entry_row(
@@ -250,21 +255,26 @@ def _now(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            Cover(rect=art, key="media.cover", description="Cover", name=f"{entry.title}, {entry.by}"),
+            Cover(
+                rect=art,
+                key="media.cover",
+                description=say("Cover"),
+                name=f"{entry.title}, {entry.by}",
+            ),
             Label(
                 rect=title,
                 key="media.title",
                 text=entry.title,
-                description="Playing" if playing else "Paused",
+                description=say("Playing") if playing else say("Paused"),
                 style=Type.TITLE,
                 lines=2,
             ),
-            Label(rect=by, key="media.artist", text=entry.by, description="By", tone="muted"),
+            Label(rect=by, key="media.artist", text=entry.by, description=say("By"), tone="muted"),
             *_progress(way, state, entry.length_s),
             Button(
                 rect=previous.inset(0, 8),
                 key="media.previous",
-                description="Previous",
+                description=say("Previous"),
                 icon=Icon.PREVIOUS,
                 icon_size=40,
                 look=Look.PLAIN,
@@ -273,7 +283,7 @@ def _now(rect: Rect, state: State) -> Widget:
             Button(
                 rect=middle,
                 key="media.play",
-                description="Pause" if playing else "Play",
+                description=say("Pause") if playing else say("Play"),
                 icon=Icon.PAUSE if playing else Icon.PLAY,
                 icon_size=48,
                 look=Look.ACCENT,
@@ -282,7 +292,7 @@ def _now(rect: Rect, state: State) -> Widget:
             Button(
                 rect=following.inset(0, 8),
                 key="media.next",
-                description="Next",
+                description=say("Next"),
                 icon=Icon.NEXT,
                 icon_size=40,
                 look=Look.PLAIN,
@@ -291,7 +301,7 @@ def _now(rect: Rect, state: State) -> Widget:
             _sign(
                 extras[0],
                 "media.shuffle",
-                "Shuffle",
+                say("Shuffle"),
                 Icon.SHUFFLE,
                 signals[MEDIA.SHUFFLE],
                 Set(MEDIA.SHUFFLE, not signals[MEDIA.SHUFFLE]),
@@ -299,7 +309,7 @@ def _now(rect: Rect, state: State) -> Widget:
             _sign(
                 extras[1],
                 "media.repeat",
-                "Repeat",
+                say("Repeat"),
                 Icon.REPEAT,
                 signals[MEDIA.REPEAT],
                 Set(MEDIA.REPEAT, not signals[MEDIA.REPEAT]),
@@ -307,22 +317,28 @@ def _now(rect: Rect, state: State) -> Widget:
             _sign(
                 extras[2],
                 "media.like",
-                "Liked",
+                say("Liked"),
                 Icon.STAR if liked else Icon.STAR_OUTLINE,
                 liked,
                 Put(
                     "listening",
                     state.listening.with_favourite(entry.uri, not liked),
-                    f"{entry.title} is no longer liked" if liked else f"{entry.title} is now liked",
+                    say("{title} is no longer liked", title=entry.title)
+                    if liked
+                    else say("{title} is now liked", title=entry.title),
                 ),
             ),
             Button(
-                rect=extras[3], key="media.sound", description="Sound", icon=Icon.EQUALIZER, on_tap=Show("sound")
+                rect=extras[3],
+                key="media.sound",
+                description=say("Sound"),
+                icon=Icon.EQUALIZER,
+                on_tap=Show("sound"),
             ),
             slider(
                 loud,
                 "media.volume",
-                "Volume",
+                say("Volume"),
                 Icon.VOLUME,
                 MEDIA.VOLUME,
                 signals,
@@ -330,7 +346,7 @@ def _now(rect: Rect, state: State) -> Widget:
             _sign(
                 mute.middle(68, 60),
                 "media.mute",
-                "Mute",
+                say("Mute"),
                 Icon.MUTE,
                 signals[MEDIA.MUTED],
                 Set(MEDIA.MUTED, not signals[MEDIA.MUTED]),
@@ -346,7 +362,7 @@ def _sign(rect: Rect, key: str, name: str, icon: Icon, on: bool, message: Messag
 
 def _progress(rect: Rect, state: State, length_s: float | None) -> tuple[Widget, ...]:
     if length_s is None:
-        return (Label(rect=rect, key="media.live", text="Live", style=Type.LABEL, tone="accent"),)
+        return (Label(rect=rect, key="media.live", text=say("Live"), style=Type.LABEL, tone="accent"),)
     bar, _, times = column(rect, 8, 6, 26)
     elapsed, _, length = row(times, 100, REST, 100)
     return (

@@ -7,6 +7,7 @@ from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, GLASS, LIGHTS,
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.telltales import Telltale
 from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts.text import counted, say
 
 LOW_KPA = 200.0
 """A fifth below the 250 kPa on the door frame, where UN R64 requires a tyre warning."""
@@ -52,10 +53,16 @@ def wanting(state: State) -> tuple[tuple[str, Icon, str, str], ...]:
     return tuple(
         (text, icon, screen, item)
         for holds, text, icon, screen, item in (
-            (count, f"{count} unread message{'s' if count != 1 else ''}", Icon.MESSAGE, "phone", "messages"),
-            (bool(low), "Tyre pressure is low", Icon.TYRE, "driving", ""),
-            (signals[ENERGY.LEVEL] <= LOW_BATTERY_PCT, "Battery is low", Icon.BATTERY, "charging", ""),
-            (signals[GLASS.WINDSHIELD_FOG] >= NOTICED, "Windshield is fogged", Icon.DEFROST_FRONT, "climate", ""),
+            (count, counted("{n} unread message", "{n} unread messages", count), Icon.MESSAGE, "phone", "messages"),
+            (bool(low), say("Tyre pressure is low"), Icon.TYRE, "driving", ""),
+            (signals[ENERGY.LEVEL] <= LOW_BATTERY_PCT, say("Battery is low"), Icon.BATTERY, "charging", ""),
+            (
+                signals[GLASS.WINDSHIELD_FOG] >= NOTICED,
+                say("Windshield is fogged"),
+                Icon.DEFROST_FRONT,
+                "climate",
+                "",
+            ),
         )
         if holds
     )

@@ -30,6 +30,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
 from automotive_cosim.contracts import Alert, AlertKind
+from automotive_cosim.contracts.text import say
 
 DENSE_FOG_M, FOG_M, MIST_M = 200.0, 1000.0, 5000.0
 """Dense fog, fog and mist, the latter two by the WMO's definitions."""
@@ -77,7 +78,15 @@ def _switch(key: str, text: str, icon: Icon, signal: Signal[bool]) -> Act:
 
 def _rain(state: State) -> Reading:
     rate = 0.0 if state.outside is None else state.outside.weather.precipitation
-    word = "No rain" if rate < DRIZZLE_MM else "Light" if rate < 2.5 else "Moderate" if rate < 10 else "Heavy"
+    word = (
+        say("No rain")
+        if rate < DRIZZLE_MM
+        else say("Light")
+        if rate < 2.5
+        else say("Moderate")
+        if rate < 10
+        else say("Heavy")
+    )
     return Reading(word, f"{rate:.1f} mm/h", state.signals[BODY.RAIN_INTENSITY] / 100)
 
 
@@ -85,7 +94,11 @@ def _fog(state: State) -> Reading:
     sight = state.signals[OUTSIDE.VISIBILITY]
     weather = None if state.outside is None else state.outside.weather
     is_fog = weather is None or not (is_dusty(weather) or weather.precipitation >= DRIZZLE_MM)
-    words = ("Clear", "Mist", "Fog", "Dense fog") if is_fog else ("Good", "Moderate", "Poor", "Very poor")
+    words = (
+        (say("Clear"), say("Mist"), say("Fog"), say("Dense fog"))
+        if is_fog
+        else (say("Good"), say("Moderate"), say("Poor"), say("Very poor"))
+    )
     word = words[sum(sight < bound_m for bound_m in (MIST_M, FOG_M, DENSE_FOG_M))]
     return Reading(word, distance(state.signals, sight), 1 - min(1.0, sight / MIST_M))
 
@@ -93,22 +106,36 @@ def _fog(state: State) -> Reading:
 def _ice(state: State) -> Reading:
     signals = state.signals
     grip, air = signals[ADAS.ROAD_FRICTION], signals[OUTSIDE.TEMPERATURE]
-    word = "Slippery" if grip < 50 else "Ice possible" if air <= ICE_C else "Wet" if grip < 90 else "Good grip"
-    return Reading(word, f"{temperature(signals, air, 0)}, grip {grip:.0f} %", 1 - grip / 100)
+    word = (
+        say("Slippery")
+        if grip < 50
+        else say("Ice possible")
+        if air <= ICE_C
+        else say("Wet")
+        if grip < 90
+        else say("Good grip")
+    )
+    return Reading(
+        word,
+        say("{temperature}, grip {grip} %", temperature=temperature(signals, air, 0), grip=f"{grip:.0f}"),
+        1 - grip / 100,
+    )
 
 
 def _glare(state: State) -> Reading:
     share = state.signals[OUTSIDE.GLARE] / 100
-    word = "No glare" if share < 0.1 else "Low sun ahead" if share < 0.5 else "Strong"
+    word = say("No glare") if share < 0.1 else say("Low sun ahead") if share < 0.5 else say("Strong")
     return Reading(word, f"{100 * share:.0f} %", share)
 
 
 def _dust(state: State) -> Reading:
     dusty = state.outside is not None and is_dusty(state.outside.weather)
     sight = state.signals[OUTSIDE.VISIBILITY]
-    word = "No dust" if not dusty else "Blowing dust" if sight >= FOG_M else "Dust storm"
+    word = say("No dust") if not dusty else say("Blowing dust") if sight >= FOG_M else say("Dust storm")
     return Reading(
-        word, f"Visibility {distance(state.signals, sight)}", 1 - min(1.0, sight / MIST_M) if dusty else 0.0
+        word,
+        say("Visibility {distance}", distance=distance(state.signals, sight)),
+        1 - min(1.0, sight / MIST_M) if dusty else 0.0,
     )
 
 
@@ -116,29 +143,33 @@ def _air(state: State) -> Reading:
     fine = state.signals[OUTSIDE.FINE_DUST]
     inside = state.signals[HVAC.CABIN_FINE_DUST]
     return Reading(
-        air_grade(fine), f"Outside {fine:.0f} µg/m³, in the cabin {inside:.0f} µg/m³", min(1.0, fine / 140)
+        air_grade(fine),
+        say("Outside {fine} µg/m³, in the cabin {inside} µg/m³", fine=f"{fine:.0f}", inside=f"{inside:.0f}"),
+        min(1.0, fine / 140),
     )
 
 
 def _wind(state: State) -> Reading:
     wind = state.signals[OUTSIDE.WIND]
-    word = "Calm" if wind < 20 else "Breeze" if wind < 50 else "Strong" if wind < 75 else "Storm"
+    word = (
+        say("Calm") if wind < 20 else say("Breeze") if wind < 50 else say("Strong") if wind < 75 else say("Storm")
+    )
     return Reading(word, f"{speed(state.signals, wind)} {speed_unit(state.signals)}", min(1.0, wind / 100))
 
 
 def _glass(state: State) -> Reading:
     signals: Signals = state.signals
     fog, film = signals[GLASS.WINDSHIELD_FOG], signals[GLASS.WINDSHIELD_FILM]
-    word = glass_words(fog, film).capitalize()
+    word = glass_words(fog, film)[0]
     hidden = fog + film - fog * film
-    return Reading(word, f"Windshield {100 * (1 - hidden):.0f} % clear", hidden)
+    return Reading(word, say("Windshield {share} % clear", share=f"{100 * (1 - hidden):.0f}"), hidden)
 
 
-_LOW_BEAM = _switch("low_beam", "Low beam", Icon.LOW_BEAM, LIGHTS.LOW_BEAM)
-_RECIRCULATION = _switch("recirculation", "Recirculate", Icon.RECIRCULATION, HVAC.RECIRCULATION)
-_PURIFIER = _switch("purifier", "Purifier", Icon.PURIFIER, HVAC.PURIFIER)
-_FRONT_DEFROST = _switch("front_defroster", "Front defrost", Icon.DEFROST_FRONT, HVAC.FRONT_DEFROSTER)
-_REAR_DEFROST = _switch("rear_defroster", "Rear defrost", Icon.DEFROST_REAR, HVAC.REAR_DEFROSTER)
+_LOW_BEAM = _switch("low_beam", say("Low beam"), Icon.LOW_BEAM, LIGHTS.LOW_BEAM)
+_RECIRCULATION = _switch("recirculation", say("Recirculate"), Icon.RECIRCULATION, HVAC.RECIRCULATION)
+_PURIFIER = _switch("purifier", say("Purifier"), Icon.PURIFIER, HVAC.PURIFIER)
+_FRONT_DEFROST = _switch("front_defroster", say("Front defrost"), Icon.DEFROST_FRONT, HVAC.FRONT_DEFROSTER)
+_REAR_DEFROST = _switch("rear_defroster", say("Rear defrost"), Icon.DEFROST_REAR, HVAC.REAR_DEFROSTER)
 
 
 def _mode(key: str, text: str, value: str) -> Act:
@@ -147,91 +178,91 @@ def _mode(key: str, text: str, value: str) -> Act:
 
 PHENOMENA: dict[str, Phenomenon] = {
     "rain": Phenomenon(
-        "Rain",
+        say("Rain"),
         Icon.RAIN,
-        "The rain sensor sees the drops on the windshield.",
+        say("The rain sensor sees the drops on the windshield."),
         _rain,
         (
-            Act("wipers", "Wipers auto", Icon.WASHER, BODY.FRONT_WIPER, "RAIN_SENSOR", "OFF"),
+            Act("wipers", say("Wipers auto"), Icon.WASHER, BODY.FRONT_WIPER, "RAIN_SENSOR", "OFF"),
             _LOW_BEAM,
-            _mode("rain_mode", "Rain mode", "RAIN"),
+            _mode("rain_mode", say("Rain mode"), "RAIN"),
             _REAR_DEFROST,
         ),
         AlertKind.WEATHER,
     ),
     "fog": Phenomenon(
-        "Visibility",
+        say("Visibility"),
         Icon.REAR_FOG,
-        "Visibility as the forward camera estimates it. Whether fog lamps may be lit depends on local law.",
+        say("Visibility as the forward camera estimates it. Whether fog lamps may be lit depends on local law."),
         _fog,
         (
             _LOW_BEAM,
-            _switch("front_fog", "Front fog", Icon.FRONT_FOG, LIGHTS.FRONT_FOG),
-            _switch("rear_fog", "Rear fog", Icon.REAR_FOG, LIGHTS.REAR_FOG),
-            _switch("hazard", "Hazards", Icon.HAZARD, LIGHTS.HAZARD),
+            _switch("front_fog", say("Front fog"), Icon.FRONT_FOG, LIGHTS.FRONT_FOG),
+            _switch("rear_fog", say("Rear fog"), Icon.REAR_FOG, LIGHTS.REAR_FOG),
+            _switch("hazard", say("Hazards"), Icon.HAZARD, LIGHTS.HAZARD),
         ),
         AlertKind.VISIBILITY,
     ),
     "ice": Phenomenon(
-        "Ice and grip",
+        say("Ice and grip"),
         Icon.SLIPPERY,
-        "Grip as the stability control estimates it, beside a dry road.",
+        say("Grip as the stability control estimates it, beside a dry road."),
         _ice,
         (
-            _mode("snow_mode", "Snow mode", "SNOW"),
-            _switch("mirrors", "Mirror heat", Icon.MIRROR, MIRROR.DRIVER_HEATING),
+            _mode("snow_mode", say("Snow mode"), "SNOW"),
+            _switch("mirrors", say("Mirror heat"), Icon.MIRROR, MIRROR.DRIVER_HEATING),
             _REAR_DEFROST,
-            _switch("max_defrost", "Max defrost", Icon.DEFROST_FRONT, HVAC.MAX_DEFROST),
+            _switch("max_defrost", say("Max defrost"), Icon.DEFROST_FRONT, HVAC.MAX_DEFROST),
         ),
         AlertKind.SLIPPERY,
     ),
     "glare": Phenomenon(
-        "Glare",
+        say("Glare"),
         Icon.DAY,
-        "A low sun ahead, as the light sensor at the mirror sees it. A clean windshield scatters less.",
+        say("A low sun ahead, as the light sensor at the mirror sees it. A clean windshield scatters less."),
         _glare,
         (
-            Act("brightness", "Bright screen", Icon.BRIGHTNESS, HMI.BRIGHTNESS, 100.0, 70.0),
+            Act("brightness", say("Bright screen"), Icon.BRIGHTNESS, HMI.BRIGHTNESS, 100.0, 70.0),
             _LOW_BEAM,
         ),
         AlertKind.VISIBILITY,
     ),
     "dust": Phenomenon(
-        "Dust",
+        say("Dust"),
         Icon.DUST,
-        "Dust and sand in the air ahead.",
+        say("Dust and sand in the air ahead."),
         _dust,
         (_RECIRCULATION, _PURIFIER, _LOW_BEAM),
         AlertKind.VISIBILITY,
     ),
     "air": Phenomenon(
-        "Air quality",
+        say("Air quality"),
         Icon.AIR_QUALITY,
-        "Fine dust at the air intake, graded by the European Air Quality Index.",
+        say("Fine dust at the air intake, graded by the European Air Quality Index."),
         _air,
         (_RECIRCULATION, _PURIFIER),
         AlertKind.WEATHER,
     ),
     "wind": Phenomenon(
-        "Wind",
+        say("Wind"),
         Icon.AIR_MIDDLE,
-        "Wind from the weather service and the stability control.",
+        say("Wind from the weather service and the stability control."),
         _wind,
         (
-            _switch("stability", "Stability", Icon.STABILITY, ADAS.STABILITY_CONTROL),
-            _switch("lane_keeping", "Lane keeping", Icon.STEERING, ADAS.LANE_KEEPING),
+            _switch("stability", say("Stability"), Icon.STABILITY, ADAS.STABILITY_CONTROL),
+            _switch("lane_keeping", say("Lane keeping"), Icon.STEERING, ADAS.LANE_KEEPING),
         ),
         AlertKind.WEATHER,
     ),
     "glass": Phenomenon(
-        "Windows",
+        say("Windows"),
         Icon.AIR_UP,
-        "Fog inside clears with dry air, drops outside with the wipers.",
+        say("Fog inside clears with dry air, drops outside with the wipers."),
         _glass,
         (
             _FRONT_DEFROST,
             _REAR_DEFROST,
-            _switch("air_conditioning", "A/C", Icon.SNOWFLAKE, HVAC.AIR_CONDITIONING),
+            _switch("air_conditioning", say("A/C"), Icon.SNOWFLAKE, HVAC.AIR_CONDITIONING),
             _RECIRCULATION,
         ),
         AlertKind.VISIBILITY,
@@ -300,17 +331,17 @@ def _detail(rect: Rect, known: Phenomenon, state: State) -> Widget:
                 tone="muted",
                 lines=2,
             ),
-            heading(name, "What to do"),
+            heading(name, say("What to do")),
             *(_act(cell, act, state) for cell, act in zip(acts.columns(4, 12), known.acts, strict=False)),
             Button(
                 rect=warn,
                 key="outside.warn",
-                text="Warn the driver",
+                text=say("Warn the driver"),
                 icon=Icon.WARN,
                 look=Look.ACCENT,
                 on_tap=WarnDriver(Alert(known.alert)),
             ),
-            Button(rect=wash, key="outside.wash", text="Wash the windshield", icon=Icon.WASHER, on_tap=Wash()),
+            Button(rect=wash, key="outside.wash", text=say("Wash the windshield"), icon=Icon.WASHER, on_tap=Wash()),
         ),
     )
 

@@ -27,6 +27,7 @@ from automotive_cosim.cockpit.widgets import (
     Tile,
     Widget,
 )
+from automotive_cosim.contracts.text import say
 
 ROOMS = {
     **dict.fromkeys(("home", "map", "explore", "place", "route"), Room.WHOLE),
@@ -95,22 +96,28 @@ StepWords = Callable[[str, str], tuple[str, str]]
 
 def lower_higher(name: str, by: str) -> tuple[str, str]:
     """For what has more or less."""
-    return f"{name} lower by {by}", f"{name} higher by {by}"
+    return say("{name} lower by {step}", name=name, step=by), say("{name} higher by {step}", name=name, step=by)
 
 
 def forward_back(name: str, by: str) -> tuple[str, str]:
     """For a seat, whose position counts from the front."""
-    return f"{name} forward by {by}", f"{name} back by {by}"
+    return say("{name} forward by {step}", name=name, step=by), say("{name} back by {step}", name=name, step=by)
 
 
 def upright_back(name: str, by: str) -> tuple[str, str]:
     """For a backrest, whose angle counts from upright."""
-    return f"{name} more upright by {by}", f"{name} further back by {by}"
+    return (
+        say("{name} more upright by {step}", name=name, step=by),
+        say("{name} further back by {step}", name=name, step=by),
+    )
 
 
 def right_left(name: str, by: str) -> tuple[str, str]:
     """For a mirror, whose angle counts to the left (VSS, ``Vehicle.Body.Mirrors.DriverSide.Pan``)."""
-    return f"{name} to the right by {by}", f"{name} to the left by {by}"
+    return (
+        say("{name} to the right by {step}", name=name, step=by),
+        say("{name} to the left by {step}", name=name, step=by),
+    )
 
 
 def stepper(
@@ -140,7 +147,7 @@ def stepper(
             icon=Icon.MINUS,
             on_tap=Set(signal, less),
             on_hold=Set(signal, far_less),
-            disabled="It is at its lowest" if less == value else "",
+            disabled=say("It is at its lowest") if less == value else "",
             locked=locked,
         ),
         Label(
@@ -158,7 +165,7 @@ def stepper(
             icon=Icon.PLUS,
             on_tap=Set(signal, more),
             on_hold=Set(signal, far_more),
-            disabled="It is at its highest" if more == value else "",
+            disabled=say("It is at its highest") if more == value else "",
             locked=locked,
         ),
     )
@@ -183,7 +190,7 @@ def switch(
 
 def grouped(tile: Tile, group: str) -> Tile:
     """The tile, told apart from those of the same name in other groups by whoever hears it alone."""
-    return replace(tile, description=f"{group}: {tile.text}")
+    return replace(tile, description=say("{name}: {value}", name=group, value=tile.text))
 
 
 def levels(
@@ -390,7 +397,7 @@ def _rest(rect: Rect, key: str, state: State) -> Row:
     return Row(
         rect=rect,
         key=f"{key}.rest",
-        text="The rest at a stop",
+        text=say("The rest at a stop"),
         icon=Icon.INFO,
         on_tap=Show(state.screen),
         locked=state.locked(Restriction.LIMIT_CONTENT),
@@ -404,7 +411,7 @@ def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put])
         Button(
             rect=earlier,
             key=f"{key}.earlier",
-            description="Half an hour earlier",
+            description=say("Half an hour earlier"),
             icon=Icon.MINUS,
             on_tap=put(timer.moved(-30)),
         ),
@@ -412,14 +419,14 @@ def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put])
             rect=time,
             key=f"{key}.time",
             text=timer.shown,
-            description="Time",
+            description=say("Time"),
             style=Type.HEADLINE,
             align="centre",
         ),
         Button(
             rect=later,
             key=f"{key}.later",
-            description="Half an hour later",
+            description=say("Half an hour later"),
             icon=Icon.PLUS,
             on_tap=put(timer.moved(30)),
         ),

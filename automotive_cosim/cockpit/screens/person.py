@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.screens.parts import heading, note, rows
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Glyph, Label, Look, Picture, Row, Widget
+from automotive_cosim.contracts.text import say
 
 PHOTO = "thread.photo"
 """Id of the photo that came with a message."""
@@ -29,7 +30,9 @@ def contact(state: State) -> tuple[Widget, ...]:
     buttons = acts.columns(3, GAP)
     return (
         handset(state),
-        Button(rect=head.left(64).top(64), key="contact.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Button(
+            rect=head.left(64).top(64), key="contact.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()
+        ),
         Glyph(rect=picture, icon=Icon.ACCOUNT, size=112, tone="accent"),
         Label(
             rect=name,
@@ -42,14 +45,14 @@ def contact(state: State) -> tuple[Widget, ...]:
             rect=line,
             key="contact.number",
             text="" if number == who else number,
-            description="Number",
+            description=say("Number"),
             tone="muted",
             align="centre",
         ),
         Button(
             rect=buttons[0],
             key="contact.call",
-            text="Call",
+            text=say("Call"),
             icon=Icon.PHONE,
             icon_size=36,
             look=Look.ACCENT,
@@ -59,7 +62,7 @@ def contact(state: State) -> tuple[Widget, ...]:
         Button(
             rect=buttons[1],
             key="contact.message",
-            text="Message",
+            text=say("Message"),
             icon=Icon.MESSAGE,
             icon_size=36,
             stacked=True,
@@ -68,14 +71,16 @@ def contact(state: State) -> tuple[Widget, ...]:
         Button(
             rect=buttons[2],
             key="contact.favourite",
-            text="Remove favourite" if favourite else "Add favourite",
+            text=say("Remove favourite") if favourite else say("Add favourite"),
             icon=Icon.STAR if favourite else Icon.STAR_OUTLINE,
             icon_size=36,
             stacked=True,
             on_tap=Put(
                 "phone",
                 state.phone.with_favourite(who, not favourite),
-                f"{who} is no longer a favourite" if favourite else f"{who} is now a favourite",
+                say("{who} is no longer a favourite", who=who)
+                if favourite
+                else say("{who} is now a favourite", who=who),
             ),
         ),
     )
@@ -87,7 +92,7 @@ def thread(state: State) -> tuple[Widget, ...]:
     known = state.directory.thread(who, state.phone)
     hidden = state.locked(Restriction.NO_TEXT_MESSAGE)
     opened = who in state.phone.read or not (known and known.unread)
-    sent = [(sent.text, "You") for sent in state.phone.sent if sent.to == who]
+    sent = [(sent.text, say("You")) for sent in state.phone.sent if sent.to == who]
     said = [(text, who) for text in known.lines] if known else []
     lines = [*(said if opened and not hidden else []), *sent]
     photo = known.photo if known and opened and not hidden else None
@@ -98,28 +103,28 @@ def thread(state: State) -> tuple[Widget, ...]:
     back, _, name, _, figure = row(bar, 64, 16, REST, 12, 172)
     return (
         handset(state),
-        Button(rect=back, key="thread.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Button(rect=back, key="thread.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()),
         Label(rect=name, key="thread.who", text=who, style=Type.TITLE),
         Button(
             rect=figure,
             key="thread.figure",
-            text="Send a figure",
+            text=say("Send a figure"),
             icon=Icon.MESSAGE,
             on_tap=Show("figure", who),
         ),
         Button(
             rect=read,
             key="thread.read",
-            text="Read out" if hidden else "Open",
+            text=say("Read out") if hidden else say("Open"),
             icon=Icon.VOICE if hidden else Icon.EYE,
             on_tap=Read(who),
-            disabled="" if said and not opened else "There is nothing new to read",
+            disabled="" if said and not opened else say("There is nothing new to read"),
         ),
-        heading(right.top(28), "Answer"),
+        heading(right.top(28), say("Answer")),
         rows(
             right.below(36),
             "thread.answers",
-            "Answers",
+            say("Answers"),
             state,
             len(TEMPLATES),
             lambda index, cell: Row(
@@ -136,7 +141,7 @@ def thread(state: State) -> tuple[Widget, ...]:
                 rows(
                     talk,
                     "thread.lines",
-                    "Messages",
+                    say("Messages"),
                     state,
                     len(lines),
                     lambda index, cell: Row(
@@ -154,12 +159,12 @@ def thread(state: State) -> tuple[Widget, ...]:
                 note(
                     talk,
                     "thread.hidden",
-                    hidden if hidden and said else "Not opened yet" if said else "No messages yet",
+                    hidden if hidden and said else say("Not opened yet") if said else say("No messages yet"),
                 ),
             )
         ),
         *(
-            (Picture(rect=seen.middle(PHOTO_WIDE, PHOTO_HIGH), key=PHOTO, description="Photo", photo=photo),)
+            (Picture(rect=seen.middle(PHOTO_WIDE, PHOTO_HIGH), key=PHOTO, description=say("Photo"), photo=photo),)
             if photo
             else ()
         ),

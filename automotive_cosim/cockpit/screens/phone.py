@@ -12,14 +12,15 @@ from automotive_cosim.cockpit.screens.parts import choices, note, rows, search
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Row, Widget
+from automotive_cosim.contracts.text import say
 
 WAYS = {"in": Icon.CALL_IN, "out": Icon.CALL_OUT, "missed": Icon.CALL_MISSED}
 TABS = (
-    ("favourites", "Favourites", Icon.STAR),
-    ("recents", "Recents", Icon.HISTORY),
-    ("contacts", "Contacts", Icon.CONTACTS),
-    ("messages", "Messages", Icon.MESSAGE),
-    ("keypad", "Keypad", Icon.DIALPAD),
+    ("favourites", say("Favourites"), Icon.STAR),
+    ("recents", say("Recents"), Icon.HISTORY),
+    ("contacts", say("Contacts"), Icon.CONTACTS),
+    ("messages", say("Messages"), Icon.MESSAGE),
+    ("keypad", say("Keypad"), Icon.DIALPAD),
 )
 KEYS = "123456789*0#"
 
@@ -49,12 +50,12 @@ def phone(state: State) -> tuple[Widget, ...]:
 def _favourites(rect: Rect, state: State) -> tuple[Widget, ...]:
     names = state.phone.favourites
     if not names:
-        return (note(rect, "phone.favourites.empty", "No favourites yet: add them from a contact"),)
+        return (note(rect, "phone.favourites.empty", say("No favourites yet: add them from a contact")),)
     return (
         rows(
             rect,
             "phone.favourites",
-            "Favourites",
+            say("Favourites"),
             state,
             len(names),
             lambda index, cell: Button(
@@ -82,14 +83,14 @@ def _recents(rect: Rect, state: State) -> tuple[Widget, ...]:
             rect=cell,
             key=f"phone.recent.{index}",
             text=call.who,
-            detail={"in": "Received", "out": "Made", "missed": "Missed"}[call.way],
+            detail={"in": say("Received"), "out": say("Made"), "missed": say("Missed")}[call.way],
             trail=call.when,
             icon=WAYS[call.way],
             tone="warning" if call.way == "missed" else "accent",
             on_tap=Show("contact", call.who),
         )
 
-    return (rows(rect, "phone.recents", "Recent calls", state, len(calls), line, height=64),)
+    return (rows(rect, "phone.recents", say("Recent calls"), state, len(calls), line, height=64),)
 
 
 def _contacts(rect: Rect, state: State) -> tuple[Widget, ...]:
@@ -100,15 +101,15 @@ def _contacts(rect: Rect, state: State) -> tuple[Widget, ...]:
         search(
             bar,
             "phone.search",
-            "Search contacts",
-            "Search contacts",
+            say("Search contacts"),
+            say("Search contacts"),
             state,
             Show("contact", found[0].name) if found else None,
         ),
         rows(
             rect.below(72),
             "phone.contacts",
-            "Contacts",
+            say("Contacts"),
             state,
             len(found),
             lambda index, cell: Row(
@@ -122,7 +123,7 @@ def _contacts(rect: Rect, state: State) -> tuple[Widget, ...]:
             height=56,
         )
         if found
-        else note(rect.below(72), "phone.contacts.empty", "No contact with this name"),
+        else note(rect.below(72), "phone.contacts.empty", say("No contact with this name")),
     )
 
 
@@ -136,14 +137,14 @@ def _messages(rect: Rect, state: State) -> tuple[Widget, ...]:
             rect=cell,
             key=f"phone.thread.{index}",
             text=thread.who,
-            detail="New message" if new else "Read",
+            detail=say("New message") if new else say("Read"),
             trail=thread.when,
             icon=Icon.MESSAGE,
             tone="good" if new else "muted",
             on_tap=Show("thread", thread.who),
         )
 
-    return (rows(rect, "phone.threads", "Messages", state, len(threads), line, height=64),)
+    return (rows(rect, "phone.threads", say("Messages"), state, len(threads), line, height=64),)
 
 
 def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
@@ -152,7 +153,7 @@ def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
     pad, _, side = row(rect, 420, 24, REST)
     shown, _, erase, _, call = column(side, 96, 16, 72, 16, 88)
     cells = [cell for line in pad.rows(4, 12) for cell in line.columns(3, 12)]
-    empty = "" if number else "Enter a number first"
+    empty = "" if number else say("Enter a number first")
     return (
         *(
             Button(
@@ -171,8 +172,8 @@ def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=shown.inset(20),
                     key="phone.number",
-                    text=number[-14:] or ("Locked while driving" if locked else "Number"),
-                    description="Number to call",
+                    text=number[-14:] or (say("Locked while driving") if locked else say("Number")),
+                    description=say("Number to call"),
                     style=Type.TITLE,
                     tone="text" if number else "muted",
                     align="centre",
@@ -182,7 +183,7 @@ def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=erase,
             key="phone.erase",
-            text="Delete the last character",
+            text=say("Delete the last character"),
             icon=Icon.ERASE,
             on_tap=Key("phone.number", BACKSPACE),
             disabled=empty,
@@ -190,7 +191,7 @@ def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=call,
             key="phone.call_number",
-            text="Call",
+            text=say("Call"),
             icon=Icon.PHONE,
             style=Type.TITLE,
             look=Look.ACCENT,

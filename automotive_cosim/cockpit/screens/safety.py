@@ -21,32 +21,39 @@ from automotive_cosim.cockpit.state import AlertDraft, State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Choice, Glyph, Label, Look, Row, Widget
 from automotive_cosim.contracts import AlertKind, Severity
+from automotive_cosim.contracts.text import say
 
 KINDS: dict[AlertKind, tuple[str, Icon]] = {
-    AlertKind.SPEED: ("Speed", Icon.SPEED),
-    AlertKind.DISTANCE: ("Distance", Icon.DISTANCE),
-    AlertKind.COLLISION: ("Collision", Icon.COLLISION),
-    AlertKind.LANE: ("Lane", Icon.LANE),
-    AlertKind.FATIGUE: ("Fatigue", Icon.FATIGUE),
-    AlertKind.DISTRACTION: ("Distraction", Icon.DISTRACTION),
-    AlertKind.SEAT_BELT: ("Seat belt", Icon.SEAT_BELT),
-    AlertKind.VISIBILITY: ("Visibility", Icon.REAR_FOG),
-    AlertKind.SLIPPERY: ("Slippery road", Icon.SLIPPERY),
-    AlertKind.WEATHER: ("Weather", Icon.WEATHER),
-    AlertKind.TRAFFIC: ("Traffic", Icon.TRAFFIC),
-    AlertKind.CORRIDOR: ("Rescue lane", Icon.CORRIDOR),
-    AlertKind.YIELD: ("Give way", Icon.AMBULANCE),
-    AlertKind.MOVE_OVER: ("Move over", Icon.MOVE_OVER),
-    AlertKind.SCHOOL: ("School", Icon.SCHOOL),
-    AlertKind.TUNNEL: ("Tunnel", Icon.TUNNEL),
-    AlertKind.VEHICLE: ("Vehicle", Icon.VEHICLE_FAULT),
+    AlertKind.SPEED: (say("Speed"), Icon.SPEED),
+    AlertKind.DISTANCE: (say("Distance"), Icon.DISTANCE),
+    AlertKind.COLLISION: (say("Collision"), Icon.COLLISION),
+    AlertKind.LANE: (say("Lane"), Icon.LANE),
+    AlertKind.FATIGUE: (say("Fatigue"), Icon.FATIGUE),
+    AlertKind.DISTRACTION: (say("Distraction"), Icon.DISTRACTION),
+    AlertKind.SEAT_BELT: (say("Seat belt"), Icon.SEAT_BELT),
+    AlertKind.VISIBILITY: (say("Visibility"), Icon.REAR_FOG),
+    AlertKind.SLIPPERY: (say("Slippery road"), Icon.SLIPPERY),
+    AlertKind.WEATHER: (say("Weather"), Icon.WEATHER),
+    AlertKind.TRAFFIC: (say("Traffic"), Icon.TRAFFIC),
+    AlertKind.CORRIDOR: (say("Rescue lane"), Icon.CORRIDOR),
+    AlertKind.YIELD: (say("Give way"), Icon.AMBULANCE),
+    AlertKind.MOVE_OVER: (say("Move over"), Icon.MOVE_OVER),
+    AlertKind.SCHOOL: (say("School"), Icon.SCHOOL),
+    AlertKind.TUNNEL: (say("Tunnel"), Icon.TUNNEL),
+    AlertKind.VEHICLE: (say("Vehicle"), Icon.VEHICLE_FAULT),
 }
 """Name on screen and icon of every kind of alert."""
 SEVERITIES: dict[Severity, tuple[str, Icon]] = {
-    Severity.INFO: ("Info", Icon.INFO),
-    Severity.WARNING: ("Warning", Icon.WARNING),
-    Severity.CRITICAL: ("Critical", Icon.CRITICAL),
+    Severity.INFO: (say("Info"), Icon.INFO),
+    Severity.WARNING: (say("Warning"), Icon.WARNING),
+    Severity.CRITICAL: (say("Critical"), Icon.CRITICAL),
 }
+_URGENT = {
+    Severity.INFO: say("info"),
+    Severity.WARNING: say("warning"),
+    Severity.CRITICAL: say("critical"),
+}
+"""A severity within a line."""
 SLOWEST_KMH, FASTEST_KMH, STEP_KMH = 10.0, 180.0, 10.0
 
 
@@ -67,7 +74,7 @@ def _three(rect: Rect) -> tuple[Rect, Rect, Rect]:
 
 
 def _put(draft: AlertDraft) -> Put:
-    return Put("draft", draft, "The alert is not given yet")
+    return Put("draft", draft, say("The alert is not given yet"))
 
 
 def _kinds(rect: Rect, state: State) -> Widget:
@@ -91,11 +98,11 @@ def _kinds(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            heading(head, "Warn the driver about"),
+            heading(head, say("Warn the driver about")),
             rows(
                 body,
                 "safety.kinds",
-                "Alert types",
+                say("Alert types"),
                 state,
                 len(kinds),
                 cell,
@@ -112,16 +119,16 @@ def _draft(rect: Rect, state: State) -> Widget:
         rect.inset(20, 16), 30, 4, 44, 14, 92, 20, 180, REST, 88
     )
     draft = state.draft
-    title = "Choose what to warn about" if draft.kind is None else KINDS[draft.kind][0]
+    title = say("Choose what to warn about") if draft.kind is None else KINDS[draft.kind][0]
     return Card(
         rect=rect,
         children=(
-            heading(head, "Alert"),
+            heading(head, say("Alert")),
             Label(
                 rect=chosen,
                 key="safety.draft",
                 text=title,
-                description="Alert to give",
+                description=say("Alert to give"),
                 style=Type.TITLE,
             ),
             choices(
@@ -143,13 +150,13 @@ def _draft(rect: Rect, state: State) -> Widget:
             Button(
                 rect=warn,
                 key="safety.warn",
-                text="Warn driver",
+                text=say("Warn driver"),
                 icon=Icon.WARN,
                 icon_size=34,
                 style=Type.TITLE,
                 look=Look.ACCENT,
                 on_tap=WarnDriver(),
-                disabled="Choose what to warn about first" if draft.kind is None else "",
+                disabled=say("Choose what to warn about first") if draft.kind is None else "",
             ),
         ),
     )
@@ -163,39 +170,39 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
     start = min(FASTEST_KMH, max(SLOWEST_KMH, start // STEP_KMH * STEP_KMH))
     less = start if advised is None else max(SLOWEST_KMH, advised - STEP_KMH)
     more = start if advised is None else min(FASTEST_KMH, advised + STEP_KMH)
-    shown = "Posted limit" if advised is None else f"{speed(signals, advised)} {speed_unit(signals)}"
+    shown = say("Posted limit") if advised is None else f"{speed(signals, advised)} {speed_unit(signals)}"
     head, _, line, _, posted = column(rect, 28, 12, 64, 12, 52)
     minus, number, plus = row(line, 64, REST, 64)
     return (
-        heading(head, "Advised speed"),
+        heading(head, say("Advised speed")),
         Button(
             rect=minus,
             key="safety.speed.decrease",
-            description="Advised speed lower",
+            description=say("{name} lower", name=say("Advised speed")),
             icon=Icon.MINUS,
             on_tap=_put(replace(draft, speed_kmh=less)),
-            disabled="It is at its lowest" if advised == less else "",
+            disabled=say("It is at its lowest") if advised == less else "",
         ),
         Label(
             rect=number,
             key="safety.speed.value",
             text=shown,
-            description="Advised speed",
+            description=say("Advised speed"),
             style=Type.STRONG,
             align="centre",
         ),
         Button(
             rect=plus,
             key="safety.speed.increase",
-            description="Advised speed higher",
+            description=say("{name} higher", name=say("Advised speed")),
             icon=Icon.PLUS,
             on_tap=_put(replace(draft, speed_kmh=more)),
-            disabled="It is at its highest" if advised == more else "",
+            disabled=say("It is at its highest") if advised == more else "",
         ),
         Choice(
             rect=posted,
             key="safety.speed.posted",
-            text="Leave it to the signs",
+            text=say("Leave it to the signs"),
             selected=advised is None,
             look="boxed",
             on_tap=_put(replace(draft, speed_kmh=None)),
@@ -209,11 +216,11 @@ def _help(rect: Rect, state: State) -> tuple[Widget, ...]:
     hazard, slow = upper.columns(2, 12)
     stop, call = lower.columns(2, 12)
     return (
-        switch(hazard, "safety.hazard_lights", "Hazards", Icon.HAZARD, LIGHTS.HAZARD, state.signals),
+        switch(hazard, "safety.hazard_lights", say("Hazards"), Icon.HAZARD, LIGHTS.HAZARD, state.signals),
         Button(
             rect=slow,
             key="safety.slow_down",
-            text="Slow down",
+            text=say("Slow down"),
             icon=Icon.SLOWER,
             stacked=True,
             on_tap=AskSlowDown(),
@@ -221,7 +228,7 @@ def _help(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=stop,
             key="safety.pull_over",
-            text="Pull over",
+            text=say("Pull over"),
             icon=Icon.PULL_OVER,
             stacked=True,
             on_tap=AskPullOver(),
@@ -229,7 +236,7 @@ def _help(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=call,
             key="safety.emergency_call",
-            text="SOS call",
+            text=say("SOS call"),
             icon=Icon.PHONE_ALERT,
             stacked=True,
             look=Look.CRITICAL,
@@ -249,14 +256,16 @@ def _history(rect: Rect, state: State) -> Widget:
         return Row(
             rect=box,
             key=f"safety.history.{index}",
-            text=f"{name}, {SEVERITIES[entry.alert.severity][0].lower()}",
+            text=say("{first}, {second}", first=name, second=_URGENT[entry.alert.severity]),
             detail=f"{entry.clock} {entry.answer}".strip(),
             icon=icon,
         )
 
-    empty = Label(rect=body.top(40), key="safety.history.empty", text="Nothing yet", tone="muted", style=Type.LABEL)
-    listed = rows(body, "safety.history", "Alerts given", state, len(given), line, height=84, gap=6)
-    return Card(rect=rect, children=(heading(head, "History"), listed if given else empty))
+    empty = Label(
+        rect=body.top(40), key="safety.history.empty", text=say("Nothing yet"), tone="muted", style=Type.LABEL
+    )
+    listed = rows(body, "safety.history", say("Alerts given"), state, len(given), line, height=84, gap=6)
+    return Card(rect=rect, children=(heading(head, say("History")), listed if given else empty))
 
 
 def emergency(state: State) -> tuple[Widget, ...]:
@@ -273,16 +282,16 @@ def emergency(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=question,
                     key="emergency.title",
-                    text="Call the emergency services?",
+                    text=say("Call the emergency services?"),
                     style=Type.TITLE,
                     align="centre",
                 ),
                 Label(
                     rect=about,
                     key="emergency.about",
-                    text="A call was made. They have the car's position."
+                    text=say("A call was made. They have the car's position.")
                     if made
-                    else "They receive the car's position. A call can't be undone.",
+                    else say("They receive the car's position. A call can't be undone."),
                     tone="muted",
                     align="centre",
                     lines=2,
@@ -290,7 +299,7 @@ def emergency(state: State) -> tuple[Widget, ...]:
                 Button(
                     rect=cancel,
                     key="emergency.cancel",
-                    text="Back",
+                    text=say("Back"),
                     look=Look.TONAL,
                     style=Type.STRONG,
                     on_tap=Back(),
@@ -298,7 +307,7 @@ def emergency(state: State) -> tuple[Widget, ...]:
                 Button(
                     rect=call,
                     key="emergency.call",
-                    text="Call now",
+                    text=say("Call now"),
                     icon=Icon.PHONE,
                     look=Look.CRITICAL,
                     style=Type.STRONG,

@@ -23,14 +23,15 @@ from automotive_cosim.cockpit.signals import HMI, LINK, MEDIA, VOICE, Signal
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Row, Widget
+from automotive_cosim.contracts.text import say
 
 PAGES = (
-    ("settings", "Display, units", Icon.BRIGHTNESS),
-    ("sound", "Sound", Icon.VOLUME),
-    ("connections", "Connections", Icon.WIFI),
-    ("language", "Language, time", Icon.LANGUAGE),
-    ("privacy", "Privacy", Icon.PRIVACY),
-    ("profiles", "Profiles", Icon.PROFILE),
+    ("settings", say("Display, units"), Icon.BRIGHTNESS),
+    ("sound", say("Sound"), Icon.VOLUME),
+    ("connections", say("Connections"), Icon.WIFI),
+    ("language", say("Language, time"), Icon.LANGUAGE),
+    ("privacy", say("Privacy"), Icon.PRIVACY),
+    ("profiles", say("Profiles"), Icon.PROFILE),
 )
 LANGUAGES = {"en": "English", "fr": "Français", "de": "Deutsch", "ja": "日本語"}
 PADDING = 28, 24
@@ -63,28 +64,34 @@ def _display(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            title(head, Icon.BRIGHTNESS, "Display"),
-            slider(bright, "settings.brightness", "Brightness", Icon.BRIGHTNESS, HMI.BRIGHTNESS, signals),
-            heading(name, "Appearance"),
+            title(head, Icon.BRIGHTNESS, say("Display")),
+            slider(bright, "settings.brightness", say("Brightness"), Icon.BRIGHTNESS, HMI.BRIGHTNESS, signals),
+            heading(name, say("Appearance")),
             choices(
                 modes,
                 "settings.appearance",
                 [
-                    ("auto", "Auto", Icon.DAY_NIGHT, by_itself, Set(HMI.DAY_NIGHT_AUTO, True)),
-                    ("day", "Day", Icon.DAY, not by_itself and mode == "DAY", Set(HMI.DAY_NIGHT, "DAY")),
-                    ("night", "Night", Icon.NIGHT, not by_itself and mode == "NIGHT", Set(HMI.DAY_NIGHT, "NIGHT")),
+                    ("auto", say("Auto"), Icon.DAY_NIGHT, by_itself, Set(HMI.DAY_NIGHT_AUTO, True)),
+                    ("day", say("Day"), Icon.DAY, not by_itself and mode == "DAY", Set(HMI.DAY_NIGHT, "DAY")),
+                    (
+                        "night",
+                        say("Night"),
+                        Icon.NIGHT,
+                        not by_itself and mode == "NIGHT",
+                        Set(HMI.DAY_NIGHT, "NIGHT"),
+                    ),
                 ],
                 stacked=True,
             ),
             Label(
                 rect=about,
                 key="settings.appearance.about",
-                text="Auto follows the light outside: night after sunset and in tunnels.",
+                text=say("Auto follows the light outside: night after sunset and in tunnels."),
                 style=Type.CAPTION,
                 tone="muted",
                 lines=2,
             ),
-            switch(sounds, "settings.touch_sounds", "Touch sounds", Icon.VOLUME, VOICE.TOUCH_SOUNDS, signals),
+            switch(sounds, "settings.touch_sounds", say("Touch sounds"), Icon.VOLUME, VOICE.TOUCH_SOUNDS, signals),
         ),
     )
 
@@ -95,24 +102,24 @@ def _units(rect: Rect, state: State) -> Widget:
     groups: tuple[tuple[str, str, Signal[str], tuple[tuple[str, str, str], ...]], ...] = (
         (
             "distance",
-            "Distance and speed",
+            say("Distance and speed"),
             HMI.DISTANCE_UNIT,
-            (("kilometres", "Kilometres", "KILOMETERS"), ("miles", "Miles", "MILES")),
+            (("kilometres", say("Kilometres"), "KILOMETERS"), ("miles", say("Miles"), "MILES")),
         ),
         (
             "temperature",
-            "Temperature",
+            say("Temperature"),
             HMI.TEMPERATURE_UNIT,
-            (("celsius", "Celsius", "C"), ("fahrenheit", "Fahrenheit", "F")),
+            (("celsius", say("Celsius"), "C"), ("fahrenheit", say("Fahrenheit"), "F")),
         ),
         (
             "pressure",
-            "Tyre pressure",
+            say("Tyre pressure"),
             HMI.PRESSURE_UNIT,
             (("bar", "bar", "BAR"), ("kpa", "kPa", "KPA"), ("psi", "psi", "PSI")),
         ),
     )
-    children: list[Widget] = [title(head, Icon.UNITS, "Units")]
+    children: list[Widget] = [title(head, Icon.UNITS, say("Units"))]
     for line, (key, name, signal, options) in zip(units.rows(3, 10), groups, strict=True):
         now = signals[signal]
         children += [
@@ -123,11 +130,11 @@ def _units(rect: Rect, state: State) -> Widget:
                 [(unit, text, None, now == value, Set(signal, value)) for unit, text, value in options],
             ),
         ]
-    gps = "Not fitted" if state.outside is None or state.outside.gps is None else "Fitted"
-    camera = "Fitted" if state.sign_camera else "Not fitted"
+    gps = say("Not fitted") if state.outside is None or state.outside.gps is None else say("Fitted")
+    camera = say("Fitted") if state.sign_camera else say("Not fitted")
     facts = fitted.rows(2, 4)
-    children += fact(facts[0], "settings.sign_camera", "Sign camera", camera)
-    children += fact(facts[1], "settings.positioning", "Satellite positioning", gps)
+    children += fact(facts[0], "settings.sign_camera", say("Sign camera"), camera)
+    children += fact(facts[1], "settings.positioning", say("Satellite positioning"), gps)
     return Card(rect=rect, children=tuple(children))
 
 
@@ -141,16 +148,16 @@ def sound(state: State) -> tuple[Widget, ...]:
     volume, _, levels, _, mute = column(left.inset(*PADDING), 40, 20, 288, REST, 64)
     equaliser, _, tones, _, neutral = column(right.inset(*PADDING), 40, 12, 376, REST, 56)
     volumes = (
-        ("sound.media", "Media", Icon.MEDIA, MEDIA.VOLUME),
-        ("sound.guidance", "Guidance", Icon.VOICE, VOICE.GUIDANCE_VOLUME),
-        ("sound.calls", "Calls", Icon.PHONE, VOICE.CALL_VOLUME),
+        ("sound.media", say("Media"), Icon.MEDIA, MEDIA.VOLUME),
+        ("sound.guidance", say("Guidance"), Icon.VOICE, VOICE.GUIDANCE_VOLUME),
+        ("sound.calls", say("Calls"), Icon.PHONE, VOICE.CALL_VOLUME),
     )
     bands = (
-        ("sound.bass", "Bass", MEDIA.BASS, "dB"),
-        ("sound.middle", "Middle", MEDIA.MIDDLE, "dB"),
-        ("sound.treble", "Treble", MEDIA.TREBLE, "dB"),
-        ("sound.balance", "Left, right", MEDIA.BALANCE, ""),
-        ("sound.fader", "Rear, front", MEDIA.FADER, ""),
+        ("sound.bass", say("Bass"), MEDIA.BASS, "dB"),
+        ("sound.middle", say("Middle"), MEDIA.MIDDLE, "dB"),
+        ("sound.treble", say("Treble"), MEDIA.TREBLE, "dB"),
+        ("sound.balance", say("Left, right"), MEDIA.BALANCE, ""),
+        ("sound.fader", say("Rear, front"), MEDIA.FADER, ""),
     )
     flat = tuple((signal, 0.0) for _, _, signal, _ in bands)
     even = all(signals[signal] == 0 for signal, _ in flat)
@@ -159,18 +166,18 @@ def sound(state: State) -> tuple[Widget, ...]:
         Card(
             rect=left,
             children=(
-                title(volume, Icon.VOLUME, "Volume"),
+                title(volume, Icon.VOLUME, say("Volume")),
                 *(
                     slider(line, key, name, icon, signal, signals)
                     for line, (key, name, icon, signal) in zip(levels.rows(3, 12), volumes, strict=True)
                 ),
-                switch(mute, "sound.mute", "Mute media", Icon.MUTE, MEDIA.MUTED, signals),
+                switch(mute, "sound.mute", say("Mute media"), Icon.MUTE, MEDIA.MUTED, signals),
             ),
         ),
         Card(
             rect=right,
             children=(
-                title(equaliser, Icon.EQUALIZER, "Equaliser"),
+                title(equaliser, Icon.EQUALIZER, say("Equaliser")),
                 *(
                     slider(
                         line,
@@ -186,10 +193,10 @@ def sound(state: State) -> tuple[Widget, ...]:
                 Button(
                     rect=neutral,
                     key="sound.flat",
-                    text="Flat",
+                    text=say("Flat"),
                     icon=Icon.EQUALIZER,
-                    on_tap=SetAll(flat, "the equaliser is flat"),
-                    disabled="It is already flat" if even else "",
+                    on_tap=SetAll(flat, say("the equaliser is flat")),
+                    disabled=say("It is already flat") if even else "",
                 ),
             ),
         ),
@@ -209,22 +216,22 @@ def connections(state: State) -> tuple[Widget, ...]:
     )
     locked = state.locked(Restriction.NO_SETUP)
     desk = state.desk
-    wifi_off = "" if signals[LINK.WIFI] else "Wi-Fi is off"
-    bluetooth_off = "" if signals[LINK.BLUETOOTH] else "Bluetooth is off"
+    wifi_off = "" if signals[LINK.WIFI] else say("Wi-Fi is off")
+    bluetooth_off = "" if signals[LINK.BLUETOOTH] else say("Bluetooth is off")
     return _page(
         state,
         Card(
             rect=left,
             children=(
-                title(head, Icon.WIFI, "Networks"),
+                title(head, Icon.WIFI, say("Networks")),
                 *(
                     switch(line, key, name, icon, signal, signals)
                     for line, (key, name, icon, signal) in zip(
                         links.rows(3, 8),
                         (
-                            ("link.mobile", "Mobile data", Icon.MOBILE, LINK.MOBILE_DATA),
-                            ("link.wifi", "Wi-Fi", Icon.WIFI, LINK.WIFI),
-                            ("link.hotspot", "Hotspot", Icon.HOTSPOT, LINK.HOTSPOT),
+                            ("link.mobile", say("Mobile data"), Icon.MOBILE, LINK.MOBILE_DATA),
+                            ("link.wifi", say("Wi-Fi"), Icon.WIFI, LINK.WIFI),
+                            ("link.hotspot", say("Hotspot"), Icon.HOTSPOT, LINK.HOTSPOT),
                         ),
                         strict=True,
                     )
@@ -235,12 +242,12 @@ def connections(state: State) -> tuple[Widget, ...]:
                         key=f"link.network.{at}",
                         raised=True,
                         text=name,
-                        trail="Connected" if name == desk.network else "",
+                        trail=say("Connected") if name == desk.network else "",
                         icon=Icon.WIFI,
                         selected=name == desk.network,
                         disabled=wifi_off,
                         locked=locked,
-                        on_tap=Put("desk", replace(desk, network=name), f"{name} is connected"),
+                        on_tap=Put("desk", replace(desk, network=name), say("{name} is connected", name=name)),
                     )
                     for at, (line, name) in enumerate(zip(networks.rows(4, 6), NETWORKS, strict=True))
                 ),
@@ -251,26 +258,26 @@ def connections(state: State) -> tuple[Widget, ...]:
             children=(
                 title(bluetooth, Icon.BLUETOOTH, "Bluetooth"),
                 switch(power, "link.bluetooth", "Bluetooth", Icon.BLUETOOTH, LINK.BLUETOOTH, signals),
-                heading(name, "Devices"),
+                heading(name, say("Devices")),
                 *(
                     Row(
                         rect=line,
                         key=f"link.device.{at}",
                         raised=True,
                         text=name,
-                        trail="Paired" if name == desk.device else "",
+                        trail=say("Paired") if name == desk.device else "",
                         icon=Icon.MOBILE,
                         selected=name == desk.device,
                         disabled=bluetooth_off,
                         locked=locked,
-                        on_tap=Put("desk", replace(desk, device=name), f"{name} is paired"),
+                        on_tap=Put("desk", replace(desk, device=name), say("{name} is paired", name=name)),
                     )
                     for at, (line, name) in enumerate(zip(devices.rows(3, 8), DEVICES, strict=True))
                 ),
                 Label(
                     rect=about,
                     key="link.about",
-                    text="Connect to networks and pair phones while parked.",
+                    text=say("Connect to networks and pair phones while parked."),
                     style=Type.CAPTION,
                     tone="muted",
                     lines=2,
@@ -292,15 +299,15 @@ def language(state: State) -> tuple[Widget, ...]:
         right.inset(*PADDING), 40, 16, 28, 8, 68, 20, 132, REST, 64
     )
     now, form = signals[HMI.LANGUAGE], signals[HMI.TIME_FORMAT]
-    date = "Not known yet" if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
-    zone = "Not known yet" if state.outside is None else f"UTC{state.outside.local_time:%z}"
+    date = say("Not known yet") if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
+    zone = say("Not known yet") if state.outside is None else f"UTC{state.outside.local_time:%z}"
     lines = facts.rows(3, 8)
     return _page(
         state,
         Card(
             rect=left,
             children=(
-                title(head, Icon.LANGUAGE, "Language"),
+                title(head, Icon.LANGUAGE, say("Language")),
                 *(
                     Row(
                         rect=line,
@@ -317,23 +324,23 @@ def language(state: State) -> tuple[Widget, ...]:
         Card(
             rect=right,
             children=(
-                title(when, Icon.CLOCK, "Date and time"),
-                heading(name, "Time of day"),
+                title(when, Icon.CLOCK, say("Date and time")),
+                heading(name, say("Time of day")),
                 choices(
                     forms,
                     "language.time",
                     [
-                        ("24", "24 hours", None, form == "HR_24", Set(HMI.TIME_FORMAT, "HR_24")),
-                        ("12", "12 hours", None, form == "HR_12", Set(HMI.TIME_FORMAT, "HR_12")),
+                        ("24", say("{n} hours", n=24), None, form == "HR_24", Set(HMI.TIME_FORMAT, "HR_24")),
+                        ("12", say("{n} hours", n=12), None, form == "HR_12", Set(HMI.TIME_FORMAT, "HR_12")),
                     ],
                 ),
-                *fact(lines[0], "language.clock", "Local time", state.clock),
-                *fact(lines[1], "language.date", "Date", date),
-                *fact(lines[2], "language.zone", "Time zone", zone),
+                *fact(lines[0], "language.clock", say("Local time"), state.clock),
+                *fact(lines[1], "language.date", say("Date"), date),
+                *fact(lines[2], "language.zone", say("Time zone"), zone),
                 Label(
                     rect=about,
                     key="language.about",
-                    text="Clock and time zone are set by satellite.",
+                    text=say("Clock and time zone are set by satellite."),
                     style=Type.CAPTION,
                     tone="muted",
                     lines=2,
@@ -354,27 +361,27 @@ def privacy(state: State) -> tuple[Widget, ...]:
     options = (
         (
             "privacy.position",
-            "Share position",
+            say("Share position"),
             Icon.GPS,
             LINK.SHARE_POSITION,
-            "Apps receive the car's position. Emergency calls always send it.",
+            say("Apps receive the car's position. Emergency calls always send it."),
         ),
         (
             "privacy.driving",
-            "Share driving data",
+            say("Share driving data"),
             Icon.CAR_BESIDE,
             LINK.SHARE_DRIVING,
-            "Speed, braking and consumption go to the maker to improve the car.",
+            say("Speed, braking and consumption go to the maker to improve the car."),
         ),
         (
             "privacy.microphone",
-            "Voice assistant",
+            say("Voice assistant"),
             Icon.MICROPHONE,
             LINK.VOICE_ASSISTANT,
-            "The microphone listens for spoken requests.",
+            say("The microphone listens for spoken requests."),
         ),
     )
-    children: list[Widget] = [title(head, Icon.PRIVACY, "Privacy")]
+    children: list[Widget] = [title(head, Icon.PRIVACY, say("Privacy"))]
     for line, (key, name, icon, signal, about) in zip(body.rows(3, 12), options, strict=True):
         share, _, words = column(line, 64, 2, 32)
         children += [
@@ -396,14 +403,14 @@ def profiles(state: State) -> tuple[Widget, ...]:
         Card(
             rect=paper,
             children=(
-                title(head, Icon.PROFILE, "Profiles"),
+                title(head, Icon.PROFILE, say("Profiles")),
                 *(
                     Row(
                         rect=line,
                         key=f"profile.{at}",
                         raised=True,
                         text=profile.name,
-                        trail="Active" if profile.name == desk.profile else "",
+                        trail=say("Active") if profile.name == desk.profile else "",
                         icon=Icon.ACCOUNT,
                         selected=profile.name == desk.profile,
                         locked=locked,
@@ -414,7 +421,7 @@ def profiles(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=about,
                     key="profile.about",
-                    text="A profile sets its own seat, mirrors, temperature and brightness.",
+                    text=say("A profile sets its own seat, mirrors, temperature and brightness."),
                     style=Type.CAPTION,
                     tone="muted",
                     lines=2,

@@ -34,6 +34,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.contracts.text import joined, say
 
 STAYS = (30, 60, 120, 240)
 """Parking times that can be paid for, in minutes."""
@@ -47,7 +48,7 @@ def charging(state: State) -> tuple[Widget, ...]:
         left.inset(28, 20), 40, 8, 44, 8, 12, 14, 84, 16, 60, 12, 60, 16, 72
     )
     charge, _, reach = row(upper, 150, 10, REST)
-    level, cable = signals[ENERGY.LEVEL], "cable in" if signals[ENERGY.CABLE] else "no cable"
+    level, cable = signals[ENERGY.LEVEL], say("cable in") if signals[ENERGY.CABLE] else say("no cable")
     stations = nearest(state, state.atlas.of(PlaceKind.CHARGING))
     desk = state.desk
     timer = desk.charge_by
@@ -55,19 +56,19 @@ def charging(state: State) -> tuple[Widget, ...]:
         Card(
             rect=left,
             children=(
-                title(head, Icon.CHARGING, "Charging"),
+                title(head, Icon.CHARGING, say("Charging")),
                 Label(
                     rect=charge,
                     key="charging.level",
                     text=f"{level:.0f} %",
-                    description="Battery",
+                    description=say("Battery"),
                     style=Type.HEADLINE,
                 ),
                 Label(
                     rect=reach,
                     key="charging.range",
-                    text=f"{distance(signals, signals[ENERGY.RANGE])}, {cable}",
-                    description="Range and cable",
+                    text=say("{first}, {second}", first=distance(signals, signals[ENERGY.RANGE]), second=cable),
+                    description=say("Range and cable"),
                     tone="muted",
                     style=Type.LABEL,
                     align="right",
@@ -80,7 +81,7 @@ def charging(state: State) -> tuple[Widget, ...]:
                 slider(
                     limit,
                     "charging.limit",
-                    "Charge to",
+                    say("Charge to"),
                     Icon.BATTERY,
                     ENERGY.CHARGE_LIMIT,
                     signals,
@@ -88,7 +89,7 @@ def charging(state: State) -> tuple[Widget, ...]:
                 switch(
                     flap,
                     "charging.flap",
-                    "Charging flap open",
+                    say("Charging flap open"),
                     Icon.FLAP,
                     ENERGY.CHARGE_FLAP,
                     signals,
@@ -97,28 +98,32 @@ def charging(state: State) -> tuple[Widget, ...]:
                 Tile(
                     rect=ready,
                     key="charging.schedule",
-                    text="Ready at a set time",
+                    text=say("Ready at a set time"),
                     icon=Icon.CLOCK,
                     checked=timer.on,
                     on_tap=Put(
                         "desk",
                         replace(desk, charge_by=replace(timer, on=not timer.on)),
-                        "Charging starts at once" if timer.on else f"Charged by {timer.shown}",
+                        say("Charging starts at once")
+                        if timer.on
+                        else say("Charged by {shown}", shown=timer.shown),
                     ),
                 ),
                 *time_setter(
                     time,
                     "charging.schedule",
                     timer,
-                    lambda moved: Put("desk", replace(desk, charge_by=moved), f"The time is {moved.shown}"),
+                    lambda moved: Put(
+                        "desk", replace(desk, charge_by=moved), say("The time is {time}", time=moved.shown)
+                    ),
                 ),
             ),
         ),
-        heading(right.top(32), "Stations nearby"),
+        heading(right.top(32), say("Stations nearby")),
         rows(
             right.below(44),
             "charging.stations",
-            "Charging stations",
+            say("Charging stations"),
             state,
             len(stations),
             lambda index, cell: replace(
@@ -142,8 +147,8 @@ def parking(state: State) -> tuple[Widget, ...]:
         Card(
             rect=left,
             children=(
-                title(head, Icon.TICKET, "Pay for parking"),
-                heading(zone_name, "Zone"),
+                title(head, Icon.TICKET, say("Pay for parking")),
+                heading(zone_name, say("Zone")),
                 choices(
                     zones,
                     "parking.zone",
@@ -153,12 +158,12 @@ def parking(state: State) -> tuple[Widget, ...]:
                             zone,
                             None,
                             zone == desk.zone,
-                            Put("desk", replace(desk, zone=zone), f"{zone} is set"),
+                            Put("desk", replace(desk, zone=zone), say("{zone} is set", zone=zone)),
                         )
                         for zone in ZONES
                     ],
                 ),
-                heading(stay_name, "How long"),
+                heading(stay_name, say("How long")),
                 choices(
                     stays,
                     "parking.time",
@@ -168,7 +173,9 @@ def parking(state: State) -> tuple[Widget, ...]:
                             f"{stay} min" if stay < 60 else f"{stay // 60} h",
                             None,
                             stay == desk.minutes,
-                            Put("desk", replace(desk, minutes=stay), f"{stay} minutes are set"),
+                            Put(
+                                "desk", replace(desk, minutes=stay), say("{minutes} minutes are set", minutes=stay)
+                            ),
                         )
                         for stay in STAYS
                     ],
@@ -176,13 +183,13 @@ def parking(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=total,
                     key="parking.price",
-                    text=f"Price {price(desk.zone, desk.minutes):.2f}",
+                    text=say("Price {price}", price=f"{price(desk.zone, desk.minutes):.2f}"),
                     style=Type.HEADLINE,
                 ),
                 Button(
                     rect=pay,
                     key="parking.pay",
-                    text="Pay now",
+                    text=say("Pay now"),
                     icon=Icon.TICKET,
                     icon_size=34,
                     style=Type.TITLE,
@@ -191,24 +198,24 @@ def parking(state: State) -> tuple[Widget, ...]:
                 ),
             ),
         ),
-        heading(right.top(32), "Tickets"),
+        heading(right.top(32), say("Tickets")),
         rows(
             right.below(44),
             "parking.tickets",
-            "Tickets",
+            say("Tickets"),
             state,
             len(tickets),
             lambda index, cell: Row(
                 rect=cell,
                 key=f"parking.ticket.{index}",
-                text=f"{tickets[index].zone} until {tickets[index].until}",
-                detail=f"Paid {tickets[index].price:.2f}",
+                text=say("{zone} until {time}", zone=tickets[index].zone, time=tickets[index].until),
+                detail=say("Paid {price}", price=f"{tickets[index].price:.2f}"),
                 icon=Icon.TICKET,
             ),
             height=68,
         )
         if tickets
-        else note(right.below(44), "parking.tickets.empty", "No tickets yet"),
+        else note(right.below(44), "parking.tickets.empty", say("No tickets yet")),
     )
 
 
@@ -216,12 +223,12 @@ def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...
     """The topic's video: its picture, its progress while it plays, and the button."""
     desk, button = state.desk, rect.bottom_part(64).left(320)
     if desk.film is None or desk.film[0] != topic:
-        start = Put("desk", replace(desk, film=(topic, state.time_s)), "The video plays")
+        start = Put("desk", replace(desk, film=(topic, state.time_s)), say("The video plays"))
         return (
             Button(
                 rect=button,
                 key="manual.film",
-                text="Watch the video",
+                text=say("Watch the video"),
                 icon=Icon.PLAY,
                 on_tap=start,
                 locked=state.locked(Restriction.NO_VIDEO),
@@ -237,7 +244,9 @@ def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...
                 Glyph(
                     rect=frame.middle(96, 96),
                     key="manual.film.picture",
-                    description=f"The video is at {minutes(played_s)} of {minutes(FILM_S)}",
+                    description=say(
+                        "The video is at {time} of {length}", time=minutes(played_s), length=minutes(FILM_S)
+                    ),
                     icon=icon,
                     size=64 + 8 * (int(played_s) % 5),
                     tone="accent",
@@ -248,9 +257,9 @@ def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...
         Button(
             rect=button,
             key="manual.film",
-            text="Stop the video",
+            text=say("Stop the video"),
             icon=Icon.STOP,
-            on_tap=Put("desk", replace(desk, film=None), "The video is stopped"),
+            on_tap=Put("desk", replace(desk, film=None), say("The video is stopped")),
         ),
     )
 
@@ -270,11 +279,11 @@ def manual(state: State) -> tuple[Widget, ...]:
     picture, _, topic = row(head, 72, 24, REST)
     first: Message | None = Show("manual", str(found[0][0])) if found else None
     return (
-        search(left.top(60), "manual.search", "Search the manual", "Search the manual", state, first),
+        search(left.top(60), "manual.search", say("Search the manual"), say("Search the manual"), state, first),
         rows(
             left.below(72),
             "manual.topics",
-            "Topics",
+            say("Topics"),
             state,
             len(found),
             lambda index, cell: Row(
@@ -288,7 +297,7 @@ def manual(state: State) -> tuple[Widget, ...]:
             height=56,
         )
         if found
-        else note(left.below(72), "manual.empty", "The manual does not mention it"),
+        else note(left.below(72), "manual.empty", say("The manual does not mention it")),
         Card(
             rect=right,
             children=(
@@ -325,7 +334,7 @@ def memo(state: State) -> tuple[Widget, ...]:
             rect=cell,
             key=f"memo.{index}",
             text=memos[index],
-            trail="Open",
+            trail=say("Open"),
             icon=Icon.MEMO,
             on_tap=Show("note", memos[index]),
         )
@@ -334,7 +343,7 @@ def memo(state: State) -> tuple[Widget, ...]:
         Card(
             rect=left,
             children=(
-                title(head, Icon.MEMO, "Memo"),
+                title(head, Icon.MEMO, say("Memo")),
                 Glyph(
                     rect=picture,
                     icon=Icon.MICROPHONE,
@@ -344,15 +353,15 @@ def memo(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=time,
                     key="memo.time",
-                    text=minutes(state.time_s - since) if since is not None else "Ready",
-                    description="Recording" if since is not None else "Memo",
+                    text=minutes(state.time_s - since) if since is not None else say("Ready"),
+                    description=say("Recording") if since is not None else say("Memo"),
                     style=Type.HEADLINE,
                     align="centre",
                 ),
                 Button(
                     rect=record,
                     key="memo.record",
-                    text="Record" if since is None else "Stop",
+                    text=say("Record") if since is None else say("Stop"),
                     icon=Icon.RECORD if since is None else Icon.STOP,
                     icon_size=34,
                     style=Type.TITLE,
@@ -361,10 +370,10 @@ def memo(state: State) -> tuple[Widget, ...]:
                 ),
             ),
         ),
-        heading(right.top(32), "Memos"),
-        rows(right.below(44), "memo.all", "Memos", state, len(memos), line, height=60)
+        heading(right.top(32), say("Memos")),
+        rows(right.below(44), "memo.all", say("Memos"), state, len(memos), line, height=60)
         if memos
-        else note(right.below(44), "memo.empty", "No memos yet"),
+        else note(right.below(44), "memo.empty", say("No memos yet")),
     )
 
 
@@ -381,15 +390,15 @@ def trip(state: State) -> tuple[Widget, ...]:
     unit_m, unit = (1609.344, "mi") if signals[HMI.DISTANCE_UNIT] == "MILES" else (1000.0, "km")
     per_100 = 100 * unit_m * used_kwh / driven_m if driven_m > 100 else 0.0
     tiles = (
-        ("trip.distance", "Distance", distance(signals, driven_m), Icon.ROUTE),
-        ("trip.time", "Driving time", minutes(took_s), Icon.CLOCK),
-        ("trip.speed", "Mean speed", f"{speed(signals, mean_kmh)} {speed_unit(signals)}", Icon.SPEED),
-        ("trip.energy", "Energy", f"{used_kwh:.2f} kWh", Icon.BATTERY),
-        ("trip.consumption", "Consumption", f"{per_100:.1f} kWh/100 {unit}", Icon.CHARGING),
-        ("trip.range", "Range", distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
+        ("trip.distance", say("Distance"), distance(signals, driven_m), Icon.ROUTE),
+        ("trip.time", say("Driving time"), minutes(took_s), Icon.CLOCK),
+        ("trip.speed", say("Mean speed"), f"{speed(signals, mean_kmh)} {speed_unit(signals)}", Icon.SPEED),
+        ("trip.energy", say("Energy"), f"{used_kwh:.2f} kWh", Icon.BATTERY),
+        ("trip.consumption", say("Consumption"), f"{per_100:.1f} kWh/100 {unit}", Icon.CHARGING),
+        ("trip.range", say("Range"), distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
     )
     cells = [cell for line in body.rows(2, 16) for cell in line.columns(3, 16)]
-    children: list[Widget] = [title(head, Icon.TRIP, "Trip A", "trip.title")]
+    children: list[Widget] = [title(head, Icon.TRIP, say("Trip A"), "trip.title")]
     for cell, (key, name, value, icon) in zip(cells, tiles, strict=True):
         upper, _, lower = column(cell.inset(20, 16), 32, REST, 56)
         picture, _, words = row(upper, 32, 12, REST)
@@ -404,12 +413,12 @@ def trip(state: State) -> tuple[Widget, ...]:
                 ),
             )
         )
-    children.append(Button(rect=reset, key="trip.reset", text="Reset", icon=Icon.TRIP, on_tap=ResetTrip()))
+    children.append(Button(rect=reset, key="trip.reset", text=say("Reset"), icon=Icon.TRIP, on_tap=ResetTrip()))
     children.append(
         Button(
             rect=other,
             key="trip.other",
-            text="Trip B",
+            text=say("Trip B"),
             icon=Icon.TRIP,
             on_tap=Show("trip_b"),
         )
@@ -422,7 +431,7 @@ def calendar(state: State) -> tuple[Widget, ...]:
     area = content(state)
     inner = area.inset(28, 20)
     agenda = state.desk.agenda
-    date = "Today" if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
+    date = say("Today") if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
 
     def line(index: int, cell: Rect) -> Row:
         entry = agenda[index]
@@ -430,9 +439,9 @@ def calendar(state: State) -> tuple[Widget, ...]:
             rect=cell,
             key=f"calendar.{index}",
             raised=True,
-            text=f"{entry.at} {entry.title}",
+            text=joined(" ", (entry.at, entry.title)),
             detail=entry.place,
-            trail="Open",
+            trail=say("Open"),
             icon=Icon.CALENDAR,
             on_tap=Show("appointment", entry.name),
         )
@@ -442,9 +451,9 @@ def calendar(state: State) -> tuple[Widget, ...]:
             rect=area,
             children=(
                 title(inner.top(40), Icon.CALENDAR, date, "calendar.date"),
-                rows(inner.below(56), "calendar.entries", "Appointments", state, len(agenda), line, height=76)
+                rows(inner.below(56), "calendar.entries", say("Appointments"), state, len(agenda), line, height=76)
                 if agenda
-                else note(inner.below(56), "calendar.empty", "Nothing today"),
+                else note(inner.below(56), "calendar.empty", say("Nothing today")),
             ),
         ),
     )

@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.cockpit.widgets import Button, Card, Widget
+from automotive_cosim.contracts.text import say
 
 
 def trip_b(state: State) -> tuple[Widget, ...]:
@@ -19,26 +20,34 @@ def trip_b(state: State) -> tuple[Widget, ...]:
     head, _, body, _, buttons = column(area.inset(32, 24), 40, 20, 3 * 64, REST, 72)
     driven_m, took_s, used_kwh = state.desk.trip_b.at(odometer(state), BATTERY_KWH)
     facts = (
-        ("trip_b.distance", "Distance", distance(state.signals, driven_m)),
-        ("trip_b.time", "Driving time", minutes(took_s)),
-        ("trip_b.energy", "Energy", f"{used_kwh:.1f} kWh"),
+        ("trip_b.distance", say("Distance"), distance(state.signals, driven_m)),
+        ("trip_b.time", say("Driving time"), minutes(took_s)),
+        ("trip_b.energy", say("Energy"), f"{used_kwh:.1f} kWh"),
     )
     lines = body.left(640).rows(3, 8)
     return (
         Card(
             rect=area,
             children=(
-                title(head, Icon.TRIP, "Trip B", "trip_b.title"),
+                title(head, Icon.TRIP, say("Trip B"), "trip_b.title"),
                 *(
                     widget
                     for rect, (key, name, value) in zip(lines, facts, strict=True)
                     for widget in fact(rect, key, name, value)
                 ),
                 Button(
-                    rect=buttons.left(320), key="trip_b.reset", text="Reset", icon=Icon.TRIP, on_tap=ResetTrip("b")
+                    rect=buttons.left(320),
+                    key="trip_b.reset",
+                    text=say("Reset"),
+                    icon=Icon.TRIP,
+                    on_tap=ResetTrip("b"),
                 ),
                 Button(
-                    rect=buttons.right_part(320), key="trip_b.back", text="Trip A", icon=Icon.BACK, on_tap=Back()
+                    rect=buttons.right_part(320),
+                    key="trip_b.back",
+                    text=say("Trip A"),
+                    icon=Icon.BACK,
+                    on_tap=Back(),
                 ),
             ),
         ),

@@ -19,15 +19,16 @@ from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, LIGHTS, Signal
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, CarView, Label, Tile, Widget
+from automotive_cosim.contracts.text import listed, say, say_in
 
 CAR_WIDTH = 340
 WIPING = {
-    "OFF": ("off", "Off"),
-    "RAIN_SENSOR": ("auto", "Auto"),
-    "INTERVAL": ("interval", "Interval"),
-    "SLOW": ("slow", "Slow"),
-    "MEDIUM": ("medium", "Medium"),
-    "FAST": ("fast", "Fast"),
+    "OFF": ("off", say("Off")),
+    "RAIN_SENSOR": ("auto", say("Auto")),
+    "INTERVAL": ("interval", say("Interval")),
+    "SLOW": ("slow", say("Slow")),
+    "MEDIUM": ("medium", say("Medium")),
+    "FAST": ("fast", say("Fast")),
 }
 
 
@@ -37,16 +38,16 @@ def vehicle(state: State) -> tuple[Widget, ...]:
     _, lights, _, wipers = column(right_side(state), 64 + GAP, 272, GAP, REST)
     head, _, turned, _, lit = column(lights.inset(20, 16), 28, 8, 72, REST, 116)
     switches = (
-        ("off", "Off", Icon.LIGHTS_OFF, "OFF"),
-        ("position", "Position", Icon.POSITION, "POSITION"),
-        ("auto", "Auto", Icon.LIGHTS_AUTO, "AUTO"),
-        ("low_beam", "Low beam", Icon.LOW_BEAM, "BEAM"),
+        ("off", say("Off"), Icon.LIGHTS_OFF, "OFF"),
+        ("position", say_in("lights", "Position"), Icon.POSITION, "POSITION"),
+        ("auto", say("Auto"), Icon.LIGHTS_AUTO, "AUTO"),
+        ("low_beam", say("Low beam"), Icon.LOW_BEAM, "BEAM"),
     )
     lamps = (
-        ("high_beam", "High beam", Icon.HIGH_BEAM, LIGHTS.HIGH_BEAM),
-        ("front_fog", "Front fog", Icon.FRONT_FOG, LIGHTS.FRONT_FOG),
-        ("rear_fog", "Rear fog", Icon.REAR_FOG, LIGHTS.REAR_FOG),
-        ("hazard", "Hazards", Icon.HAZARD, LIGHTS.HAZARD),
+        ("high_beam", say("High beam"), Icon.HIGH_BEAM, LIGHTS.HIGH_BEAM),
+        ("front_fog", say("Front fog"), Icon.FRONT_FOG, LIGHTS.FRONT_FOG),
+        ("rear_fog", say("Rear fog"), Icon.REAR_FOG, LIGHTS.REAR_FOG),
+        ("hazard", say("Hazards"), Icon.HAZARD, LIGHTS.HAZARD),
     )
     now = signals[LIGHTS.SWITCH]
     return (
@@ -55,7 +56,7 @@ def vehicle(state: State) -> tuple[Widget, ...]:
         Card(
             rect=lights,
             children=(
-                heading(head, "Lights"),
+                heading(head, say("Lights")),
                 choices(
                     turned,
                     "lights.switch",
@@ -80,15 +81,15 @@ def assistance(state: State) -> tuple[Widget, ...]:
     _, helpers, _, keeping = column(right_side(state), 64 + GAP, 236, GAP, REST)
     head, _, switches = column(helpers.inset(20, 14), 28, 4, REST)
     known = (
-        ("collision_warning", "Collision warning", Icon.COLLISION, ADAS.FORWARD_COLLISION_WARNING),
-        ("emergency_braking", "Emergency braking", Icon.BRAKE, ADAS.EMERGENCY_BRAKING),
-        ("speed_warning", "Speed warning", Icon.SPEED, ADAS.SPEED_WARNING),
-        ("lane_departure", "Lane departure", Icon.LANE, ADAS.LANE_DEPARTURE),
-        ("lane_keeping", "Lane keeping", Icon.STEERING, ADAS.LANE_KEEPING),
-        ("stability_control", "Stability control", Icon.STABILITY, ADAS.STABILITY_CONTROL),
-        ("blind_spot", "Blind spot", Icon.CAR_BESIDE, ADAS.BLIND_SPOT),
-        ("parking_sensors", "Parking sensors", Icon.PARKING, ADAS.PARKING_SENSORS),
-        ("driver_monitoring", "Attention", Icon.EYE, ADAS.DRIVER_MONITORING),
+        ("collision_warning", say("Collision warning"), Icon.COLLISION, ADAS.FORWARD_COLLISION_WARNING),
+        ("emergency_braking", say("Emergency braking"), Icon.BRAKE, ADAS.EMERGENCY_BRAKING),
+        ("speed_warning", say("Speed warning"), Icon.SPEED, ADAS.SPEED_WARNING),
+        ("lane_departure", say("Lane departure"), Icon.LANE, ADAS.LANE_DEPARTURE),
+        ("lane_keeping", say("Lane keeping"), Icon.STEERING, ADAS.LANE_KEEPING),
+        ("stability_control", say("Stability control"), Icon.STABILITY, ADAS.STABILITY_CONTROL),
+        ("blind_spot", say("Blind spot"), Icon.CAR_BESIDE, ADAS.BLIND_SPOT),
+        ("parking_sensors", say("Parking sensors"), Icon.PARKING, ADAS.PARKING_SENSORS),
+        ("driver_monitoring", say("Attention"), Icon.EYE, ADAS.DRIVER_MONITORING),
     )
     cells = [cell for line in switches.rows(3, 8) for cell in line.columns(3, 10)]
     return (
@@ -97,7 +98,7 @@ def assistance(state: State) -> tuple[Widget, ...]:
         Card(
             rect=helpers,
             children=(
-                heading(head, "Assistance"),
+                heading(head, say("Assistance")),
                 *(
                     switch(cell, f"adas.{key}", name, icon, signal, signals)
                     for cell, (key, name, icon, signal) in zip(cells, known, strict=True)
@@ -121,13 +122,13 @@ def tabs(state: State) -> Widget:
         [
             (name, text, icon, state.screen == screen, Show(screen))
             for name, text, icon, screen in (
-                ("lights", "Lights", Icon.LOW_BEAM, "vehicle"),
-                ("assistance", "Assist", Icon.CRUISE, "assistance"),
-                ("driving", "Driving", Icon.DRIVE_MODE, "driving"),
-                ("doors", "Doors", Icon.DOOR, "doors"),
-                ("seats", "Seats", Icon.SEAT, "seats"),
-                ("mirrors", "Mirrors", Icon.MIRROR, "mirrors"),
-                ("interior", "Inside", Icon.DOME_LIGHT, "interior"),
+                ("lights", say("Lights"), Icon.LOW_BEAM, "vehicle"),
+                ("assistance", say("Assist"), Icon.CRUISE, "assistance"),
+                ("driving", say("Driving"), Icon.DRIVE_MODE, "driving"),
+                ("doors", say("Doors"), Icon.DOOR, "doors"),
+                ("seats", say("Seats"), Icon.SEAT, "seats"),
+                ("mirrors", say("Mirrors"), Icon.MIRROR, "mirrors"),
+                ("interior", say("Inside"), Icon.DOME_LIGHT, "interior"),
             )
         ],
     )
@@ -141,12 +142,12 @@ def car_card(state: State) -> Widget:
     lit = [
         name
         for name, on in (
-            ("position lamps", signals[LIGHTS.POSITION]),
-            ("low beam", signals[LIGHTS.LOW_BEAM]),
-            ("high beam", signals[LIGHTS.HIGH_BEAM]),
-            ("front fog", signals[LIGHTS.FRONT_FOG]),
-            ("rear fog", signals[LIGHTS.REAR_FOG]),
-            ("hazard lights", signals[LIGHTS.HAZARD]),
+            (say("position lamps"), signals[LIGHTS.POSITION]),
+            (say("low beam"), signals[LIGHTS.LOW_BEAM]),
+            (say("high beam"), signals[LIGHTS.HIGH_BEAM]),
+            (say("front fog"), signals[LIGHTS.FRONT_FOG]),
+            (say("rear fog"), signals[LIGHTS.REAR_FOG]),
+            (say("hazard lights"), signals[LIGHTS.HAZARD]),
         )
         if on
     ]
@@ -157,7 +158,7 @@ def car_card(state: State) -> Widget:
             CarView(
                 rect=rect.middle(CAR_WIDTH - 40, rect.height - 40),
                 key="vehicle.car",
-                description="The car, lit: " + (", ".join(lit) or "nothing"),
+                description=say("The car, lit: {lamps}", lamps=listed(lit) if lit else say("nothing")),
                 position=signals[LIGHTS.POSITION],
                 low=signals[LIGHTS.LOW_BEAM],
                 high=signals[LIGHTS.HIGH_BEAM],
@@ -180,7 +181,7 @@ def _wipers(rect: Rect, state: State) -> Widget:
     return Card(
         rect=rect,
         children=(
-            Label(rect=front_name, text="Front wiper", style=Type.LABEL, tone="muted"),
+            Label(rect=front_name, text=say("Front wiper"), style=Type.LABEL, tone="muted"),
             choices(
                 front_modes,
                 "wiper.front",
@@ -189,7 +190,7 @@ def _wipers(rect: Rect, state: State) -> Widget:
                     for mode, (key, text) in WIPING.items()
                 ],
             ),
-            Label(rect=rear_name, text="Rear wiper", style=Type.LABEL, tone="muted"),
+            Label(rect=rear_name, text=say("Rear wiper"), style=Type.LABEL, tone="muted"),
             choices(
                 rear_modes,
                 "wiper.rear",
@@ -202,8 +203,8 @@ def _wipers(rect: Rect, state: State) -> Widget:
             Button(
                 rect=wash,
                 key="wiper.wash",
-                text="Wash",
-                description=f"Washer fluid {state.signals[BODY.WASHER_FLUID]:.0f} %",
+                text=say("Wash"),
+                description=say("Washer fluid {share} %", share=f"{state.signals[BODY.WASHER_FLUID]:.0f}"),
                 icon=Icon.WASHER,
                 on_tap=Wash(),
             ),
@@ -218,37 +219,46 @@ def _keeping(rect: Rect, state: State) -> Widget:
     _, following = column(left, 130, 56)
     _, available = column(right, 130, 56)
     adaptive, gap = following.columns(2, 10)
-    off = "" if signals[ADAS.CRUISE_ENABLED] else "Cruise control is disabled"
+    off = "" if signals[ADAS.CRUISE_ENABLED] else say("Cruise control is disabled")
     return Card(
         rect=rect,
         children=(
             *_holder(
                 left,
                 "adas.cruise",
-                "Cruise control",
+                say("Cruise control active"),
+                say("Cruise control, set speed"),
                 Icon.CRUISE,
                 ADAS.CRUISE_ACTIVE,
                 ADAS.CRUISE_SPEED,
                 state,
                 off,
             ),
-            switch(adaptive, "adas.cruise_adaptive", "Adaptive", Icon.DISTANCE, ADAS.CRUISE_ADAPTIVE, signals),
+            switch(adaptive, "adas.cruise_adaptive", say("Adaptive"), Icon.DISTANCE, ADAS.CRUISE_ADAPTIVE, signals),
             levels(
                 gap,
                 "adas.cruise_gap",
-                "Gap",
+                say("Gap"),
                 Icon.DISTANCE,
                 ADAS.CRUISE_GAP,
                 signals,
                 [(seconds, f"{seconds:.1f} s") for seconds in (1.0, 1.5, 2.0, 2.5, 3.0)],
             ),
             *_holder(
-                right, "adas.limiter", "Limiter", Icon.SLOWER, ADAS.LIMITER_ACTIVE, ADAS.LIMITER_SPEED, state, ""
+                right,
+                "adas.limiter",
+                say("Limiter active"),
+                say("Limiter, set speed"),
+                Icon.SLOWER,
+                ADAS.LIMITER_ACTIVE,
+                ADAS.LIMITER_SPEED,
+                state,
+                "",
             ),
             switch(
                 available,
                 "adas.cruise_enabled",
-                "Cruise control available",
+                say("Cruise control available"),
                 Icon.CRUISE,
                 ADAS.CRUISE_ENABLED,
                 signals,
@@ -261,6 +271,7 @@ def _holder(
     rect: Rect,
     key: str,
     name: str,
+    set_speed: str,
     icon: Icon,
     active: Signal[bool],
     target: Signal[float],
@@ -275,11 +286,11 @@ def _holder(
         Tile(
             rect=tile,
             key=key,
-            text=f"{name} active",
+            text=name,
             icon=icon,
             checked=on,
             on_tap=Set(active, not on),
             disabled=disabled,
         ),
-        *stepper(steps, f"{key}_speed", f"{name}, set speed", target, signals, shown),
+        *stepper(steps, f"{key}_speed", set_speed, target, signals, shown),
     )

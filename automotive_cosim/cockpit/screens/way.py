@@ -15,6 +15,7 @@ from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Row, Tile, Widget
+from automotive_cosim.contracts.text import say, say_in
 
 _EVERYDAY = tuple(kind for kind in PlaceKind if kind not in (PlaceKind.HOME, PlaceKind.WORK))
 
@@ -23,12 +24,12 @@ def explore(state: State) -> tuple[Widget, ...]:
     """Kinds of places, and those of the chosen kind, the nearest first."""
     chosen = state.picked["explore"]
     if chosen == "all":
-        return *_head(state, "Places nearby", Icon.PLACE, "explore"), _kinds(state), sight(state)
+        return *_head(state, say("Places nearby"), Icon.PLACE, "explore"), _kinds(state), sight(state)
     kind = PlaceKind(chosen)
     found = nearest(state, state.atlas.of(kind))
     return (
         *_head(state, SORTS[kind].title, SORTS[kind].icon, "explore"),
-        _places(state, found) if found else note(panel(state).below(72), "explore.empty", "None known nearby"),
+        _places(state, found) if found else note(panel(state).below(72), "explore.empty", say("None known nearby")),
         sight(state),
     )
 
@@ -55,7 +56,7 @@ def along(state: State, places: Sequence[Destination]) -> tuple[Destination, ...
 def _head(state: State, text: str, icon: Icon, key: str) -> tuple[Widget, ...]:
     back, _, picture, _, words = row(panel(state).top(56), 56, 16, 32, 8, REST)
     return (
-        Button(rect=back, key=f"{key}.back", description="Back", icon=Icon.BACK, on_tap=Back()),
+        Button(rect=back, key=f"{key}.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()),
         Glyph(rect=picture.middle(32, 32), icon=icon, size=28, tone="accent"),
         Label(rect=words, key=f"{key}.title", text=text, style=Type.TITLE),
     )
@@ -65,7 +66,7 @@ def _kinds(state: State) -> Widget:
     return rows(
         panel(state).below(72),
         "explore.kinds",
-        "Place types",
+        say("Place types"),
         state,
         len(_EVERYDAY),
         lambda index, cell: Button(
@@ -87,7 +88,7 @@ def _places(state: State, found: tuple[Destination, ...]) -> Widget:
     return rows(
         panel(state).below(72),
         "explore.places",
-        "Places",
+        say("Places"),
         state,
         len(found),
         lambda index, cell: destination(cell, f"explore.place.{index}", found[index].name, state),
@@ -102,9 +103,14 @@ def place(state: State) -> tuple[Widget, ...]:
     _, card, _, buttons = column(panel(state), 72, 200, GAP, REST)
     inner = card.inset(20, 16)
     facts = (
-        (known.street if known else "Street in this area", "place.street", Type.STRONG, "text"),
-        (known.detail if known else "The nearest point of the street", "place.detail", Type.LABEL, "muted"),
-        (f"{away(state, name)} away" if known else "", "place.distance", Type.LABEL, "muted"),
+        (known.street if known else say("Street in this area"), "place.street", Type.STRONG, "text"),
+        (known.detail if known else say("The nearest point of the street"), "place.detail", Type.LABEL, "muted"),
+        (
+            say("{distance} away", distance=away(state, name)) if known else "",
+            "place.distance",
+            Type.LABEL,
+            "muted",
+        ),
     )
     lines = tuple(
         Label(rect=line, key=key, text=text, style=style, tone="text" if tone == "text" else "muted", lines=2)
@@ -123,19 +129,23 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
     saved = name in navigation.favourites
     goal = navigation.destination
     cells = column(rect, 56, 8, 56, 8, 56, 8, 56)[::2]
-    there = "You are already on the way there" if goal == name else ""
+    there = say("You are already on the way there") if goal == name else ""
     extra: tuple[Widget, ...] = ()
     if known is not None and known.kind is PlaceKind.PARKING and "parking" in state.desk.installed:
         extra = (
             Button(
-                rect=cells[3], key="place.pay", text="Pay for parking", icon=Icon.TICKET, on_tap=Show("parking")
+                rect=cells[3],
+                key="place.pay",
+                text=say("Pay for parking"),
+                icon=Icon.TICKET,
+                on_tap=Show("parking"),
             ),
         )
     return (
         Button(
             rect=cells[0],
             key="place.start",
-            text="You are on the way there" if there else "Start guidance",
+            text=say("You are on the way there") if there else say("Start guidance"),
             icon=Icon.ROUTE,
             look=Look.ACCENT,
             on_tap=Guide(name),
@@ -144,20 +154,20 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
         Button(
             rect=cells[1],
             key="place.stop",
-            text="Stop on the way",
+            text=say("Stop on the way"),
             icon=Icon.PLACE,
             on_tap=Guide(name, goal),
-            disabled=there or ("" if goal else "No place was chosen as the destination"),
+            disabled=there or ("" if goal else say("No place was chosen as the destination")),
         ),
         Button(
             rect=cells[2],
             key="place.save",
-            text="Remove from saved" if saved else "Save",
+            text=say("Remove from saved") if saved else say("Save"),
             icon=Icon.STAR if saved else Icon.STAR_OUTLINE,
             on_tap=Put(
                 "navigation",
                 navigation.with_favourite(name, not saved),
-                f"{name} is no longer saved" if saved else f"{name} is now saved",
+                say("{name} is no longer saved", name=name) if saved else say("{name} is now saved", name=name),
             ),
         ),
         *extra,
@@ -167,7 +177,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
 def route(state: State) -> tuple[Widget, ...]:
     """The route ahead: its turns, alternatives, and what to avoid."""
     shown = state.picked["route"]
-    goal = state.navigation.destination or "Route"
+    goal = state.navigation.destination or say("Route")
     _, summary, _, tabs, _, body = column(panel(state), 64, 72, 12, 56, 12, REST)
     pages = {"turns": _turn_list, "ways": _ways, "options": _options}
     return (
@@ -178,7 +188,7 @@ def route(state: State) -> tuple[Widget, ...]:
             "route.tab",
             [
                 (name, text, None, shown == name, Pick("route", name))
-                for name, text in (("turns", "Turns"), ("ways", "Routes"), ("options", "Options"))
+                for name, text in (("turns", say("Turns")), ("ways", say("Routes")), ("options", say("Options")))
             ],
         ),
         *pages[shown](body, state),
@@ -189,12 +199,12 @@ def route(state: State) -> tuple[Widget, ...]:
 def _turn_list(rect: Rect, state: State) -> tuple[Widget, ...]:
     ahead = turns_ahead(state)
     if not ahead:
-        return (note(rect, "route.turns.empty", "The route is not known yet"),)
+        return (note(rect, "route.turns.empty", say("The route is not known yet")),)
     return (
         rows(
             rect,
             "route.turns",
-            "Turns",
+            say("Turns"),
             state,
             len(ahead),
             lambda index, cell: Row(
@@ -218,15 +228,19 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
     chargers = along(state, state.atlas.of(PlaceKind.CHARGING))
     lines: list[tuple[str, str, str, Icon, Take | Guide | Show]] = [
         (
-            f"Route {at + 2}",
-            f"{_more(other.eta_s, 0 if ahead is None else ahead.eta_s)}, {other.delay_s / 60:.0f} min delay",
+            say("Route {number}", number=at + 2),
+            say(
+                "{first}, {second}",
+                first=_more(other.eta_s, 0 if ahead is None else ahead.eta_s),
+                second=say("{minutes} min delay", minutes=f"{other.delay_s / 60:.0f}"),
+            ),
             distance(state.signals, other.length_m),
             Icon.ROUTE,
             Take(other.edges),
         )
         for at, other in enumerate(others)
     ]
-    lines.append(("Look for a faster route", "With the traffic as it is now", "", Icon.ROUTE, Guide("")))
+    lines.append((say("Look for a faster route"), say("With the traffic as it is now"), "", Icon.ROUTE, Guide("")))
     lines += [
         (charger.name, charger.detail, away(state, charger.name), Icon.CHARGING, Show("place", charger.name))
         for charger in chargers
@@ -235,7 +249,7 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
         rows(
             rect,
             "route.ways",
-            "Other routes and charging stops",
+            say("Other routes and charging stops"),
             state,
             len(lines),
             lambda index, cell: Row(
@@ -255,7 +269,11 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 def _more(eta_s: float, now_s: float) -> str:
     minutes = round((eta_s - now_s) / 60)
-    return "Same time" if minutes == 0 else f"{abs(minutes)} min {'longer' if minutes > 0 else 'shorter'}"
+    if minutes == 0:
+        return say("Same time")
+    if minutes > 0:
+        return say("{minutes} min longer", minutes=minutes)
+    return say("{minutes} min shorter", minutes=-minutes)
 
 
 def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
@@ -265,7 +283,7 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
     guidance = state.signals[VOICE.GUIDANCE]
     onward = navigation.onward
     return (
-        heading(avoid, "Avoid"),
+        heading(avoid, say("Avoid")),
         *(
             Tile(
                 rect=cell,
@@ -276,30 +294,32 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
                 on_tap=Put(
                     "navigation",
                     navigation.with_avoided(name, name not in navigation.avoid),
-                    f"{text} are no longer avoided" if name in navigation.avoid else f"{text} are avoided",
+                    say("{roads} are no longer avoided", roads=text)
+                    if name in navigation.avoid
+                    else say("{roads} are avoided", roads=text),
                 ),
             )
             for cell, (name, (text, icon)) in zip(cells, AVOIDABLE.items(), strict=True)
         ),
-        heading(spoken, "Spoken guidance"),
+        heading(spoken, say("Spoken guidance")),
         choices(
             voices,
             "route.voice",
             [
                 (key, text, None, guidance == value, Set(VOICE.GUIDANCE, value))
                 for key, text, value in (
-                    ("all", "All", "UNMUTED"),
-                    ("alerts", "Alerts", "ALERT_ONLY"),
-                    ("off", "Off", "MUTED"),
+                    ("all", say_in("guidance", "All"), "UNMUTED"),
+                    ("alerts", say("Alerts"), "ALERT_ONLY"),
+                    ("off", say("Off"), "MUTED"),
                 )
             ],
         ),
         Button(
             rect=stop,
             key="route.onward",
-            text=f"Skip the stop: {onward}" if onward else "Remove the stop",
+            text=say("Skip the stop: {place}", place=onward) if onward else say("Remove the stop"),
             icon=Icon.GOAL,
             on_tap=Guide(onward),
-            disabled="" if onward else "There is no stop on the way",
+            disabled="" if onward else say("There is no stop on the way"),
         ),
     )
