@@ -247,14 +247,14 @@ def _outside_card(rect: Rect, state: State) -> Widget:
         Label(
             rect=value,
             key="home.outside.value",
-            text=say("No bad weather") if calm else readings[worst].word,
+            text=say("No weather hazards") if calm else readings[worst].word,
             description=say("Outside"),
             style=Type.TITLE,
         ),
         Label(
             rect=note,
             key="home.outside.note",
-            text=say("Rain, fog, ice, dust, wind")
+            text=say("Checked: rain, fog, ice, dust, wind")
             if calm
             else say("{name}: {value}", name=worst.title, value=readings[worst].value),
             style=Type.LABEL,
