@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
 from automotive_cosim.contracts import Feedback
-from automotive_cosim.contracts.text import Text
+from automotive_cosim.contracts.text import Figure, Text
 
 W = TypeVar("W", bound=Widget)
 
@@ -61,10 +61,12 @@ def catalogue(language: str) -> GNUTranslations:
 
 
 def said(text: str, language: str) -> str:
-    """A text in that language. A plain ``str`` stays as it is."""
-    if not isinstance(text, Text):
-        return text
-    return str(text) if language == Language.ENGLISH else _told(text, catalogue(language))
+    """A text or figure in that language. A plain ``str`` stays as it is."""
+    if language == Language.ENGLISH:
+        return str(text)
+    if isinstance(text, Figure):
+        return text.replace(".", _decimal_sign(language))
+    return _translated(text, language) if isinstance(text, Text) else text
 
 
 def word(message: str, language: str) -> str:
@@ -74,7 +76,15 @@ def word(message: str, language: str) -> str:
     return catalogue(language).gettext(message)
 
 
-def _told(text: Text, known: GNUTranslations) -> str:
+@lru_cache
+def _decimal_sign(language: str) -> str:
+    from babel.numbers import get_decimal_symbol
+
+    return get_decimal_symbol(language)
+
+
+def _translated(text: Text, language: str) -> str:
+    known = catalogue(language)
     if text.plural:
         form = known.ngettext(text.message, text.plural, text.number)
     elif text.context:
@@ -84,7 +94,7 @@ def _told(text: Text, known: GNUTranslations) -> str:
     if not text.fields:
         return form
     fields = {
-        name: _told(value, known) if isinstance(value, Text) else value for name, value in text.fields.items()
+        name: said(value, language) if isinstance(value, str) else value for name, value in text.fields.items()
     }
     return form.format(**fields)
 
@@ -101,7 +111,7 @@ def translated(widget: W, language: str) -> W:
     changes: dict[str, Any] = {}
     for name in (*_COMMON, *_OWN.get(type(widget), ())):
         text: str = getattr(widget, name)
-        if isinstance(text, Text):
+        if isinstance(text, Text | Figure):
             changes[name] = said(text, language)
     if widget.children:
         changes["children"] = tuple(translated(child, language) for child in widget.children)

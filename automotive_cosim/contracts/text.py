@@ -4,8 +4,10 @@
     say_in("dock", "Home")
     counted("{n} new message", "{n} new messages", n)
 
+    Figure(f"{km:.1f} km")
+
 Each is an English ``str``. The message with its named fields is what catalogues translate (``cockpit.language``). A
-plain ``str`` is data in every language: a name, a number, what somebody wrote.
+plain ``str`` is data in every language: a name, a time, what somebody wrote.
 """
 
 from __future__ import annotations
@@ -44,6 +46,12 @@ class Text(str):
     def __reduce__(self) -> tuple[Any, ...]:
         """For copies and pickles, which keep what it was made from."""
         return Text, (self.message, self.fields, self.context, self.plural, self.number)
+
+
+class Figure(str):
+    """A number as it is shown in English, with or without its unit; other languages have their own decimal sign."""
+
+    __slots__ = ()
 
 
 def say(message: str, /, **fields: Value) -> Text:

@@ -27,7 +27,7 @@ from automotive_cosim.cockpit.theme import Weight, face
 from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import Answer, Feedback, FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import resource_id as shown_id
-from automotive_cosim.contracts.text import Text, counted, joined, listed, say, say_in
+from automotive_cosim.contracts.text import Figure, Text, counted, joined, listed, say, say_in
 
 from . import catalogues
 
@@ -266,6 +266,22 @@ def test_what_varies_is_translated_in_turn() -> None:
     assert said(TURN_LEFT, "fr") == "Tournez à gauche"
     detail = say("{power} kW, {free} of {total} free", power=300, free=1, total=3)
     assert said(detail, "ja") == "300 kW、3台中1台空き"
+
+
+@pytest.mark.parametrize("language", ["fr", "de"])
+def test_figures_have_the_decimal_sign_of_the_language(
+    make: Make, around: Surroundings, walker: Any, language: str
+) -> None:
+    shown = {
+        said(text, language)
+        for home in homes(make, around)
+        for view in walker(home)
+        for text in texts(view.cockpit.tree)
+        if re.search(r"\d[.,]\d", said(text, language))
+    }
+    assert len(shown) > 15
+    assert [text for text in shown if re.search(r"\d\.\d", text) and "MHz" not in text] == [], "stations are data"
+    assert said(say("Paid {price}", price=Figure("4.50")), "ja").endswith("4.50")
 
 
 def test_what_is_counted_has_the_forms_of_its_language() -> None:

@@ -33,8 +33,8 @@ ENGLISH = re.compile(r"\b(the|and|with|please|then|when|what|my|you|that|this|se
 """Words that no sentence in another of the languages has."""
 JAPANESE = "\u3001-\u9fff"
 WRONG = {
-    Language.FRENCH: re.compile(r"[\"“”’]|[^ ][;!?»]|[^ \d]:|«[^ ]|  "),
-    Language.GERMAN: re.compile(r"[\"«»”’]| [;!?:]|  "),
+    Language.FRENCH: re.compile(r"[\"“”’]|[^ ][;!?»]|[^ \d]:|«[^ ]|  |\d\.\d"),
+    Language.GERMAN: re.compile(r"[\"«»”’]| [;!?:]|  |\d\.\d"),
     Language.JAPANESE: re.compile(
         rf"[\"',;!?:“”„«»()](?!\d)|\.(?!\d)|\u3000| (?=[{JAPANESE}])|(?<=[{JAPANESE}]) |[０-９Ａ-Ｚａ-ｚ％]"
     ),
