@@ -175,7 +175,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         switched(
             PLAIN_FULL,
-            when(OncomingWithin(250.0), LeaderWithin(100.0), Lit(False), Dark(), for_s=0.0),
+            when(OncomingWithin(250.0), LeaderWithin(150.0), Lit(False), Dark(), for_s=0.0),
             SignalIs(LIGHTS.HIGH_BEAM, (False,)),
             "lights.high_beam",
             DAZZLED,
