@@ -175,14 +175,14 @@ LAMP_TASKS: tuple[Task, ...] = (
         ),
         switched(
             PLAIN_FULL,
-            when(OncomingWithin(250.0), LeaderWithin(150.0), Lit(False), Dark(), for_s=0.0),
+            when(OncomingWithin(250.0), Lit(False), Dark(), for_s=0.0),
             SignalIs(LIGHTS.HIGH_BEAM, (False,)),
             "lights.high_beam",
             DAZZLED,
             "FR.high_beam",
         ),
         fine(PLAIN_FULL, when(Lit(False), NOBODY, for_s=5.0, after_s=45.0), DAZZLED, Basis.LAW, "FR.high_beam"),
-        "traffic: an oncoming car and one in front, or an empty road; high beam on, unlit, at night",
+        "traffic: an oncoming car, or an empty road; high beam on, unlit, at night",
     ),
     lamp_task(
         "road_high_beam_left_on",

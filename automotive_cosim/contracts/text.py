@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-Value = str | int | float
+FieldValue = str | int | float
 """What fills a field. A text in it is translated too."""
 
 
@@ -26,7 +26,7 @@ class Text(str):
 
     message: str
     """In English, with ``{name}`` for each field; for one, if it is counted."""
-    fields: dict[str, Value]
+    fields: dict[str, FieldValue]
     context: str
     """Tells apart messages with the same words and different meanings; mostly empty."""
     plural: str
@@ -35,7 +35,7 @@ class Text(str):
     """How many, if it is counted."""
 
     def __new__(
-        cls, message: str, fields: dict[str, Value], context: str = "", plural: str = "", number: int = 1
+        cls, message: str, fields: dict[str, FieldValue], context: str = "", plural: str = "", number: int = 1
     ) -> Text:
         """Fills in the fields. Use ``say``, ``say_in``, ``counted`` or ``joined``, which catalogues know."""
         form = plural if plural and number != 1 else message
@@ -54,17 +54,17 @@ class Figure(str):
     __slots__ = ()
 
 
-def say(message: str, /, **fields: Value) -> Text:
+def say(message: str, /, **fields: FieldValue) -> Text:
     """A message with its fields filled in."""
     return Text(message, fields)
 
 
-def say_in(context: str, message: str, /, **fields: Value) -> Text:
+def say_in(context: str, message: str, /, **fields: FieldValue) -> Text:
     """A message whose words mean something else elsewhere."""
     return Text(message, fields, context)
 
 
-def counted(one: str, several: str, n: int, /, **fields: Value) -> Text:
+def counted(one: str, several: str, n: int, /, **fields: FieldValue) -> Text:
     """The message for so many, with ``{n}`` for the number; languages have one form, two or more."""
     return Text(one, {"n": n, **fields}, plural=several, number=n)
 
@@ -77,5 +77,5 @@ def listed(parts: Sequence[str]) -> str:
 
 def joined(separator: str, parts: Iterable[str]) -> Text:
     """Texts one after the other."""
-    fields: dict[str, Value] = {f"part{at}": part for at, part in enumerate(parts)}
+    fields: dict[str, FieldValue] = {f"part{at}": part for at, part in enumerate(parts)}
     return Text(separator.join(f"{{{name}}}" for name in fields), fields)
