@@ -26,7 +26,7 @@ from automotive_cosim.cockpit.signals import BODY, DRIVE, ENERGY, LINK, MEDIA
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Feedback, FeedbackCode
-from automotive_cosim.contracts.text import Figure, say
+from automotive_cosim.contracts.text import Quantity, say
 
 WASH_PCT = 2.0
 """Share of the washer's tank used per wash."""
@@ -71,7 +71,7 @@ def _pay(state: State) -> Feedback:
     ticket = Ticket(desk.zone, desk.minutes, price(desk.zone, desk.minutes), until)
     state.desk = replace(desk, tickets=(*desk.tickets, ticket))
     return state.said(
-        say("Paid {price}: {zone} until {time}", price=Figure(f"{ticket.price:.2f}"), zone=desk.zone, time=until),
+        say("Paid {price}: {zone} until {time}", price=Quantity(f"{ticket.price:.2f}"), zone=desk.zone, time=until),
         Icon.TICKET,
     )
 

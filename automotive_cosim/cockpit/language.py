@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
 from automotive_cosim.contracts import Feedback
-from automotive_cosim.contracts.text import Figure, Text
+from automotive_cosim.contracts.text import Quantity, Text
 
 W = TypeVar("W", bound=Widget)
 
@@ -64,7 +64,7 @@ def said(text: str, language: str) -> str:
     """A text or figure in that language. A plain ``str`` stays as it is."""
     if language == Language.ENGLISH:
         return str(text)
-    if isinstance(text, Figure):
+    if isinstance(text, Quantity):
         return text.replace(".", _decimal_sign(language))
     return _translated(text, language) if isinstance(text, Text) else text
 
@@ -111,7 +111,7 @@ def translated(widget: W, language: str) -> W:
     changes: dict[str, Any] = {}
     for name in (*_COMMON, *_OWN.get(type(widget), ())):
         text: str = getattr(widget, name)
-        if isinstance(text, Text | Figure):
+        if isinstance(text, Text | Quantity):
             changes[name] = said(text, language)
     if widget.children:
         changes["children"] = tuple(translated(child, language) for child in widget.children)

@@ -12,7 +12,7 @@ import numpy as np
 
 from automotive_cosim.cockpit.map import MOTORWAYS, RoadMap
 from automotive_cosim.cockpit.theme import Icon
-from automotive_cosim.contracts.text import Figure, say
+from automotive_cosim.contracts.text import Quantity, say
 
 PLACES = 80
 """Number of places, limited by the streets of the network."""
@@ -199,7 +199,7 @@ def _detail(kind: PlaceKind, rng: np.random.Generator) -> str:
         return say(
             "{free} spaces free, {price} an hour",
             free=int(rng.integers(3, 240)),
-            price=Figure(f"{rng.integers(10, 45) / 10:.1f}"),
+            price=Quantity(f"{rng.integers(10, 45) / 10:.1f}"),
         )
     if kind in (PlaceKind.HOME, PlaceKind.WORK):
         return say("Your address")

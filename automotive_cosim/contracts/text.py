@@ -4,7 +4,7 @@
     say_in("dock", "Home")
     counted("{n} new message", "{n} new messages", n)
 
-    Figure(f"{km:.1f} km")
+    Quantity(f"{km:.1f} km")
 
 Each is an English ``str``. The message with its named fields is what catalogues translate (``cockpit.language``). A
 plain ``str`` is data in every language: a name, a time, what somebody wrote.
@@ -48,7 +48,7 @@ class Text(str):
         return Text, (self.message, self.fields, self.context, self.plural, self.number)
 
 
-class Figure(str):
+class Quantity(str):
     """A number as it is shown in English, with or without its unit; other languages have their own decimal sign."""
 
     __slots__ = ()

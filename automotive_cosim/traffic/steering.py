@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, lon_lat
-from automotive_cosim.contracts.text import Figure, say
+from automotive_cosim.contracts.text import Quantity, say
 from automotive_cosim.traffic.ego import RefusedError
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
@@ -175,9 +175,9 @@ class SumoPedals:
         length_km = (self._sensor.route.length_m - self._sensor.position_m) / 1000
         name = self._network.edges[edges[-1]].name
         return (
-            say("new route of {length} km to {place}", length=Figure(f"{length_km:.1f}"), place=name)
+            say("new route of {length} km to {place}", length=Quantity(f"{length_km:.1f}"), place=name)
             if name
-            else say("new route of {length} km", length=Figure(f"{length_km:.1f}"))
+            else say("new route of {length} km", length=Quantity(f"{length_km:.1f}"))
         )
 
     def _given(self, edge_ids: tuple[str, ...]) -> tuple[str, ...]:

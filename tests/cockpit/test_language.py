@@ -27,7 +27,7 @@ from automotive_cosim.cockpit.theme import Weight, face
 from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import Answer, Feedback, FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import resource_id as shown_id
-from automotive_cosim.contracts.text import Figure, Text, counted, joined, listed, say, say_in
+from automotive_cosim.contracts.text import Quantity, Text, counted, joined, listed, say, say_in
 
 from . import catalogues
 
@@ -281,7 +281,7 @@ def test_figures_have_the_decimal_sign_of_the_language(
     }
     assert len(shown) > 15
     assert [text for text in shown if re.search(r"\d\.\d", text) and "MHz" not in text] == [], "stations are data"
-    assert said(say("Paid {price}", price=Figure("4.50")), "ja").endswith("4.50")
+    assert said(say("Paid {price}", price=Quantity("4.50")), "ja").endswith("4.50")
 
 
 def test_what_is_counted_has_the_forms_of_its_language() -> None:

@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.screens.parts import choices, heading
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Widget
-from automotive_cosim.contracts.text import Figure, Text, say
+from automotive_cosim.contracts.text import Quantity, Text, say
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,7 +33,7 @@ class Sentence:
         """The whole message."""
         if self.label == "Arrival":
             return self.text(f"{int(value) // 60:02d}:{int(value) % 60:02d}")
-        return self.text(Figure(f"{value:.1f}" if self.fine < 1 else f"{value:.0f}"))
+        return self.text(Quantity(f"{value:.1f}" if self.fine < 1 else f"{value:.0f}"))
 
 
 SENTENCES: Mapping[str, Sentence] = {
@@ -131,4 +131,4 @@ def figure(state: State) -> tuple[Widget, ...]:
 def _signed(by: float, sentence: Sentence) -> str:
     if sentence.label == "Arrival":
         return f"{by / 60:+.0f} h" if abs(by) >= 60 else f"{by:+.0f} min"
-    return Figure(f"{by:+g}")
+    return Quantity(f"{by:+g}")

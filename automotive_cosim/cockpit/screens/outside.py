@@ -30,7 +30,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
 from automotive_cosim.contracts import Alert, AlertKind
-from automotive_cosim.contracts.text import Figure, say
+from automotive_cosim.contracts.text import Quantity, say
 
 DENSE_FOG_M, FOG_M, MIST_M = 200.0, 1000.0, 5000.0
 """Dense fog, fog and mist, the latter two by the WMO's definitions."""
@@ -87,7 +87,7 @@ def _rain(state: State) -> Reading:
         if rate < 10
         else say("Heavy")
     )
-    return Reading(word, Figure(f"{rate:.1f} mm/h"), state.signals[BODY.RAIN_INTENSITY] / 100)
+    return Reading(word, Quantity(f"{rate:.1f} mm/h"), state.signals[BODY.RAIN_INTENSITY] / 100)
 
 
 def _fog(state: State) -> Reading:

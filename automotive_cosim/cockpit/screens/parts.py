@@ -27,7 +27,7 @@ from automotive_cosim.cockpit.widgets import (
     Tile,
     Widget,
 )
-from automotive_cosim.contracts.text import Figure, say
+from automotive_cosim.contracts.text import Quantity, say
 
 ROOMS = {
     **dict.fromkeys(("home", "map", "explore", "place", "route"), Room.WHOLE),
@@ -54,7 +54,7 @@ def temperature(signals: Signals, celsius: float, digits: int = 1) -> str:
     """A value in the unit of the display."""
     if signals[HMI.TEMPERATURE_UNIT] == "F":
         return f"{celsius * 1.8 + 32:.0f} °F"
-    return Figure(f"{celsius:.{digits}f} °C".replace("-0 ", "0 ").replace("-0.0", "0.0"))
+    return Quantity(f"{celsius:.{digits}f} °C".replace("-0 ", "0 ").replace("-0.0", "0.0"))
 
 
 def speed(signals: Signals, kmh: float) -> str:
@@ -71,10 +71,10 @@ def distance(signals: Signals, metres: float) -> str:
     """A distance, rounded as on signs."""
     if signals[HMI.DISTANCE_UNIT] == "MILES":
         miles = metres / 1000 / MILE_KM
-        return Figure(f"{miles:.1f} mi") if miles < 100 else f"{miles:.0f} mi"
+        return Quantity(f"{miles:.1f} mi") if miles < 100 else f"{miles:.0f} mi"
     if metres < 1000:
         return f"{round(metres, -1):.0f} m"
-    return Figure(f"{metres / 1000:.1f} km") if metres < 100_000 else f"{metres / 1000:.0f} km"
+    return Quantity(f"{metres / 1000:.1f} km") if metres < 100_000 else f"{metres / 1000:.0f} km"
 
 
 def pressure(signals: Signals, kpa: float) -> str:
@@ -82,7 +82,7 @@ def pressure(signals: Signals, kpa: float) -> str:
     unit = signals[HMI.PRESSURE_UNIT]
     if unit == "PSI":
         return f"{kpa / PSI_KPA:.0f} psi"
-    return Figure(f"{kpa / 100:.1f} bar") if unit == "BAR" else f"{kpa:.0f} kPa"
+    return Quantity(f"{kpa / 100:.1f} bar") if unit == "BAR" else f"{kpa:.0f} kPa"
 
 
 def heading(rect: Rect, text: str, key: str = "") -> Label:
@@ -174,10 +174,10 @@ def stepper(
 def _step(signal: Signal[float], signals: Signals) -> str:
     """A stepper's step in the unit of the display."""
     if signal.unit == "celsius" and signals[HMI.TEMPERATURE_UNIT] == "F":
-        return Figure(f"{1.8 * signal.step:.1f}")
+        return Quantity(f"{1.8 * signal.step:.1f}")
     if signal.unit == "km/h" and signals[HMI.DISTANCE_UNIT] == "MILES":
-        return Figure(f"{signal.step / MILE_KM:.1f}")
-    return Figure(f"{signal.step:g}")
+        return Quantity(f"{signal.step / MILE_KM:.1f}")
+    return Quantity(f"{signal.step:g}")
 
 
 def switch(

@@ -34,7 +34,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
-from automotive_cosim.contracts.text import Figure, joined, say
+from automotive_cosim.contracts.text import Quantity, joined, say
 
 STAYS = (30, 60, 120, 240)
 """Parking times that can be paid for, in minutes."""
@@ -183,7 +183,7 @@ def parking(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=total,
                     key="parking.price",
-                    text=say("Price {price}", price=Figure(f"{price(desk.zone, desk.minutes):.2f}")),
+                    text=say("Price {price}", price=Quantity(f"{price(desk.zone, desk.minutes):.2f}")),
                     style=Type.HEADLINE,
                 ),
                 Button(
@@ -209,7 +209,7 @@ def parking(state: State) -> tuple[Widget, ...]:
                 rect=cell,
                 key=f"parking.ticket.{index}",
                 text=say("{zone} until {time}", zone=tickets[index].zone, time=tickets[index].until),
-                detail=say("Paid {price}", price=Figure(f"{tickets[index].price:.2f}")),
+                detail=say("Paid {price}", price=Quantity(f"{tickets[index].price:.2f}")),
                 icon=Icon.TICKET,
             ),
             height=68,
@@ -393,8 +393,8 @@ def trip(state: State) -> tuple[Widget, ...]:
         ("trip.distance", say("Distance"), distance(signals, driven_m), Icon.ROUTE),
         ("trip.time", say("Driving time"), minutes(took_s), Icon.CLOCK),
         ("trip.speed", say("Mean speed"), f"{speed(signals, mean_kmh)} {speed_unit(signals)}", Icon.SPEED),
-        ("trip.energy", say("Energy"), Figure(f"{used_kwh:.2f} kWh"), Icon.BATTERY),
-        ("trip.consumption", say("Consumption"), Figure(f"{per_100:.1f} kWh/100 {unit}"), Icon.CHARGING),
+        ("trip.energy", say("Energy"), Quantity(f"{used_kwh:.2f} kWh"), Icon.BATTERY),
+        ("trip.consumption", say("Consumption"), Quantity(f"{per_100:.1f} kWh/100 {unit}"), Icon.CHARGING),
         ("trip.range", say("Range"), distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),
     )
     cells = [cell for line in body.rows(2, 16) for cell in line.columns(3, 16)]

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.cockpit.widgets import Button, Card, Widget
-from automotive_cosim.contracts.text import Figure, say
+from automotive_cosim.contracts.text import Quantity, say
 
 
 def trip_b(state: State) -> tuple[Widget, ...]:
@@ -22,7 +22,7 @@ def trip_b(state: State) -> tuple[Widget, ...]:
     facts = (
         ("trip_b.distance", say("Distance"), distance(state.signals, driven_m)),
         ("trip_b.time", say("Driving time"), minutes(took_s)),
-        ("trip_b.energy", say("Energy"), Figure(f"{used_kwh:.1f} kWh")),
+        ("trip_b.energy", say("Energy"), Quantity(f"{used_kwh:.1f} kWh")),
     )
     lines = body.left(640).rows(3, 8)
     return (

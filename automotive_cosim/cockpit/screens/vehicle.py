@@ -19,7 +19,7 @@ from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, LIGHTS, Signal
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, CarView, Label, Tile, Widget
-from automotive_cosim.contracts.text import Figure, listed, say, say_in
+from automotive_cosim.contracts.text import Quantity, listed, say, say_in
 
 CAR_WIDTH = 340
 WIPING = {
@@ -242,7 +242,7 @@ def _keeping(rect: Rect, state: State) -> Widget:
                 Icon.DISTANCE,
                 ADAS.CRUISE_GAP,
                 signals,
-                [(seconds, Figure(f"{seconds:.1f} s")) for seconds in (1.0, 1.5, 2.0, 2.5, 3.0)],
+                [(seconds, Quantity(f"{seconds:.1f} s")) for seconds in (1.0, 1.5, 2.0, 2.5, 3.0)],
             ),
             *_holder(
                 right,
