@@ -200,6 +200,9 @@ def test_what_only_oncoming_traffic_forbids_is_not_due() -> None:
     assert (dark.bait, dark.obliged_s) == (False, None)
     (lamps,) = found(stream(10, oncoming=vehicle(200.0), lit=True, **lit), "high_beam")
     assert lamps.obliged_s is not None
+    tokyo = lit | {"position": (139.7, 35.66)}
+    (coming,) = found(stream(10, oncoming=vehicle(200.0), lit=True, **tokyo), "high_beam")
+    assert (coming.bait, coming.obliged_s) == (False, None), "Japanese law does not forbid it where the road is lit"
 
 
 def test_a_border_is_news_for_a_minute() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import ClassVar
 
 from automotive_cosim.cockpit.signals import LIGHTS
@@ -11,6 +12,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, WatchAct, off, on
 from automotive_cosim.drives.events.law import says
 from automotive_cosim.drives.margins import LAMP_S
+from automotive_cosim.geo.context import GeoContext
 
 DARK_DEG = -6.0
 """The end of civil twilight."""
@@ -77,11 +79,15 @@ class HighBeam(EventKind):
             yield Sighting(f"high beam at a car {gap_m:.0f} m ahead", due=True, hold_s=LAMP_S)
         elif says(now.context, "high_beam", "forbidden"):
             # no sensor of the car tells of oncoming traffic: what only that forbids is not due
-            road = now.driving.road
-            known = now.driving.around.oncoming is None or road.lit is True or road.built_up is True
-            yield Sighting("high beam where the law forbids it", due=known, hold_s=LAMP_S)
+            due = says(_with_nobody_coming(now.context), "high_beam", "forbidden")
+            yield Sighting("high beam where the law forbids it", due=due, hold_s=LAMP_S)
         elif gap_m >= CLEAR_M:
             yield Sighting("high beam on an empty road", bait=True)
+
+
+def _with_nobody_coming(context: GeoContext) -> GeoContext:
+    around = replace(context.driving.around, oncoming=None)
+    return replace(context, driving=replace(context.driving, around=around))
 
 
 class FogLamps(EventKind):
