@@ -123,7 +123,7 @@ _OCCASIONS = (
     (say("Groceries"), PlaceKind.SHOP),
     (say("Meet the visitors"), PlaceKind.STATION),
 )
-ZONES = tuple(say("Zone {letter}", letter=letter) for letter in "ABC")
+ZONES = (say("Zone A"), say("Zone B"), say("Zone C"))
 PRICES = {"Zone A": 4.0, "Zone B": 2.5, "Zone C": 1.2}
 """Price per hour."""
 

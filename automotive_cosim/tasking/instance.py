@@ -9,7 +9,8 @@ from functools import cached_property
 from typing import Any
 
 from automotive_cosim.cockpit.aboard import Seat
-from automotive_cosim.cockpit.language import Language, word
+from automotive_cosim.cockpit.language import Language, said, word
+from automotive_cosim.contracts.text import Quantity
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.draws import Draws, Purpose
@@ -131,8 +132,11 @@ def _in_language(half: Half, own: Speech) -> Half:
         match part:
             case Says(text) | Consult(text):
                 return replace(part, text=own.lines.said(text))
-            case Tap(text=text) | TapUntil(text=text):
+            case Tap(text=text):
                 return replace(part, text=word(text, own.language))
+            case TapUntil(text=text):
+                shown = word(text, own.language)
+                return replace(part, text=shown if shown != text else said(Quantity(text), own.language))
             case Hear(text):
                 return replace(part, text=next(own.lines.said(line) for line in heard if text in line))
             case Topic():

@@ -30,7 +30,7 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Glyph, Label, Look, Row, Tile, Widget
 from automotive_cosim.contracts import Alert, AlertKind
-from automotive_cosim.contracts.text import Quantity, say
+from automotive_cosim.contracts.text import Quantity, say, say_in
 
 DENSE_FOG_M, FOG_M, MIST_M = 200.0, 1000.0, 5000.0
 """Dense fog, fog and mist, the latter two by the WMO's definitions."""
@@ -151,9 +151,8 @@ def _air(state: State) -> Reading:
 
 def _wind(state: State) -> Reading:
     wind = state.signals[OUTSIDE.WIND]
-    word = (
-        say("Calm") if wind < 20 else say("Breeze") if wind < 50 else say("Strong") if wind < 75 else say("Storm")
-    )
+    calm = say_in("wind", "Calm")
+    word = calm if wind < 20 else say("Breeze") if wind < 50 else say("Strong") if wind < 75 else say("Storm")
     return Reading(word, f"{speed(state.signals, wind)} {speed_unit(state.signals)}", min(1.0, wind / 100))
 
 
