@@ -2,28 +2,36 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from inspect import Signature, signature
 from typing import Any
 
 
-def over(cases: Iterable[Any]) -> Callable[[Callable[..., None]], Callable[[], None]]:
-    """Runs a check with each case, a tuple of its arguments or the only one."""
+def over(cases: Iterable[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
+    """Runs a check with each case, a tuple of its first arguments or the only one; its others are fixtures."""
     every = [case if isinstance(case, tuple) else (case,) for case in cases]
 
-    def law(check: Callable[..., None]) -> Callable[[], None]:
-        def test() -> None:
-            assert every, "no cases"
-            broken: list[AssertionError] = []
-            for case in every:
-                try:
-                    check(*case)
-                except AssertionError as error:
-                    error.add_note(f"for {', '.join(getattr(part, 'id', str(part)) for part in case)}")
-                    broken.append(error)
-            if broken:
-                raise ExceptionGroup(f"{len(broken)} of {len(every)} cases", broken)
+    def law(check: Callable[..., None]) -> Callable[..., None]:
+        def test(**fixtures: Any) -> None:
+            hold(every, lambda *case: check(*case, **fixtures))
 
+        fixtures = list(signature(check).parameters.values())[len(every[0]) if every else 0 :]
+        test.__signature__ = Signature(fixtures)  # type: ignore[attr-defined]
         test.__name__, test.__doc__, test.__module__ = check.__name__, check.__doc__, check.__module__
         return test
 
     return law
+
+
+def hold(cases: Sequence[tuple[Any, ...]], check: Callable[..., None]) -> None:
+    """Runs a check with each case, and lists those that break it."""
+    assert cases, "no cases"
+    broken: list[Exception] = []
+    for case in cases:
+        try:
+            check(*case)
+        except Exception as error:
+            error.add_note(f"for {', '.join(getattr(part, 'id', str(part))[:80] for part in case)}")
+            broken.append(error)
+    if broken:
+        raise ExceptionGroup(f"{len(broken)} of {len(cases)} cases", broken)

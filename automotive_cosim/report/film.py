@@ -65,6 +65,7 @@ class Film(Watcher):
         self._after: list[FilmFrame] = []
         self._map: RoadMap | None = None
         self._hand_over_s = 0.0
+        self._fitted: tuple[npt.NDArray[np.uint8], Image.Image] | None = None
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
         """Takes a picture now and then: before the hand-over, and after each step in case it is the last."""
@@ -72,17 +73,17 @@ class Film(Watcher):
             if not self._before or moment.time_s - self._before[-1].time_s >= BEFORE_EVERY_S:
                 title = "The drive up to the hand-over"
                 words = "nobody acts yet; at the hand-over the car and its clock are as they were at departure"
-                self._before.append(_frame(moment.time_s, cockpit.screenshot(), title, words, BEFORE_MS))
+                self._before.append(self._frame(moment.time_s, cockpit.screenshot(), title, words, BEFORE_MS))
         elif not self._after or moment.time_s - self._after[-1].time_s >= AFTER_EVERY_S:
             title, words = "After the end", "how the drive continues"
-            self._after.append(_frame(moment.time_s, cockpit.screenshot(), title, words, AFTER_MS))
+            self._after.append(self._frame(moment.time_s, cockpit.screenshot(), title, words, AFTER_MS))
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
         """The first frame of the episode, with the driver's words."""
         self._map = RoadMap(episode.network)
         self._hand_over_s = shot.step.moment.time_s
         words = f"“{episode.instance.goal}”"
-        self._steps.append(_frame(self._hand_over_s, shot.screenshot, "The driver says", words, STEP_MS))
+        self._steps.append(self._frame(self._hand_over_s, shot.screenshot, "The driver says", words, STEP_MS))
 
     def stepped(self, shot: Shot) -> None:
         """Adds one frame per step."""
@@ -90,7 +91,7 @@ class Film(Watcher):
         step = shot.step
         title = f"{step.number}  {action_in_words(step.action, shot.seen)}"
         words = " ".join(f"“{text}”" for text in step.said) or shot.thought or step.feedback.text
-        self._steps.append(_frame(step.moment.time_s, shot.screenshot, title, words, STEP_MS))
+        self._steps.append(self._frame(step.moment.time_s, shot.screenshot, title, words, STEP_MS))
 
     def finished(self, result: EpisodeResult) -> None:
         """Composes and writes the film, if there was a hand-over."""
@@ -114,6 +115,14 @@ class Film(Watcher):
         )
         draft.replace(self._path)
 
+    def _frame(
+        self, time_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int
+    ) -> FilmFrame:
+        """A frame; a screen that has not changed is one array (``Cockpit.screenshot``) and is fitted once."""
+        if self._fitted is None or self._fitted[0] is not screenshot:
+            self._fitted = screenshot, _fitted(screenshot)
+        return FilmFrame(time_s, self._fitted[1], title, words, milliseconds)
+
     def _compose(self, frame: FilmFrame, result: EpisodeResult, painter: RoadPainter) -> Image.Image:
         at_s = frame.time_s - self._hand_over_s
         past = [sample for sample in result.path if sample.at_s <= at_s + 0.05]
@@ -128,15 +137,13 @@ class Film(Watcher):
         return canvas.image
 
 
-def _frame(
-    time_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int
-) -> FilmFrame:
-    """A frame whose picture of the screen is as large as fits, whatever the screen's size."""
+def _fitted(screenshot: npt.NDArray[np.uint8]) -> Image.Image:
+    """The picture of the screen as large as fits, whatever the screen's size."""
     box = _pixels(COCKPIT)
     picture = Image.new("RGB", box, NIGHT.background)
     shown = ImageOps.contain(Image.fromarray(screenshot), box, Image.Resampling.LANCZOS)
     picture.paste(shown, ((box[0] - shown.width) // 2, (box[1] - shown.height) // 2))
-    return FilmFrame(time_s, picture, title, words, milliseconds)
+    return picture
 
 
 def _pixels(rect: Rect) -> tuple[int, int]:

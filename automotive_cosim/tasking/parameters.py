@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
+from functools import cache
 from typing import Any, TypeVar
 
 T = TypeVar("T")
@@ -80,36 +81,51 @@ def rebuilt(value: Any, change: Callable[[Any], Any]) -> Any:
         return changed
     if isinstance(value, tuple | frozenset):
         return type(value)(rebuilt(entry, change) for entry in value)
-    if isinstance(value, Mapping):
-        return {rebuilt(key, change): rebuilt(entry, change) for key, entry in value.items()}
-    if is_dataclass(value) and not isinstance(value, type):
-        now = {field.name: getattr(value, field.name) for field in fields(value) if field.init}
+    kind: Any = type(value)
+    names = _field_names(kind)
+    if names is not None:
+        now = {name: getattr(value, name) for name in names}
         then = {name: rebuilt(entry, change) for name, entry in now.items()}
         differing = {name: entry for name, entry in then.items() if entry != now[name]}
         return replace(value, **differing) if differing else value
+    if isinstance(value, Mapping):
+        return {rebuilt(key, change): rebuilt(entry, change) for key, entry in value.items()}
     return value
+
+
+@cache
+def _field_names(of: type) -> tuple[str, ...] | None:
+    """What a dataclass is made of; None if it is none."""
+    return tuple(field.name for field in fields(of) if field.init) if is_dataclass(of) else None
+
+
+class _Asked(dict[str, Any]):
+    """The parameters that texts ask for."""
+
+    def __missing__(self, name: str) -> Param:
+        self[name] = Param(name)
+        return Param(name)
 
 
 def names(value: object) -> frozenset[str]:
     """The names of the parameters in a value."""
-
-    class Asked(dict[str, Any]):
-        def __missing__(self, name: str) -> Param:
-            asked.add(name)
-            return Param(name)
-
-    asked: set[str] = set()
-    bind(_without_meanings(value), Asked())
+    asked = _Asked()
+    parts: list[Any] = [value]
+    seen: set[int] = set()  # the many shared parts of a catalogue are searched once
+    while parts:
+        part = parts.pop()
+        if isinstance(part, str):
+            if "{" in part:
+                part.format_map(asked)
+        elif isinstance(part, Param):
+            asked[part.name] = part
+        elif id(part) not in seen:
+            seen.add(id(part))
+            if isinstance(part, tuple | frozenset):
+                parts += part
+            elif is_dataclass(part) and not isinstance(part, type):
+                parts += (getattr(part, field.name) for field in fields(part))
+            elif isinstance(part, Mapping):
+                parts += part.keys()
+                parts += part.values()
     return frozenset(asked)
-
-
-def _without_meanings(value: Any) -> Any:
-    if isinstance(value, Param):
-        return Param(value.name)
-    if isinstance(value, tuple | frozenset):
-        return tuple(_without_meanings(entry) for entry in value)
-    if isinstance(value, Mapping):
-        return tuple((_without_meanings(key), _without_meanings(entry)) for key, entry in value.items())
-    if is_dataclass(value) and not isinstance(value, type):
-        return tuple(_without_meanings(getattr(value, field.name)) for field in fields(value))
-    return value

@@ -12,6 +12,7 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
 
 HEAVY = ("libsumo", "pydantic", "shapely", "pyproj", "PIL", "openai", "matplotlib", "jinja2", "scipy", "pandas")
 COMMANDS = (
@@ -76,8 +77,8 @@ def test_tasks_and_agents_are_listed(cli):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("task", CATALOGUE)
-def test_a_task_is_shown_with_its_words_and_halves(cli, task):
+@over(CATALOGUE)
+def test_a_task_is_shown_with_its_words_and_halves(task, cli):
     text = cli("tasks", "show", task).out
     assert all(words in text for words in CATALOGUE[task].templates)
     assert all(f"{half} half" in text for half in CATALOGUE[task].halves)

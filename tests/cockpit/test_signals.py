@@ -22,13 +22,14 @@ from automotive_cosim.cockpit.signals import (
     named,
 )
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
+from tests.laws import over
 
 ANYTHING = st.one_of(
     st.none(), st.booleans(), st.integers(), st.floats(), st.text(max_size=8), st.binary(max_size=2)
 )
 
 
-@pytest.mark.parametrize("signal", CATALOGUE.values(), ids=CATALOGUE.keys())
+@over(CATALOGUE.values())
 def test_default_is_legal_and_path_is_vss(signal: Signal[Any]) -> None:
     assert signal.check(signal.default) == signal.default
     assert signal.path.startswith("Vehicle.")

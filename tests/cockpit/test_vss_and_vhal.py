@@ -15,6 +15,7 @@ from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.cockpit.vhal import PROPERTIES, VehicleAreaSeat, Wheel, Window, get_property, resolve
 from automotive_cosim.contracts import FeedbackCode, Hazards, Surroundings
 from automotive_cosim.errors import SignalError, UnknownNameError
+from tests.laws import over
 
 
 def leaves(nodes: dict[str, Any], path: str = "") -> Iterator[tuple[str, dict[str, Any]]]:
@@ -62,7 +63,7 @@ def test_reset_restores_every_signal() -> None:
     assert signals.snapshot() == start
 
 
-@pytest.mark.parametrize("name", PROPERTIES)
+@over(PROPERTIES)
 def test_what_is_read_can_be_written_back(name: str) -> None:
     for area, signal in PROPERTIES[name].areas.items():
         signals = Signals()

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import automotive_cosim
+from tests.laws import over
 
 TOP = Path(__file__).parents[2]
 PAGE = (TOP / "docs/api.md").read_text(encoding="utf-8")
@@ -54,7 +55,7 @@ def test_type_checkers_see_the_names_where_they_are():
     assert ast.literal_eval(names) == automotive_cosim.__all__
 
 
-@pytest.mark.parametrize("each", [pytest.param(each, id=name) for name, each in PUBLIC])
+@over([each for _, each in PUBLIC])
 def test_what_is_public_is_documented_and_typed(each):
     assert len(inspect.getdoc(each) or "") > 5
     if inspect.isfunction(each):

@@ -11,6 +11,7 @@ import pytest
 
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.formats.toml import Document, parse
+from tests.laws import over
 
 ROOT = Path(str(files("automotive_cosim")))
 SHIPPED = [
@@ -58,7 +59,7 @@ def _keys(value: object, steps: tuple[str | int, ...] = ()) -> Iterator[tuple[st
         yield from _keys(inner, (*steps, step))
 
 
-@pytest.mark.parametrize("text", [AWKWARD, *(path.read_text("utf-8") for path in SHIPPED)])
+@over([AWKWARD, *(path.read_text("utf-8") for path in SHIPPED)])
 def test_every_key_is_found_on_a_line_that_names_it_or_encloses_it(text: str) -> None:
     document, lines = _document(text), text.splitlines()
     assert SHIPPED

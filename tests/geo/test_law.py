@@ -14,6 +14,7 @@ from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import LAW_OF, Place
 from automotive_cosim.geo.rules import Rule, Status
 from automotive_cosim.geo.situation import Situation
+from tests.laws import over
 
 UTC = ZoneInfo("UTC")
 FOG = {"phenomena": frozenset({"fog"}), "visibility_m": 300.0}
@@ -295,16 +296,14 @@ STATEMENTS: list[tuple[str, str, Mapping[str, object], object]] = [
 ]
 
 
-@pytest.mark.parametrize(
-    ("rule_id", "article", "changes", "value"), STATEMENTS, ids=lambda part: part if isinstance(part, str) else ""
-)
+@over(STATEMENTS)
 def test_verified_statement(
-    rules: dict[str, Rule],
-    situation: Callable[..., Situation],
     rule_id: str,
     article: str,
     changes: Mapping[str, object],
     value: object,
+    rules: dict[str, Rule],
+    situation: Callable[..., Situation],
 ) -> None:
     rule = rules[rule_id]
     assert rule.status is Status.VERIFIED
@@ -409,9 +408,11 @@ def test_a_living_street_has_the_limit_of_its_own_sign(
     assert (found.value, found.rule.status, found.certain) == (kmh, status, True)
 
 
-@pytest.mark.parametrize("code", [code for code in Geo().atlas.codes() if len(code) == 2])
+@over([code for code in Geo().atlas.codes() if len(code) == 2])
 def test_no_general_rule_is_certain_of_a_street_with_a_law_of_its_own(
-    geo: Geo, situation: Callable[..., Situation], code: str
+    code: str,
+    geo: Geo,
+    situation: Callable[..., Situation],
 ) -> None:
     place = Place(country=code, layers=tuple(e for e in geo.atlas.country(code) if e.kind == "country"))
     for road_class in OWN_LAW:
@@ -420,9 +421,11 @@ def test_no_general_rule_is_certain_of_a_street_with_a_law_of_its_own(
             assert found.certain is any(road_class in named for named in classes) or not found.rule.fixed
 
 
-@pytest.mark.parametrize("code", [code for code in Geo().atlas.codes() if "-" in code])
+@over([code for code in Geo().atlas.codes() if "-" in code])
 def test_a_region_sets_no_limit_on_motorways_by_a_rule_about_country_roads(
-    geo: Geo, situation: Callable[..., Situation], code: str
+    code: str,
+    geo: Geo,
+    situation: Callable[..., Situation],
 ) -> None:
     """Where the country has a limit of motorways, it stands unless the region or city names motorways."""
     layers = tuple(entry for entry in geo.atlas.country(code[:2]) if entry.code in (code, code[:2]))
@@ -550,8 +553,12 @@ def test_a_motorcycle_and_a_lorry_have_rules_that_a_car_does_not_read(locate: Ca
     assert not others & {line.source for line in context.lines}
 
 
-@pytest.mark.parametrize("code", [code for code in Geo().atlas.codes() if "-" in code])
-def test_a_city_or_region_overrides_with_a_date(geo: Geo, rules: dict[str, Rule], code: str) -> None:
+@over([code for code in Geo().atlas.codes() if "-" in code])
+def test_a_city_or_region_overrides_with_a_date(
+    code: str,
+    geo: Geo,
+    rules: dict[str, Rule],
+) -> None:
     (entry,) = [entry for entry in geo.atlas.country(code[:2]) if entry.code == code]
     assert entry.rules
     assert entry.area is not None

@@ -25,6 +25,7 @@ from automotive_cosim.geo.weather import (
     visibility_class,
 )
 from automotive_cosim.scenarios import WeatherAt, weather_at
+from tests.laws import over
 
 
 @pytest.fixture(scope="module")
@@ -106,8 +107,8 @@ def _rows(table: str) -> list[tuple[str, float, float]]:
     return [(code, float(lat), float(lon)) for code, lat, lon in rows]
 
 
-@pytest.mark.parametrize(("code", "lat", "lon"), _rows(f"{STATES}{TWINS}"))
-def test_each_state_has_its_law(atlas: Atlas, code: str, lat: float, lon: float) -> None:
+@over(_rows(f"{STATES}{TWINS}"))
+def test_each_state_has_its_law(code: str, lat: float, lon: float, atlas: Atlas) -> None:
     layers = atlas.place(lon, lat).layers
     assert [layer.code for layer in layers if layer.kind == "region"] == [f"US-{code}"]
 

@@ -19,6 +19,7 @@ from automotive_cosim.geo.place import Atlas
 from automotive_cosim.geo.rulefile import CaseEntry, read_jurisdiction
 from automotive_cosim.geo.rules import TOPICS
 from automotive_cosim.geo.situation import CONDITIONS, Situation, When, all_hold
+from tests.laws import over
 
 SHIPPED = sorted(Path(str(files("automotive_cosim.geo.data"))).glob("*.toml"))
 
@@ -64,7 +65,7 @@ def _conditions(table: dict[str, object]) -> When:
     return checked(CaseEntry, {"value": "allowed", "when": table}, lambda steps: ("", str(steps))).when or ()
 
 
-@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+@over(SHIPPED)
 def test_a_shipped_file_reads(path: Path) -> None:
     entry = read_jurisdiction(path)
     assert entry.code == path.stem

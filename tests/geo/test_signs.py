@@ -7,6 +7,7 @@ import pytest
 from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS, NO_LIMIT, Limit, LimitSource
 from automotive_cosim.geo.place import shipped
 from automotive_cosim.geo.signs import signs_of
+from tests.laws import over
 
 PER_MPS = {"km/h": KMH_PER_MPS, "mph": MPH_PER_MPS}
 UNITS = {"DE": "km/h", "US": "mph", "GB": "mph"}
@@ -25,9 +26,8 @@ def seen(country, drive, limit, **road):
     return signs(country).on(replace(state, ahead=replace(state.ahead, next_limit=limit)))
 
 
-@pytest.mark.parametrize("country", UNITS)
-@pytest.mark.parametrize(("figure", "per_mps"), SIGNS)
-def test_a_sign_shows_a_round_figure_of_the_country(drive, country, figure, per_mps):
+@over([(country, *sign) for country in UNITS for sign in SIGNS])
+def test_a_sign_shows_a_round_figure_of_the_country(country, figure, per_mps, drive):
     unit = UNITS[country]
     limit = Limit(figure / per_mps, LimitSource.POSTED)
     state = seen(country, drive, limit)

@@ -18,6 +18,7 @@ from automotive_cosim.episode.specification import Conditions, feedback_of, see_
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.feedback import control, quiet
 from automotive_cosim.interface.observe import ALL, Channel, See
+from tests.laws import over
 
 from ..cockpit.conftest import outside, town
 
@@ -88,7 +89,7 @@ def test_what_is_read_out_is_heard(parked: Cockpit, speed_kmh: float, is_heard: 
     assert (" wrote: " in told(car, touch(car, "thread.read")).text) is is_heard
 
 
-@pytest.mark.parametrize("screen", SCREENS)
+@over(SCREENS)
 def test_no_touch_tells_a_signal(screen: str, parked: Cockpit) -> None:
     car = parked.copy()
     car.visit(screen)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import string
+from itertools import product
 
 import pytest
 from hypothesis import given, settings
@@ -16,6 +17,7 @@ from automotive_cosim.osm.country import LEFT_HAND, LIMITS, WORLD, assumed_limit
 from automotive_cosim.osm.extract import ROAD_CLASSES
 from automotive_cosim.osm.limits import CAR_KEYS, NO_UNIT, ZONE_KEYS, built_up_of, doubts, kmh_of, stated_limits
 from automotive_cosim.osm.roads import MappedRoad
+from tests.laws import over
 
 NETCONVERT_READS = re.compile(r"none|\d+(\.\d+)?( mph)?")
 
@@ -74,10 +76,8 @@ def test_no_zone_overrides_a_sign(tags: dict[str, str], zone: str, key: str) -> 
 ZONE_NAMES = ("FR:urban", "DE:motorway", "GB:zone20", "GB:nsl_single", "FR:zone50", "IT:urban", "sign")
 
 
-@pytest.mark.parametrize("zone", ZONE_NAMES)
-@pytest.mark.parametrize("key", [*ZONE_KEYS, "zone:traffic"])
-@pytest.mark.parametrize("value", ["30", "30 mph", "none", "walk"])
-def test_value_unit_and_zone(value: str, key: str, zone: str) -> None:
+@over(product(ZONE_NAMES, [*ZONE_KEYS, "zone:traffic"], ["30", "30 mph", "none", "walk"]))
+def test_value_unit_and_zone(zone: str, key: str, value: str) -> None:
     limit = "7" if value == "walk" else value
     assert stated_limits({key: zone, "maxspeed": value}).forward == limit
     assert read({key: zone, "maxspeed": value}).for_netconvert()["maxspeed"] == limit
@@ -270,7 +270,7 @@ def test_an_unknown_place_gets_the_most_common_limits(road_class: str) -> None:
     assert kmh_of(sign) == assumed_limit_kmh("", road_class, built_up=False, dual=False)
 
 
-@pytest.mark.parametrize("country", [*LIMITS, ""])
+@over([*LIMITS, ""])
 def test_limits_rise_from_the_street_to_the_motorway(country: str) -> None:
     limits = LIMITS.get(country, WORLD)
     rising = (limits.street, limits.town, limits.rural, limits.dual, limits.motorway)

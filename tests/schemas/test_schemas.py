@@ -15,6 +15,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.checked import as_json
 from automotive_cosim.run.plan import read_plan
 from automotive_cosim.schemas import make
+from tests.laws import over
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -69,7 +70,7 @@ def test_a_shipped_scenario_passes(path: Path) -> None:
     _check("scenario", tomllib.loads(path.read_text(encoding="utf-8")))
 
 
-@pytest.mark.parametrize("path", sorted(ROOT.glob("geo/data/*.toml")), ids=lambda path: path.stem)
+@over(sorted(ROOT.glob("geo/data/*.toml")))
 def test_a_shipped_rule_file_passes(path: Path) -> None:
     _check("rules", tomllib.loads(path.read_text(encoding="utf-8")))
 

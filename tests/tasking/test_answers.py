@@ -5,6 +5,7 @@ import pytest
 from automotive_cosim.tasking.answers import only_answered
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
 
 TRUE = (
     "No, everything is fine.",
@@ -50,6 +51,6 @@ def test_without_a_word_complete_is_not_right():
     assert not only_answered(instance(), [])
 
 
-@pytest.mark.parametrize(("task", "half"), QUIET)
+@over(QUIET)
 def test_to_say_that_all_is_well_is_true_wherever_nothing_has_to_be_done(task, half):
     assert only_answered(instance(task, half), ["No need, everything is already right: nothing to do."])

@@ -2,8 +2,6 @@
 
 from itertools import combinations
 
-import pytest
-
 from automotive_cosim.agents.trivial import AlwaysAsk
 from automotive_cosim.cockpit.actions import TEXT_LIMIT
 from automotive_cosim.contracts import Observation
@@ -14,10 +12,10 @@ from automotive_cosim.tasking.moves import Consult, Hear, Open, Tap
 from automotive_cosim.tasking.parameters import names
 from automotive_cosim.tasking.task import Module, Suite, Task
 from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
 
 ASKING = [task for task in CATALOGUE.of(Suite.STANDARD) if "asking" in task.tags]
 CHANGED = [task for task in CATALOGUE.values() if "second_thoughts" in task.tags]
-of_each = pytest.mark.parametrize("task", ASKING, ids=lambda task: task.id)
 
 
 def drawn(task: Task, half: str = "first") -> list[Instance]:
@@ -35,7 +33,7 @@ def test_there_are_forty_pairs_over_every_module():
     assert {task.module for task in ASKING} == set(Module)
 
 
-@of_each
+@over(ASKING)
 def test_the_question_comes_first_names_every_choice_and_gets_what_is_meant(task):
     for instance in drawn(task):
         (topic,) = instance.half.topics
@@ -50,7 +48,7 @@ def test_the_question_comes_first_names_every_choice_and_gets_what_is_meant(task
     assert len(set(replies.values())) == len(replies) >= 2
 
 
-@of_each
+@over(ASKING)
 def test_nothing_tells_what_is_meant_where_it_has_to_be_asked(task):
     first, second = task.first, task.second
     assert "which" not in names((task.templates, first.start, first.trigger))
@@ -58,7 +56,7 @@ def test_nothing_tells_what_is_meant_where_it_has_to_be_asked(task):
     assert "which" in names(first.goal)
 
 
-@of_each
+@over(ASKING)
 def test_where_it_can_be_found_out_a_question_loses(task):
     for instance in drawn(task, "second"):
         assert NotAsked() in instance.half.goal.checks
@@ -66,7 +64,7 @@ def test_where_it_can_be_found_out_a_question_loses(task):
         assert instance.half.topics
 
 
-@of_each
+@over(ASKING)
 def test_one_choice_is_no_question_and_a_vague_one_names_none(task):
     agent = AlwaysAsk()
     agent.reset("")
@@ -85,7 +83,7 @@ def test_no_two_share_goal_trigger_and_solution():
             assert (mine.goal, mine.trigger, mine.moves) != (theirs.goal, theirs.trigger, theirs.moves)
 
 
-@pytest.mark.parametrize("task", CHANGED, ids=lambda task: task.id)
+@over(CHANGED)
 def test_a_changed_mind_is_heard_only_in_the_half_where_it_changes(task):
     for number in range(20):
         first, second = (draw(task, half, number) for half in task.halves)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-import pytest
-
 from automotive_cosim.cockpit.people import Thread
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Do, Tap, TapUntil
 from automotive_cosim.tasking.task import Suite, Task
 from automotive_cosim.tasks import CATALOGUE
+from tests.laws import over
 
 HARD = CATALOGUE.of(Suite.HARD)
-ONE_BY_ONE = pytest.mark.parametrize("task", HARD, ids=lambda task: task.id)
 
 
 def test_the_suite_is_large_enough_and_named_apart():
@@ -20,19 +18,19 @@ def test_the_suite_is_large_enough_and_named_apart():
     assert not any(task.id.startswith("hard_") for task in CATALOGUE.of(Suite.STANDARD))
 
 
-@ONE_BY_ONE
+@over(HARD)
 def test_the_usual_mistakes_are_named(task: Task):
     assert any(task.half(name).slips for name in task.halves)
 
 
-@ONE_BY_ONE
+@over(HARD)
 def test_a_mistake_is_not_a_solution(task: Task):
     for name in task.halves:
         half = task.half(name)
         assert not [slip for slip in half.slips if slip in (half.moves, *half.ways)]
 
 
-@ONE_BY_ONE
+@over(HARD)
 def test_it_takes_many_actions_and_fits_the_limit(task: Task):
     """In one of its halves at least; a value that is pressed until it is right counts as two."""
     counts = []
@@ -46,7 +44,7 @@ def test_it_takes_many_actions_and_fits_the_limit(task: Task):
     assert max(counts) <= task.max_steps - 5
 
 
-@ONE_BY_ONE
+@over(HARD)
 def test_a_person_has_the_time(task: Task):
     """A second and a half at least for each action, and for each second of waiting one; at most twelve, but where a
     mere warning is right."""
@@ -62,7 +60,7 @@ def test_a_person_has_the_time(task: Task):
         assert 1.5 * acts + waits <= half.deadline.seconds <= waits + 12 * acts
 
 
-@ONE_BY_ONE
+@over(HARD)
 def test_a_task_needs_the_picture_if_it_has_a_photo(task: Task):
     sent = [thread for name in task.halves for thread in task.half(name).start.belongings.threads]
     assert task.needs_picture is any(thread.photo for thread in sent if isinstance(thread, Thread))

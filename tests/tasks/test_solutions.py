@@ -24,6 +24,7 @@ from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.moves import Move
 from automotive_cosim.tasking.task import Start, Task
 from automotive_cosim.tasks import CATALOGUE
+from tests.laws import hold
 
 from ..cockpit.conftest import outside, town
 
@@ -35,8 +36,10 @@ SAMPLED = [
     for task, size in zip([task for task in CATALOGUE.values() if task.module == module], OTHER_SIZES, strict=False)
 ]
 """Two tasks of every module, one on each of the other screens."""
+GROUPS = 32
+"""Tests over as many parts of the halves: each plays its halves once, and a worker takes one after the other."""
 SPOKEN = [
-    pytest.param(task, half, language, id=f"{task.id}-{half}-{language}")
+    (task, half, language)
     for number, (task, half) in enumerate((task, half) for task, half in HALVES if task.spoken)
     for language in [sorted(task.spoken)[number % len(task.spoken)]]
 ]
@@ -152,36 +155,61 @@ def _solved(
     return Solved(car, moments, dict(beside))
 
 
-@pytest.fixture(scope="module", params=HALVES, ids=lambda case: f"{case[0].id}-{case[1]}")
-def played(request: pytest.FixtureRequest, network: RoadNetwork) -> tuple[Instance, Cockpit, Solved]:
-    """A half's instance, the cockpit at its hand-over, and its first solution: played once for all laws over it."""
-    instance, cockpit = _taken_over(*request.param, network)
-    return instance, cockpit, _solved(instance, cockpit, instance.half.moves)
+@dataclass
+class Played:
+    """A half's instance, the cockpit at its hand-over, and its first solution."""
+
+    id: str
+    instance: Instance
+    cockpit: Cockpit
+    solved: Solved
+
+
+@pytest.fixture(scope="module", params=range(GROUPS))
+def played(request: pytest.FixtureRequest, network: RoadNetwork) -> list[tuple[Played]]:
+    """A part of the halves, played once for all laws over them."""
+    found = []
+    for task, half in HALVES[request.param :: GROUPS]:
+        instance, cockpit = _taken_over(task, half, network)
+        solved = _solved(instance, cockpit, instance.half.moves)
+        found.append((Played(f"{task.id}, {half}", instance, cockpit, solved),))
+    return found
 
 
 def test_a_reference_solution_reaches_its_goal_and_leaves_nothing_else(played):
-    instance, cockpit, first = played
-    others = (_solved(instance, cockpit, way) for way in instance.half.ways)
-    for way, solved in zip((instance.half.moves, *instance.half.ways), (first, *others), strict=True):
-        assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments), way
-        assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set(), way
+    def check(each: Played) -> None:
+        half = each.instance.half
+        others = (_solved(each.instance, each.cockpit, way) for way in half.ways)
+        for way, solved in zip((half.moves, *half.ways), (each.solved, *others), strict=True):
+            assert half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments), way
+            assert solved.surplus(solved.cockpit, half.allowed_writes) == set(), way
+
+    hold(played, check)
 
 
-@pytest.mark.parametrize(("task", "half", "language"), SPOKEN)
-def test_it_is_solved_in_another_language(task, half, language, network):
+@pytest.mark.parametrize("part", range(0, len(SPOKEN), 12))
+def test_it_is_solved_in_another_language(part, network):
     """What the reference solution looks for is on the screens of that language, and so is what it waits to hear."""
-    instance, cockpit = _taken_over(task, half, network, language)
-    solved = _solved(instance, cockpit, instance.half.moves)
-    assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments)
-    assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set()
+
+    def check(task: Task, half: str, language: Language) -> None:
+        instance, cockpit = _taken_over(task, half, network, language)
+        solved = _solved(instance, cockpit, instance.half.moves)
+        assert instance.half.goal.holds(solved.moments[0], solved.moments[-1], solved.moments)
+        assert solved.surplus(solved.cockpit, instance.half.allowed_writes) == set()
+
+    hold(SPOKEN[part : part + 12], check)
 
 
 def test_the_picture_alone_is_enough(played):
     """By points alone, with no text but what is drawn, the reference solution comes to the same."""
-    instance, cockpit, listed = played
-    pictured = _solved(instance, cockpit, instance.half.moves, by_pixels=True)
-    assert instance.half.goal.holds(pictured.moments[0], pictured.moments[-1], pictured.moments)
-    assert pictured.cockpit.commands() == listed.cockpit.commands()
+
+    def check(each: Played) -> None:
+        half = each.instance.half
+        pictured = _solved(each.instance, each.cockpit, half.moves, by_pixels=True)
+        assert half.goal.holds(pictured.moments[0], pictured.moments[-1], pictured.moments)
+        assert pictured.cockpit.commands() == each.solved.cockpit.commands()
+
+    hold(played, check)
 
 
 @pytest.mark.parametrize(("task", "half", "size"), SAMPLED)
@@ -196,13 +224,16 @@ def test_any_screen_is_enough(task, half, size, network):
 
 def test_one_switch_more_is_seen(played):
     """Whether the car couples it to the goal or not; unless the task allows it, or it ends the goal."""
-    instance, _, solved = played
-    allowed = instance.half.allowed_writes
-    turned = 0
-    for path in sorted(set(ACTUATORS) - allowed):
-        car = solved.cockpit.copy()
-        car.command(named(path), another_value(named(path), car.signals[named(path)]))
-        if car.commands() != solved.cockpit.commands():
-            turned += 1
-            assert solved.surplus(car, allowed), f"{path} as well is not seen"
-    assert turned > len(ACTUATORS) / 2
+
+    def check(each: Played) -> None:
+        solved, allowed = each.solved, each.instance.half.allowed_writes
+        turned = 0
+        for path in sorted(set(ACTUATORS) - allowed):
+            car = solved.cockpit.copy()
+            car.command(named(path), another_value(named(path), car.signals[named(path)]))
+            if car.commands() != solved.cockpit.commands():
+                turned += 1
+                assert solved.surplus(car, allowed), f"{path} as well is not seen"
+        assert turned > len(ACTUATORS) / 2
+
+    hold(played, check)
