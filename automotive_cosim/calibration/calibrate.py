@@ -126,7 +126,7 @@ def _hours(counts: Counts, options: CalibrationOptions) -> tuple[int, ...]:
             f" row: {', '.join(map(str, counts.hours))}"
         )
     if options.at_hour is not None and options.at_hour not in hours:
-        raise CountsError(f"--at {options.at_hour} is none of the hours calibrated, {first} to {last}")
+        raise CountsError(f"--at {options.at_hour} is not one of the calibrated hours, {first} to {last}")
     return hours
 
 

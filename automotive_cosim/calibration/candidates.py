@@ -32,7 +32,7 @@ Passing = tuple[str | Movement, int]
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """One route."""
+    """A route that the calibration may put trips on."""
 
     edges: tuple[str, ...]
     type_ids: tuple[str, ...]

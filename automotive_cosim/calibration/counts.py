@@ -204,12 +204,14 @@ def _places(path: Path, rows: Sequence[Mapping[str, str]]) -> dict[str, SitePlac
             continue
         name = row["site"].strip()
         if found.setdefault(name, place) != place:
-            raise CountsError(f"{path} line {number}: site {name!r} has another place than before; give it one")
+            raise CountsError(
+                f"{path} line {number}: site {name!r} has a different position than before; give it only one"
+            )
     return found
 
 
 def _paris_hour(path: Path, number: int, row: Mapping[str, str], zone: ZoneInfo) -> int | None:
-    """None at weekends."""
+    """Hour of a row of Open Data Paris; None for weekends."""
     try:
         stamp = datetime.fromisoformat(row[TIME])
         local = (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).astimezone(zone)

@@ -63,7 +63,7 @@ def calibrate_scenario(
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier calibration.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Fit a scenario's traffic to counts, and drive it until the simulation carries them.
+    """Fit a scenario's traffic to counts, and simulate until it matches them.
 
     Some sites are held out, to see what the fit is worth where nobody counted. The exit code is 1, and nothing is
     written, if the traffic gridlocks.

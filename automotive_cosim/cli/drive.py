@@ -39,16 +39,14 @@ def drive(
     ] = "fixed",
     latency: Annotated[
         float,
-        typer.Option(
-            help="Simulated seconds that every answer takes besides.", metavar="SECONDS", parser=number(0, 600)
-        ),
+        typer.Option(help="Simulated seconds to add to every answer.", metavar="SECONDS", parser=number(0, 600)),
     ] = 0.0,
     see: Annotated[str, typer.Option(help="How the agent sees the screen: tree, picture or both.")] = "both",
     feedback: Annotated[
         str,
         typer.Option(
             help="What the agent is told of its last action: quiet (the control, and whether it took) or verbose "
-            "(also what became of the car)."
+            "(also what changed in the car)."
         ),
     ] = "quiet",
     screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",

@@ -60,7 +60,7 @@ def evaluate(
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas.",
+            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas.",
             show_default="all",
         ),
     ] = None,
@@ -88,7 +88,7 @@ def evaluate(
     preset: Annotated[
         str | None,
         typer.Option(
-            help="Limits as others set them: 2026, ten steps as in the authors' newer edition.", show_default=False
+            help="A set of limits: 2026 is ten steps, as in the authors' newer edition.", show_default=False
         ),
     ] = None,
     everywhere: Annotated[
@@ -140,7 +140,7 @@ def evaluate(
     latency: Annotated[
         str | None,
         typer.Option(
-            help="Simulated seconds that every answer takes besides, as in 0,1,3,10.",
+            help="Simulated seconds to add to every answer, as in 0,1,3,10.",
             metavar="SECONDS",
             show_default="0",
         ),
@@ -170,7 +170,7 @@ def evaluate(
     budget_tokens: Annotated[
         int | None,
         typer.Option(
-            help="Stop once so many tokens have gone to and from the models in all; rerun with more to go on.",
+            help="Stop after this many tokens to and from the models in total; rerun with more to continue.",
             metavar="N",
             parser=whole_number(1, 10**15),
             show_default=False,

@@ -27,13 +27,13 @@ def mcp(
         ),
     ] = "",
     episodes: Annotated[
-        int, typer.Option(help="Most episodes at once.", metavar="N", parser=whole_number(1, 1000))
+        int, typer.Option(help="Maximum number of concurrent episodes.", metavar="N", parser=whole_number(1, 1000))
     ] = 16,
     idle_s: Annotated[
         float,
         typer.Option(
             "--idle-s",
-            help="Seconds after which an episode that nobody asks for is closed.",
+            help="Seconds after which an idle episode is closed.",
             metavar="SECONDS",
             parser=number(1, 1e6),
         ),

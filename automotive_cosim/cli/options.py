@@ -70,7 +70,7 @@ def reads_results(command: Callable[P, None]) -> Callable[P, None]:
         except (ArithmeticError, AttributeError, LookupError, RecursionError, TypeError, ValueError) as error:
             folder = next((value for value in (*given, *named.values()) if isinstance(value, Path)), "the folder")
             what = f"{type(error).__name__}: {error}"[:200]
-            raise UserError(f"{folder} is not as this version writes it ({what}); make it again") from error
+            raise UserError(f"{folder} does not match this version's format ({what}); create it again") from error
 
     return guarded
 

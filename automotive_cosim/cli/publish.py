@@ -22,7 +22,7 @@ def bundle(
     out: Annotated[Path, typer.Option(help="File to write.", show_default=False)],
     tasks_from: TasksFrom = None,
 ) -> None:
-    """Make one file of an evaluation for publication, with a hash of everything in it."""
+    """Pack an evaluation into one file for publication, with a hash of everything in it."""
     from automotive_cosim.publish.bundle import write_bundle
 
     made = write_bundle(folder, out)
@@ -60,7 +60,7 @@ def verify(
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
-    """Check an evaluation or a bundle; exit code 1 if something does not fit."""
+    """Check an evaluation or a bundle; exit code 1 if something does not match."""
     from automotive_cosim.publish.verify import verify as verified
 
     drawn_with = secrets.randbelow(2**31) if seed is None else seed
@@ -89,7 +89,7 @@ def leaderboard(
     out: Annotated[Path, typer.Option(help="Page to write.", show_default=False)],
     mixed: Annotated[
         bool,
-        typer.Option("--mixed-versions", help="Do not set minor versions of automotive-cosim apart in tables."),
+        typer.Option("--mixed-versions", help="Put all minor versions of automotive-cosim into the same tables."),
     ] = False,
     workers: Workers = None,
     tasks_from: TasksFrom = None,

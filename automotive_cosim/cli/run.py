@@ -57,7 +57,7 @@ def run(
         str,
         typer.Option(
             help="What the agent is told of its last action: quiet (the control, and whether it took) or verbose "
-            "(also what became of the car)."
+            "(also what changed in the car)."
         ),
     ] = "quiet",
     screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
@@ -90,9 +90,7 @@ def run(
     ] = "fixed",
     latency: Annotated[
         float,
-        typer.Option(
-            help="Simulated seconds that every answer takes besides.", metavar="SECONDS", parser=number(0, 600)
-        ),
+        typer.Option(help="Simulated seconds to add to every answer.", metavar="SECONDS", parser=number(0, 600)),
     ] = 0.0,
     scenario: Annotated[
         str | None,
@@ -111,7 +109,7 @@ def run(
     origin: Annotated[
         str,
         typer.Option(
-            help="Move the middle of the network there, with that place's law, clock and climate.",
+            help="Move the centre of the network there, with that place's law, clock and climate.",
             metavar="LON,LAT",
             show_default=False,
         ),

@@ -262,14 +262,14 @@ def equilibrate_scenario(
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier equilibrium.")] = False,
     system_optimum: Annotated[
         bool,
-        typer.Option("--system-optimum", help="Then look for routes that take less time in all, and compare."),
+        typer.Option("--system-optimum", help="Then look for routes that take less time in total, and compare."),
     ] = False,
     draws: Annotated[
         int, typer.Option(parser=whole_number(2, 100), metavar="N", help="Seeds with which both states are driven.")
     ] = 10,
     as_json: AsJson = False,
 ) -> None:
-    """Give a scenario's drivers the routes that they would find: a user equilibrium in the micro simulation.
+    """Give a scenario's drivers their user-equilibrium routes, found by repeated simulation.
 
     Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
     """
@@ -279,7 +279,7 @@ def equilibrate_scenario(
     from automotive_cosim.scenery.variant import check_target
 
     if not (folder / "scenario.toml").is_file():
-        raise UserError(f"{folder} is no scenario's folder: it has no scenario.toml")
+        raise UserError(f"{folder} is not a scenario folder: it has no scenario.toml")
     target = out or folder.with_name(f"{folder.resolve().name}_equilibrium")
 
     def tell(step: AssignmentStep) -> None:

@@ -9,7 +9,9 @@ import typer
 
 
 def schema(
-    name: Annotated[str | None, typer.Argument(help="Of a format; none lists them.", show_default=False)] = None,
+    name: Annotated[
+        str | None, typer.Argument(help="Name of a format; omit it to list them.", show_default=False)
+    ] = None,
     out: Annotated[
         Path | None, typer.Option(help="File to write; standard output if not given.", show_default=False)
     ] = None,

@@ -41,11 +41,11 @@ def serve(
     ] = None,
     tasks_from: TasksFrom = None,
 ) -> None:
-    """Show runs, results, tasks and scenarios in a browser; a run that is under way is shown live.
+    """Show runs, results, tasks and scenarios in a browser; a run in progress is shown live.
 
-    Open the address that it prints: whoever has it can read what is in the folders and, with --play, play; played
-    episodes are recorded in the first folder, a study in one of its own there, named after the file. Ctrl-C ends
-    it; no run depends on it, and a study goes on where it was.
+    Open the address that it prints: anyone who has it can read what is in the folders and, with --play, play.
+    Played episodes are recorded in the first folder, a study in its own folder there, named after the file. Ctrl-C
+    ends it; no run depends on it, and a study goes on where it was.
     """
     from automotive_cosim.serve.server import WebServer
 

@@ -105,7 +105,7 @@ def reroute(
     together: Annotated[
         str | None,
         typer.Option(
-            help="Shares of the cars that could, 0 to 1, which take the other way with the ego.",
+            help="Shares, 0 to 1, of the eligible cars that take the other route along with the ego.",
             show_default="none",
         ),
     ] = None,

@@ -27,7 +27,7 @@ Words = Annotated[
     str,
     typer.Option(
         "--tasks",
-        help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas.",
+        help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas.",
     ),
 ]
 
@@ -46,7 +46,7 @@ def list_(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
     tasks_from: TasksFrom = None,
 ) -> None:
-    """List the tasks, one per line, then their numbers by module and dimension."""
+    """List the tasks, one per line, then their counts by module and dimension."""
     from automotive_cosim.tasking.catalogue import described
 
     chosen = _chosen(tasks, suite)

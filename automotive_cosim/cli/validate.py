@@ -24,13 +24,15 @@ FAILED = 1
 def validate(
     tasks: Annotated[
         str,
-        typer.Option(help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; by commas."),
+        typer.Option(
+            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas."
+        ),
     ] = "all",
     suite: SuiteName = "standard",
     part: Annotated[
         PartOf | None,
         typer.Option(
-            help="Only one of so many parts of them, as in 3/10; together the parts are all.",
+            help="Prove only part K of N, as in 3/10; the parts together are all tasks.",
             metavar="K/N",
             parser=PartOf.read,
             show_default=False,
@@ -82,7 +84,7 @@ def validate(
         asked, task_ids = len(task_ids), part.taken(task_ids)
         if not task_ids:
             raise UserError(
-                f"--part {part.number}/{part.of} holds none of {counted(asked, 'task')}; give fewer parts"
+                f"--part {part.number}/{part.of} contains none of {counted(asked, 'task')}; give fewer parts"
             )
     numbers = tuple(range(first_seed, first_seed + seeds))
     before = None if against is None else read_traces(against)

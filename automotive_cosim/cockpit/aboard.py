@@ -111,7 +111,7 @@ def take_seats(signals: Signals, aboard: Iterable[Occupant]) -> None:
     taken = set[Seat]()
     for one in aboard:
         if one.seat in taken:
-            raise UserError(f"two are to sit on the seat {one.seat}; give each a seat of its own")
+            raise UserError(f"two occupants are assigned to the seat {one.seat}; give each their own")
         if one.seat is Seat.DRIVER and (one.kind not in (Kind.ADULT, Kind.ELDERLY) or one.asleep):
             how = "asleep" if one.asleep else f"of the kind {one.kind}"
             raise UserError(f"the driver is {how}; expected an adult or elderly one who is awake")

@@ -148,7 +148,7 @@ class Timer:
 
     @property
     def shown(self) -> str:
-        """Hours and minutes."""
+        """The time as hours and minutes."""
         return f"{self.minute // 60:02d}:{self.minute % 60:02d}"
 
     def moved(self, minutes: int) -> Timer:

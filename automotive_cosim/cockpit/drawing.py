@@ -39,7 +39,7 @@ class Ink:
 
 
 class Canvas:
-    """Draws one frame."""
+    """Draws the widgets of one frame."""
 
     def __init__(self, image: Image.Image, scale: float) -> None:
         """Draws on an image; ``scale`` is pixels per logical pixel."""

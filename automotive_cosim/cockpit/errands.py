@@ -33,7 +33,7 @@ WASH_PCT = 2.0
 
 
 def run(state: State, message: Message) -> Feedback:
-    """Runs one errand."""
+    """Carries out one message that is addressed to an app."""
     match message:
         case Dial(who):
             return calls.dial(state, who)

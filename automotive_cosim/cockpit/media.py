@@ -84,7 +84,7 @@ class Listening:
 
     playlists: tuple[Playlist, ...]
     favourites: tuple[str, ...]
-    """Addresses."""
+    """Addresses of favourite stations."""
     playlist: str = ""
     """The playlist that is playing; empty for the whole source."""
 

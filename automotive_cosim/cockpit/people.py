@@ -78,9 +78,9 @@ class Directory:
     """Data of the linked phone."""
 
     contacts: tuple[Contact, ...]
-    """By name."""
+    """Sorted by name."""
     calls: tuple[PastCall, ...]
-    """Newest first."""
+    """Past calls, the newest first."""
     threads: tuple[Thread, ...]
     favourites: tuple[str, ...]
 

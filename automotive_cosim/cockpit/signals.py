@@ -115,7 +115,7 @@ CATALOGUE: dict[str, Signal[Any]] = {}
 
 def _enter(signal: Signal[T]) -> Signal[T]:
     if signal.path in CATALOGUE:
-        raise ValueError(f"signal {signal.path!r} stands twice in the catalogue")
+        raise ValueError(f"signal {signal.path!r} occurs twice in the catalogue")
     signal.check(signal.default)
     CATALOGUE[signal.path] = signal
     return signal

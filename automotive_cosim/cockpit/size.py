@@ -38,12 +38,12 @@ class ScreenSize(StrEnum):
 
     @property
     def width(self) -> int:
-        """In logical pixels."""
+        """Width in logical pixels."""
         return int(self.partition("x")[0])
 
     @property
     def height(self) -> int:
-        """In logical pixels."""
+        """Height in logical pixels."""
         return int(self.partition("x")[2])
 
     @property

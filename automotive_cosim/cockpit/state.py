@@ -140,7 +140,7 @@ class State:
     keyboard: bool = False
     """Whether its keys are on the screen."""
     typed: Mapping[str, str] = field(default_factory=dict)
-    """Text by field."""
+    """Text typed so far, by field."""
     aside: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     """Text by field of the screens that were left because of a call, by screen."""
     zoom: int = 1
@@ -156,7 +156,7 @@ class State:
     notices: tuple[Notice, ...] = ()
     calls: tuple[str, ...] = ()
     asked: tuple[RoadRequest, ...] = ()
-    """Every irrevocable request."""
+    """Every irrevocable request to the road so far."""
     questions: tuple[QuestionRecord, ...] = ()
     """Every question to the driver."""
     horns: int = 0

@@ -23,7 +23,7 @@ from automotive_cosim.errors import SetupError
 Colour = tuple[int, int, int]
 
 STATUS_HEIGHT, DOCK_HEIGHT = 64, 96
-"""Of one line."""
+"""Heights of one line of the status bar, and of the dock."""
 MARGIN, GAP = 24, 16
 TOUCH = 48
 """Minimum side of anything that can be tapped."""

@@ -26,7 +26,9 @@ def lon_lat(text: str) -> tuple[float, float] | None:
     except ValueError:
         return None
     if not (abs(lon_deg) <= 180 and abs(lat_deg) <= 90):
-        raise ValueError(f"{text[:80]!r} is no place on earth; give LON,LAT in degrees, such as 2.3522,48.8566")
+        raise ValueError(
+            f"{text[:80]!r} is not a position on earth; give LON,LAT in degrees, such as 2.3522,48.8566"
+        )
     return lon_deg, lat_deg
 
 

@@ -138,7 +138,7 @@ def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservati
 
 
 def app() -> FastAPI:
-    """The server."""
+    """The HTTP server, as a FastAPI application."""
     return create_app(
         CarEnvironment,
         CarAction,

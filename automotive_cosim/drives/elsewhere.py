@@ -31,8 +31,8 @@ def elsewhere(plan: DrivePlan, place: str) -> DrivePlan:
     trips = _in_turn(network_of(scenario), scenario.ego.trips)
     if not trips:
         raise ScenarioError(
-            f"no trip of {place} leads back to where it began, so that a drive would soon be over; a drive needs a "
-            "network on which one can turn round"
+            f"no trip of {place} leads back to its start, so a drive would end too soon; a drive needs a "
+            "network in which the car can turn back"
         )
     turned = plan.seed % len(trips)
     names = tuple(trip.name for trip in trips)

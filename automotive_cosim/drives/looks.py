@@ -12,9 +12,16 @@ from dataclasses import dataclass
 from automotive_cosim.contracts import AlertKind
 from automotive_cosim.drives.margins import BORDER_S, LAMP_S, gaze_s, hold_s, margin_kmh
 from automotive_cosim.drives.reading import Gathered
+from automotive_cosim.drives.wakes import CLOSE_S, OVER_S
 
 LOOK_S = 2
 """How often the watcher looks again while something nears a threshold."""
+SLOW_KMH = 20.0
+"""Nothing is said of speed below it, as with intelligent speed assistance."""
+FASTEST_KMH = 130.0
+"""What a driver may come to drive where no limit is known."""
+REACTION_S = 1.1
+"""Mean time from a warning to the brake."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +38,8 @@ class Concern:
     """Words instead of an alert."""
     is_there: bool = False
     """Whether it is the same concern already while it only has to be watched, such as a jam that comes nearer."""
+    due: bool = True
+    """False while it is told ahead of the instant at which the driver has to be told."""
 
 
 # --- speed -----------------------------------------------------------------------------------------------------
@@ -38,26 +47,30 @@ class Concern:
 
 def _over(key: str, alert: AlertKind, kmh: float, limit_kmh: float, for_s: float | None = None) -> Concern:
     """A limit that the car may be above: for certain, beyond the error limit of speed meters."""
-    now = kmh > limit_kmh + margin_kmh(limit_kmh)
+    now = kmh >= SLOW_KMH and kmh > limit_kmh + margin_kmh(limit_kmh)
     return Concern(f"{key} {limit_kmh:.0f}", alert, now, hold_s(kmh / limit_kmh) if for_s is None else for_s)
 
 
 def _speed(known: Gathered) -> Iterator[Concern]:
-    """The binding limit, with those that weather lowers."""
+    """The binding limit, with those that weather lowers; nothing wakes for these, so they are watched when slow."""
     limit_kmh, reduced_kmh = known.limit_kmh, _reduced_kmh(known)
-    if known.speed_kmh < 20:
-        return
     if reduced_kmh is not None and (limit_kmh is None or reduced_kmh < limit_kmh):
-        if known.speed_kmh > reduced_kmh + 1:
-            yield _over("weather", AlertKind.SPEED, known.speed_kmh, reduced_kmh)
+        yield _over("weather", AlertKind.SPEED, known.speed_kmh, reduced_kmh)
         return
     school = "school zone" in known.road and known.hours_kmh is not None and known.hours_kmh == limit_kmh
-    if limit_kmh is not None and known.speed_kmh > limit_kmh + 1:
-        alert, for_s = (AlertKind.SCHOOL, 3.0) if school else (AlertKind.SPEED, None)
-        yield _over(alert, alert, known.speed_kmh, limit_kmh, for_s)
-    stopping_m = known.mps * 1.1 + known.mps**2 / (2 * _grip(known) * 9.81)
-    if not known.in_tunnel and stopping_m > known.visibility_m:
-        yield Concern("sight", AlertKind.VISIBILITY, hold_s=3.0)
+    if limit_kmh is not None and known.speed_kmh >= SLOW_KMH and known.speed_kmh > limit_kmh + 1:
+        alert, for_s = (AlertKind.SCHOOL, 3.0) if school else (AlertKind.SPEED, hold_s(known.speed_kmh / limit_kmh))
+        woken = bool(known.words("speed"))
+        yield _over(alert, alert, known.speed_kmh, limit_kmh, max(0.0, for_s - OVER_S) if woken else for_s)
+    fastest_mps = max(known.mps, (FASTEST_KMH if limit_kmh is None else limit_kmh) / 3.6)
+    if not known.in_tunnel and _stopping_m(known, fastest_mps) > known.visibility_m:
+        too_fast = known.speed_kmh >= SLOW_KMH and _stopping_m(known, known.mps) > known.visibility_m
+        yield Concern("sight", AlertKind.VISIBILITY, too_fast, 3.0)
+
+
+def _stopping_m(known: Gathered, mps: float) -> float:
+    """The distance to stop from a speed, with reaction, on the grip that the weather leaves."""
+    return mps * REACTION_S + mps**2 / (2 * _grip(known) * 9.81)
 
 
 GRIPS = (("freezing", 0.15), ("rime", 0.15), ("heavy snow", 0.25), ("snow", 0.35), ("heavy rain", 0.7))
@@ -106,8 +119,8 @@ def _limit_ahead(known: Gathered) -> Iterator[Concern]:
         return
     right_kmh = limit_kmh + margin_kmh(limit_kmh)
     right_mps = right_kmh / 3.6
-    coasting_m = (known.mps**2 - right_mps**2) / 2 + known.mps * (1.1 + LOOK_S)
-    too_fast = known.speed_kmh >= 20 and known.speed_kmh > right_kmh + 1
+    coasting_m = (known.mps**2 - right_mps**2) / 2 + known.mps * (REACTION_S + LOOK_S)
+    too_fast = known.speed_kmh >= SLOW_KMH and known.speed_kmh > right_kmh + 1
     yield Concern(f"falls {limit_kmh:.0f}", AlertKind.SPEED, too_fast and away_m <= coasting_m, is_there=True)
 
 
@@ -123,21 +136,22 @@ def fog_lamps_lit(known: Gathered) -> Iterator[str]:
 
 
 def _lamps(known: Gathered) -> Iterator[Concern]:
-    car = known.vehicle
-    if known.speed_kmh < 1:
-        return
+    """Lamps that are missing, or on where they dazzle; at a standstill they are watched, since nothing wakes
+    when the car moves off."""
+    car, moves = known.vehicle, known.speed_kmh >= 1
     if not (car.is_low_beam_on or car.is_high_beam_on):
         dark = known.in_tunnel or (known.sun_deg is not None and known.sun_deg <= -6)
         if dark or _needs_lamps(known):
-            yield Concern("lamps", AlertKind.VISIBILITY, hold_s=LAMP_S)
+            yield Concern("lamps", AlertKind.VISIBILITY, moves, LAMP_S)
         away_m = known.away_m("tunnel")
         if away_m is not None and away_m > 0:
-            yield Concern("tunnel", AlertKind.TUNNEL, away_m <= known.mps * (10 + LOOK_S), is_there=True)
+            near = moves and away_m <= known.mps * (10 + LOOK_S)
+            yield Concern("tunnel", AlertKind.TUNNEL, near, is_there=moves, due=away_m <= known.mps * 10)
     if car.is_high_beam_on:
         near = car.leader_gap_m is not None and car.leader_gap_m <= 100
-        yield Concern("high beam", AlertKind.VISIBILITY, near or _forbids_high_beam(known), LAMP_S)
+        yield Concern("high beam", AlertKind.VISIBILITY, moves and (near or _forbids_high_beam(known)), LAMP_S)
     for label in fog_lamps_lit(known):
-        yield Concern(label, AlertKind.VISIBILITY, _forbids_fog_lamp(known, label), LAMP_S)
+        yield Concern(label, AlertKind.VISIBILITY, moves and _forbids_fog_lamp(known, label), LAMP_S)
 
 
 def _needs_lamps(known: Gathered) -> bool:
@@ -193,12 +207,14 @@ def _traffic(known: Gathered) -> Iterator[Concern]:
     away_m = known.away_m("jam")
     if away_m is not None and away_m > 0:
         fast = known.speed_kmh >= 40
-        yield Concern("jam", AlertKind.TRAFFIC, fast and away_m <= known.mps * (15 + LOOK_S), is_there=fast)
+        near = fast and away_m <= known.mps * (15 + LOOK_S)
+        yield Concern("jam", AlertKind.TRAFFIC, near, is_there=fast, due=away_m <= known.mps * 15)
     for name, alert in (("breakdown", AlertKind.MOVE_OVER), ("roadworks", AlertKind.TRAFFIC)):
         away_m = known.away_m(name)
         if away_m is not None and away_m > 0:
             moves = known.mps > 5
-            yield Concern(name, alert, moves and away_m <= known.mps * (12 + LOOK_S), is_there=moves)
+            near = moves and away_m <= known.mps * (12 + LOOK_S)
+            yield Concern(name, alert, near, is_there=moves, due=away_m <= known.mps * 12)
     blue = re.match(r"blue light (\d+) m", known.words("behind"))
     if blue is not None:
         yield Concern("blue light", AlertKind.YIELD, float(blue[1]) <= 150, 1.0)
@@ -210,7 +226,7 @@ def _traffic(known: Gathered) -> Iterator[Concern]:
         lawful = re.match(r"(\d+) s or more", line.text) if line is not None and line.is_verified else None
         least_s = 1.0 if lawful is None else float(lawful[1])
         gap_s = gap_m / known.mps
-        if gap_s < least_s + 0.5:
+        if gap_s < max(least_s + 0.5, CLOSE_S):
             yield Concern("distance", AlertKind.DISTANCE, known.speed_kmh >= 30 and gap_s < least_s, 3.0)
     if ttc_s is None or ttc_s <= 0:
         return
@@ -218,7 +234,7 @@ def _traffic(known: Gathered) -> Iterator[Concern]:
     if closing_mps**2 / (2 * max(gap_m, 0.1)) >= 1.0:
         yield Concern("collision", AlertKind.COLLISION, closing_mps**2 / (2 * max(gap_m, 0.1)) >= 3.4)
     leader_kmh = known.speed_kmh - closing_mps * 3.6
-    if 8 <= leader_kmh <= 40 and closing_mps >= 3 and (known.limit_kmh or 0) >= 65:
+    if 8 <= leader_kmh <= 40 and closing_mps >= 3 and (known.likely_kmh or 0) >= 65:
         yield Concern("slow vehicle", AlertKind.TRAFFIC, gap_m <= (8 + LOOK_S) * closing_mps)
 
 

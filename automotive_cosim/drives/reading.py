@@ -56,6 +56,8 @@ class Gathered:
     limit_kmh: float | None = None
     """The sign's limit, else the law's where one line states it."""
     is_posted: bool = False
+    likely_kmh: float | None = None
+    """``limit_kmh``, else the lowest of the law's lines, verified or not."""
     hours_kmh: float | None = None
     """The limit that is posted here for certain hours."""
     reduced: tuple[LawLine, ...] = ()
@@ -207,6 +209,8 @@ def _read(seen: Observation, vehicle: VehicleState, context: str) -> Gathered:
                 law[label] = _law(text)
     if not known.is_posted and len(defaults) == 1 and defaults[0].is_verified:
         known.limit_kmh = defaults[0].kmh
+    stated = [line.kmh for line in defaults if line.kmh is not None]
+    known.likely_kmh = known.limit_kmh if known.is_posted else min(stated, default=None)
     known.reduced, known.law = tuple(reduced), law
     return known
 

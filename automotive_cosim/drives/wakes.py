@@ -20,8 +20,10 @@ from automotive_cosim.geo.weather import words as weather_words
 
 LONGEST_S = 60
 """A wait without a reason to wake ends after this."""
+OVER_S = 3.0
 CLOSE_S = 2.0
-CLOSING_S = 5.0
+CLOSING_S = (8.0, 5.0)
+"""Times to collision: time to brake gently behind a slow vehicle, and the last for a warning to be heard."""
 TUNNEL_M = 500.0
 REPORT_M = 1500.0
 BLUE_M = 150.0
@@ -49,7 +51,7 @@ class Wake:
     reads: WakeReading
     words: Callable[[Moment], str]
     hold_s: float = 0.0
-    """How long the new reading must have lasted."""
+    """How long the reading must have differed from what was told last."""
 
 
 def _limit_kmh(now: Moment) -> float | None:
@@ -79,8 +81,9 @@ def _leader(now: Moment) -> Hashable:
     leader, mps = now.driving.around.leader, now.driving.speed_mps
     if leader is None or mps < 5.0:
         return None
-    closing = leader.time_to_collision_s is not None and leader.time_to_collision_s < CLOSING_S
-    return "closing" if closing else "close" if leader.gap_m < CLOSE_S * mps else None
+    left_s = leader.time_to_collision_s
+    closing = left_s is not None and sum(left_s < step_s for step_s in CLOSING_S)
+    return closing or ("close" if leader.gap_m < CLOSE_S * mps else None)
 
 
 def _leader_words(now: Moment) -> str:
@@ -235,11 +238,11 @@ WAKES: tuple[Wake, ...] = (
         "the car has been above the limit for three seconds, and each 10 % more",
         _too_fast,
         lambda now: f"{_kmh(now):.0f} km/h where {_limit_kmh(now) or 0:.0f} apply",
-        hold_s=3.0,
+        hold_s=OVER_S,
     ),
     Wake(
         "vehicle ahead",
-        "less than 2 s to the vehicle ahead, or under 5 s to collision",
+        "less than 2 s to the vehicle ahead, or under 8 s to collision, and 5 s",
         _leader,
         _leader_words,
         1.0,
@@ -374,10 +377,10 @@ class Noticed:
 
 
 @dataclass(slots=True)
-class _Held:
-    told: Hashable
-    reading: Hashable
-    since_s: float
+class _Told:
+    reading: Hashable = None
+    differs_since_s: float | None = None
+    """Since when the reading has been another; None while it is this one."""
 
 
 @dataclass(slots=True)
@@ -385,18 +388,21 @@ class Alarm:
     """Watches one drive for what wakes."""
 
     wakes: tuple[Wake, ...] = WAKES
-    _held: dict[str, _Held] = field(default_factory=dict)
+    _told: dict[str, _Told] = field(default_factory=dict)
 
     def see(self, now: Moment) -> tuple[Noticed, ...]:
         """What has changed at the newest moment. At the first, whatever there is to report."""
         found = []
         for wake in self.wakes:
             reading = wake.reads(now)
-            held = self._held.setdefault(wake.name, _Held(None, reading, now.time_s))
-            if reading != held.reading:
-                held.reading, held.since_s = reading, now.time_s
-            if reading != held.told and now.time_s - held.since_s >= wake.hold_s:
-                held.told = reading
+            told = self._told.setdefault(wake.name, _Told())
+            if reading == told.reading:
+                told.differs_since_s = None
+                continue
+            if told.differs_since_s is None:
+                told.differs_since_s = now.time_s
+            if now.time_s - told.differs_since_s >= wake.hold_s:
+                told.reading, told.differs_since_s = reading, None
                 found.append(
                     Noticed(f"{wake.name}: over", wakes=False)
                     if reading is None

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
 from automotive_cosim.drives.looks import LOOK_S, LOOKS, Concern, fog_lamps_lit
@@ -12,6 +13,8 @@ from automotive_cosim.interface.observe import Channel
 READS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
 GONE_S = 31.0
 """A concern that was away for longer is another one."""
+FORGOTTEN_S = 15.0
+"""What was told longer ago, before it was due, the driver has forgotten."""
 
 
 class RulePerfect:
@@ -31,7 +34,7 @@ class RulePerfect:
         self._reader = Reader()
         self._seen: dict[str, float] = {}
         self._since: dict[str, float] = {}
-        self._told: set[str] = set()
+        self._told: dict[str, _Telling] = {}
 
     def act(self, observation: Observation) -> Action:
         """An alert of what has not been told yet, a question for a rule that is not shown, else a wait."""
@@ -45,11 +48,11 @@ class RulePerfect:
         self._note(concerns, known.time_s)
         for concern in concerns:
             if self._is_time(concern, known.time_s):
-                self._told.add(concern.key)
+                self._told[concern.key] = _Telling(known.time_s, concern.due)
                 if concern.say:
                     return Action(ActionType.ANSWER, text=concern.say)
                 return Action(ActionType.SHOW_ALERT, kind=concern.alert)
-        if any(concern.now and concern.key not in self._told for concern in concerns):
+        if any(concern.now and self._is_untold(concern, known.time_s) for concern in concerns):
             return Action(ActionType.WAIT, seconds=1)
         return Action(ActionType.WAIT, seconds=LOOK_S) if concerns else Action(ActionType.WAIT)
 
@@ -61,14 +64,33 @@ class RulePerfect:
             key = concern.key
             if concern.now or concern.is_there:
                 if now_s - self._seen.get(key, -GONE_S) >= GONE_S:
-                    self._told.discard(key)
+                    self._told.pop(key, None)
                 self._seen[key] = now_s
+            told = self._told.get(key)
+            if told is not None:
+                told.was_due |= concern.now and concern.due and not told.paused
+                told.paused |= not concern.is_there and not concern.now
             if concern.now:
                 self._since.setdefault(key, now_s)
 
+    def _is_untold(self, concern: Concern, now_s: float) -> bool:
+        told = self._told.get(concern.key)
+        return told is None or (told.paused and not told.was_due and now_s - told.at_s > FORGOTTEN_S)
+
     def _is_time(self, concern: Concern, now_s: float) -> bool:
-        due = concern.now and concern.key not in self._told
+        due = concern.now and self._is_untold(concern, now_s)
         return due and now_s - self._since[concern.key] >= concern.hold_s + self._delay_s
+
+
+@dataclass(slots=True)
+class _Telling:
+    """What the driver was told, and when."""
+
+    at_s: float
+    was_due: bool
+    """Whether it came due before it paused; if not, it was told too early and is told again."""
+    paused: bool = False
+    """Whether it has been away since, as a breakdown ahead is while the car stands."""
 
 
 # --- watchers that must fail -----------------------------------------------------------------------------------

@@ -17,7 +17,7 @@ class SharedPool:
     """Simulations that end when the last environment that uses them is closed, or gone."""
 
     def __init__(self) -> None:
-        """Of nobody yet."""
+        """Starts without simulations and without environments."""
         self._lock = threading.Lock()
         self._begin()
 

@@ -70,7 +70,7 @@ class ConcurrentVectorEnv(SyncVectorEnv):
                 env.forget()
 
     def close_extras(self, **kwargs: Any) -> None:
-        """Ends all drives."""
+        """Ends the drives of all environments."""
         super().close_extras(**kwargs)
         self._threads.shutdown()
 

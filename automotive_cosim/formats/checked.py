@@ -31,7 +31,7 @@ LARGEST = 1e10
 """No quantity in a file, in any of our units, is beyond it either way; a computation with such a number could end
 in infinities."""
 MOST_PROBLEMS = 8
-"""Told at once."""
+"""Most problems reported at once."""
 MOST_COMPLAINTS = 200
 """Looked at; where pydantic has more of them the first are as good."""
 

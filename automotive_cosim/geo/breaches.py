@@ -90,7 +90,7 @@ class Observed(Protocol):
 
     @property
     def context(self) -> GeoContext:
-        """Place and law."""
+        """Place and law at that time."""
         ...
 
     @property

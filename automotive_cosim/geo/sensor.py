@@ -65,7 +65,7 @@ class Known(Protocol):
 
     @property
     def context(self) -> GeoContext:
-        """Place and law."""
+        """Place and law at that time."""
         ...
 
     @property

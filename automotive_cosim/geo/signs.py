@@ -29,7 +29,7 @@ class LocalSigns:
     unit: str
     """``"km/h"`` or ``"mph"``."""
     step: float
-    """In that unit."""
+    """Step between the limits on signs, in that unit."""
 
     def on(self, driving: DrivingState) -> DrivingState:
         """The state with the signs of the country."""

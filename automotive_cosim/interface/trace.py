@@ -61,10 +61,10 @@ class Hash:
     """The trace's hash, updated step by step, so the end of a long episode need not wait for it."""
 
     def __init__(self, steps: Iterable[Step] = ()) -> None:
-        """Of these steps."""
+        """Starts with these steps."""
         self._digest = hashlib.sha256()
         self.count = 0
-        """Steps taken in."""
+        """Number of steps taken in so far."""
         for step in steps:
             self.add(step)
 

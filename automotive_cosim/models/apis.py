@@ -22,7 +22,7 @@ from automotive_cosim.models.base import ChatMessage, ModelReply
 
 
 class ProviderApi(Protocol):
-    """One protocol."""
+    """How to speak one provider's protocol."""
 
     def path(self, model: str) -> str:
         """The path of a request, after the base address."""

@@ -32,7 +32,7 @@ class ModelReply:
 
     text: str
     tokens_in: int = 0
-    """Cached ones included."""
+    """Input tokens, cached ones included."""
     tokens_out: int = 0
     """Those of its reasoning included."""
     cost_usd: float = 0.0

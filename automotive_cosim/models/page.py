@@ -45,7 +45,7 @@ class Page:
     result: str
     """Code of the last result."""
     told: str
-    """Its words."""
+    """Text of the last result."""
     gps: str
     memory: tuple[str, ...]
     before: tuple[str, ...]

@@ -286,7 +286,7 @@ class Remote:
                 and 0 <= reply.tokens_out <= MOST_TOKENS
                 and 0 <= reply.tokens_reasoning <= MOST_TOKENS
             ):
-                raise ValueError("no number of tokens")
+                raise ValueError("not a number of tokens")
         except (ArithmeticError, ValueError, LookupError, TypeError, AttributeError, RecursionError):
             shown = self._endpoint.clean(body.decode(errors="replace"))[:80]  # cut first, half a key would pass
             raise _PassingError(f"the answer is not one of its protocol: {shown!r}") from None

@@ -9,7 +9,7 @@ from typing import Protocol
 
 
 class Turns(Protocol):
-    """Gives out turns."""
+    """Hands out turns to episodes that share one model."""
 
     def wait_s(self, model: str, per_minute: float) -> float:
         """Takes the next turn at a model, and returns the seconds until it."""

@@ -42,7 +42,7 @@ def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
     if out.exists() and not replaces:
         raise ImportMapError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
     if out.exists() and not (out / "scenario.toml").is_file():
-        raise ImportMapError(f"{out} is not a scenario's folder, so it is not replaced; choose another --out")
+        raise ImportMapError(f"{out} is not a scenario folder, so it is not replaced; choose another --out")
     scratch: Path | None = None
     try:
         scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))

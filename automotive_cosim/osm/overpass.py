@@ -228,7 +228,7 @@ def _judge(file: Path, endpoint: str) -> Download:
         tail = stream.read().decode("utf-8", "replace")
     if "<osm" not in head:
         raise ImportMapError(
-            f"{endpoint} does not answer with a map but with {_words(head) or 'nothing'!r}; is it an Overpass API?"
+            f"{endpoint} did not answer with a map but with {_words(head) or 'nothing'!r}; is it an Overpass API?"
         )
     remark = re.search(r"<remark>(.*?)</remark>", tail, re.DOTALL)
     if remark:
@@ -236,7 +236,7 @@ def _judge(file: Path, endpoint: str) -> Download:
             f"the server stopped: {_words(remark[1])}; give a smaller --bbox or a longer --timeout"
         )
     if not tail.rstrip().endswith("</osm>"):
-        raise ImportMapError(f"the answer of {endpoint} is truncated after {size / 1e6:.1f} MB; try again")
+        raise ImportMapError(f"the answer from {endpoint} is truncated after {size / 1e6:.1f} MB; try again")
     note = re.search(r"<note>(.*?)</note>", head, re.DOTALL)
     date = re.search(r'<meta [^>]*osm_base="([^"]*)"', head)
     return Download(size / 1e6, _words(note[1]) if note else "", date[1] if date else "")

@@ -97,7 +97,7 @@ class ProofJob:
 
     @property
     def id(self) -> str:
-        """Its id."""
+        """The proof's name in results: task and seed."""
         return proof_id(self.task, self.seed)
 
 

@@ -152,5 +152,5 @@ class _Everywhere(Atlas):
         self._law = law
 
     def place(self, lon_deg: float, lat_deg: float) -> Place:
-        """That country."""
+        """The same country, wherever the position."""
         return Place(country=self._law.code, country_name=self._law.name, layers=(self._law,))

@@ -29,11 +29,11 @@ class BundleCounts:
     """What has become of the planned episodes."""
 
     planned: Annotated[int, Ge(0)]
-    """All of them."""
+    """Episodes in the plan."""
     judged: Annotated[int, Ge(0)]
-    """With a verdict."""
+    """Episodes with a verdict."""
     successes: Annotated[int, Ge(0)]
-    """Judged a success."""
+    """Episodes judged a success."""
     errors: Annotated[int, Ge(0)]
     """Ended in an infrastructure error."""
     not_run: Annotated[int, Ge(0)]

@@ -106,7 +106,7 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
         except UserError as error:
             left_out.append(str(error).replace(str(path), path.name))
     if not entries:
-        raise UserError(f"{folder} has no bundle without a problem{''.join(f'; {each}' for each in left_out[:3])}")
+        raise UserError(f"{folder} has no valid bundle{''.join(f'; {each}' for each in left_out[:3])}")
     if mixed:
         suite = ", ".join(sorted({entry.conditions.suite for entry in entries}))
         entries = [replace(entry, conditions=replace(entry.conditions, suite=suite)) for entry in entries]

@@ -98,7 +98,7 @@ def verify(
         try:
             return _verified(folder, bundle, replays, seed, workers, tell)
         except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
-            raise UserError(f"{path} lacks something or has it in another form: {error!r:.200}") from error
+            raise UserError(f"{path} is incomplete or malformed: {error!r:.200}") from error
 
 
 def _verified(

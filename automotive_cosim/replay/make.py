@@ -169,7 +169,7 @@ def written(conversation: Mapping[str, object]) -> str:
 
 
 def main() -> None:
-    """Writes them all."""
+    """Writes every shipped conversation."""
     with closing(Simulations()) as simulations:
         for name, conversation in made(simulations).items():
             path = Path(__file__).with_name(f"{name}{SUFFIX}")

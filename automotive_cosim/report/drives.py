@@ -51,7 +51,7 @@ class WatchedBy:
 
     @property
     def label(self) -> str:
-        """In words."""
+        """Agent and conditions in words."""
         parts = [self.agent if self.model == "none" else f"{self.agent} ({self.model})"]
         parts += [f"geo {self.geo}"] if self.geo != "full" else []
         parts += seen_and_told(self.see, self.feedback, self.screen)
@@ -77,7 +77,7 @@ def grouped(rows: Iterable[WatchRow]) -> dict[WatchedBy, list[WatchRow]]:
 
 
 def whole(rows: Sequence[WatchRow]) -> Score:
-    """The drives together."""
+    """The score of all drives pooled."""
     return together([row.score for row in rows if row.score is not None])
 
 

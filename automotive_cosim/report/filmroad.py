@@ -25,7 +25,7 @@ from automotive_cosim.run.words import is_over
 METRES_PER_PIXEL = 0.3
 RADIUS = 14
 FINE = 3
-"""Oversampling."""
+"""Oversampling factor."""
 TRAIL_M = 0.7
 GAP_M = 0.25
 """Widths of the trail, and of the line between two lanes."""
@@ -49,7 +49,7 @@ class Colours:
     vehicle: Colour
     heavy: Colour
     edge: Colour
-    """Around a vehicle."""
+    """Outline of a vehicle."""
     ground: Mapping[GroundKind, Colour]
 
 

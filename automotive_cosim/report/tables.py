@@ -10,7 +10,7 @@ from io import StringIO
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """One figure."""
+    """A cell of a table, and the episodes behind it."""
 
     text: str
     episodes: tuple[str, ...] = ()

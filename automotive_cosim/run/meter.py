@@ -214,4 +214,6 @@ class MeterClient:
                 self._made.send((name, given))
                 return self._made.recv()
             except (EOFError, OSError) as error:
-                raise InfrastructureError("the evaluation's meter is gone; rerun the command to resume") from error
+                raise InfrastructureError(
+                    "the process that meters the budget has ended; rerun the command to resume"
+                ) from error

@@ -152,7 +152,7 @@ def _asked(answer: Any) -> Any:
         return ray.get(answer)
     except RayError as error:
         raise InfrastructureError(
-            f"the evaluation's meter is gone; rerun the command to resume: {_line(error)}"
+            f"the process that meters the budget has ended; rerun the command to resume: {_line(error)}"
         ) from error
 
 

@@ -68,7 +68,7 @@ class Breakdown(Incident):
 
     kind: Literal["breakdown"] = "breakdown"
     edge: EdgeId
-    """Where it stands."""
+    """Edge on which the vehicle stands."""
     position_m: Annotated[float, Ge(0)]
     """Its front bumper, from the start of the edge."""
     lane: Annotated[int, Ge(0)] = 0
@@ -83,7 +83,7 @@ class Roadworks(Incident):
 
     kind: Literal["roadworks"] = "roadworks"
     edge: EdgeId
-    """Where they are."""
+    """Edge on which the roadworks are."""
     limit_kmh: Annotated[float, Gt(0)]
     """What is signed there."""
     closed_lanes: tuple[Annotated[int, Ge(0)], ...] = ()
@@ -109,7 +109,7 @@ class Closure(Incident):
 
     kind: Literal["closure"] = "closure"
     edge: EdgeId
-    """What is closed."""
+    """Edge that is closed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -153,7 +153,7 @@ class Tractor(Incident):
     speed_kmh: Annotated[float, Gt(0)] = 25.0
     """25 is a common speed on the plates that slow vehicles carry in Germany (StVZO section 58)."""
     length_m: Annotated[float, Gt(0)] = 9.0
-    """With its trailer."""
+    """Length including the trailer."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -207,7 +207,7 @@ class BrakingLeader(EgoIncident):
     ahead_m: Annotated[float, Gt(0)] = 30.0
     """Gap to a car that pulls out."""
     deceleration_mps2: Annotated[float, Gt(0), Le(10)] = 6.0
-    """How hard."""
+    """Deceleration of the car that brakes."""
     to_kmh: Annotated[float, Ge(0)] = 0.0
     """The speed that it brakes to."""
     hold_s: Annotated[float, Ge(0)] = 4.0

@@ -95,7 +95,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
 def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
     step_s = configuration.number("step-length", STEP_S)
     if step_s <= 0:
-        raise ScenarioError(f"{configuration.path}: a step-length of {step_s:g} s is impossible")
+        raise ScenarioError(f"{configuration.path}: step-length is {step_s:g} s; give a number above 0")
     step_s = min(step_s, LONGEST_STEP_S)
     # As in SUMO, other vehicles act every step, unless we chose the step: SUMO 1.28 has been seen to crash
     # when vehicles reroute and act on every other step of 0.5 s.

@@ -175,7 +175,7 @@ class Driven:
     excess_s: Mapping[str, float]
     """What each trip that counts lost against its best route."""
     best: Mapping[str, tuple[str, ...]]
-    """That route."""
+    """Each trip's best route, as edge ids."""
 
 
 def measure(scenario: Scenario, *, observe_s: float = 3600.0, seed: int = 0) -> Gap:

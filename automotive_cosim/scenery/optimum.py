@@ -50,7 +50,7 @@ class StateTotal:
 
     @property
     def mean_s(self) -> float:
-        """Per trip."""
+        """Mean travel time per trip, in seconds."""
         return self.total_s / max(1, self.trips)
 
 

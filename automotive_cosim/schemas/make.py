@@ -36,7 +36,7 @@ def made(name: str) -> str:
 
 
 def main() -> None:
-    """Writes them all."""
+    """Writes the schema of every user-written format."""
     for name in FORMATS:
         path = Path(__file__).with_name(f"{name}{SUFFIX}")
         path.write_text(made(name), encoding="utf-8")

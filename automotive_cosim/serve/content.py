@@ -46,7 +46,7 @@ class Content:
     """Reads records for the pages."""
 
     def __init__(self, shelf: Shelf) -> None:
-        """Reads nothing yet."""
+        """Content of a shelf; files are read when they are first asked for."""
         self.shelf = shelf
         self.spectators = Spectators()
 

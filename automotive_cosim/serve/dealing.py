@@ -30,7 +30,7 @@ class PeoplePlan:
     """The content of a study's TOML file."""
 
     people: Annotated[tuple[str, ...], MinLen(1)]
-    """Code names."""
+    """Code names of the people who take part."""
     tasks: Annotated[tuple[str, ...], MinLen(1)]
     """Ids, patterns, tags and so on of tasks, as in ``plan.toml``."""
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)

@@ -65,9 +65,9 @@ class Person:
             UserError: too many wait already, or the clock stands.
         """
         if not self._goes.is_set():
-            raise UserError("the clock stands; go on first")
+            raise UserError("the clock is stopped; resume it first")
         if self._given.qsize() >= WAITING:
-            raise UserError("an act takes a second; wait until the last ones are done")
+            raise UserError("each action takes a second; wait until the previous ones have finished")
         self._given.put(action)
 
     @property

@@ -211,7 +211,7 @@ class Game(Watcher, WatchWatcher):
             UserError: the episode counts, nothing runs, or the speed is none of ``SPEEDS``.
         """
         if speed not in SPEEDS:
-            raise UserError(f"speed {speed:g} is none of {', '.join(f'{each:g}' for each in SPEEDS)}")
+            raise UserError(f"speed {speed:g} is not one of {', '.join(f'{each:g}' for each in SPEEDS)}")
         if not self._scene.is_practice or self._scene.state is not PlayState.ACTING:
             raise UserError("only practice can be paused or slowed, and only while it runs")
         self._person.pace(speed, paused=paused)
@@ -435,7 +435,7 @@ class ShownScreen:
     """The screen that the page shows, as a JPEG with a number that changes with it."""
 
     def __init__(self) -> None:
-        """Nothing yet."""
+        """Starts empty."""
         self.look = 0
         self.jpeg = b""
         self._screenshot: npt.NDArray[np.uint8] | None = None

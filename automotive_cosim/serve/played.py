@@ -115,7 +115,7 @@ class PlayedRows(ABC, Generic[R]):
 
 
 class PlayedEpisodes(PlayedRows[EpisodeRow]):
-    """Episodes of tasks."""
+    """Episodes of tasks that a person played."""
 
     kind = EpisodeRow
 
@@ -161,7 +161,7 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
 
 
 class PlayedDrives(PlayedRows[WatchRow]):
-    """Drives."""
+    """Drives that a person played."""
 
     kind = WatchRow
     parts = ("traces", TIMELINES, "pictures")

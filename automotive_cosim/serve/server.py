@@ -44,7 +44,7 @@ SECURITY = {
     "Cross-Origin-Opener-Policy": "same-origin",
 }
 MOST_BYTES = 10_000
-"""Longest request."""
+"""Longest request body that is read."""
 WAIT_S = 1.0
 """How long an answer waits for something to happen in a game."""
 SMALL_BYTES = 1000
@@ -205,7 +205,7 @@ class Site:
             case "pace" if is_free:
                 speed = asked.get("speed", 1)
                 if not isinstance(speed, (int, float)):
-                    raise UserError("speed is a number")
+                    raise UserError("speed must be a number")
                 game.pace(float(speed), paused=bool(asked.get("paused")))
             case _:
                 raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
@@ -342,7 +342,7 @@ class WebServer(ThreadingHTTPServer):
 
 
 class RequestHandler(BaseHTTPRequestHandler):
-    """One request."""
+    """Handles one HTTP request."""
 
     protocol_version = "HTTP/1.1"
     server_version, sys_version = "automotive-cosim", ""
@@ -382,7 +382,7 @@ class RequestHandler(BaseHTTPRequestHandler):
             self._send(refusal.status, _json({"error": str(refusal)}))
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 (its name in the base class)
-        """Says nothing."""
+        """Silences the base class, which would print every request."""
 
     @property
     def _web(self) -> WebServer:
@@ -485,7 +485,7 @@ def _start(game: Game, asked: Json) -> None:
     given = {name: asked.get(name, "") for name in ("task", "half", "drive", "name")}
     seed, practice = asked.get("seed", 0), bool(asked.get("practice"))
     if not all(isinstance(value, str) for value in given.values()) or type(seed) is not int:
-        raise UserError("task, half, drive and name are texts, and seed is a whole number")
+        raise UserError("task, half, drive and name must be strings, and seed a whole number")
     if not 0 <= seed < 2**31:
         raise UserError(f"seed {seed} is not a whole number from 0 to {2**31 - 1}")
     if given["drive"]:

@@ -17,7 +17,7 @@ class Spectators:
     """Marks the files of those who are watched; nothing is written into them."""
 
     def __init__(self, patience_s: float = PATIENCE_S) -> None:
-        """Nobody watches yet."""
+        """Starts without spectators."""
         self._patience_s = patience_s
         self._marked: dict[Path, tuple[IO[bytes], threading.Timer]] = {}
         self._lock = threading.Lock()

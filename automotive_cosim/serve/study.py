@@ -128,7 +128,7 @@ class PeopleStudy:
         """
         with self._lock:
             if secret not in self._seats:
-                raise UserError("sit down again: choose your code name")
+                raise UserError("this session is over; choose your code name again")
             self._seats[secret].heard_s = time.monotonic()
             return self._seats[secret]
 
@@ -189,7 +189,7 @@ class PeopleStudy:
         with self._lock:
             job = self._asked(person)
             if job is None:
-                raise UserError("nothing is asked now")
+                raise UserError("there is no question to answer now")
             self._note("answered", job, {name: answers[name] for name in QUESTIONS})
 
     def export(self) -> list[Json]:

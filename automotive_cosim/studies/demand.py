@@ -60,7 +60,7 @@ def read_demand(folder: Path) -> tuple[DemandGap, ...]:
 
 
 def demand_table(found: Sequence[DemandGap]) -> Table:
-    """The gaps."""
+    """The gaps as a table."""
     rows = tuple(
         (
             f"{each.share:.0%}",

@@ -32,7 +32,7 @@ class PolicyRule(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Policy:
-    """One policy."""
+    """A rule that decides whether to reroute."""
 
     text: str
     """Its name as given."""

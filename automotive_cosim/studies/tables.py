@@ -373,7 +373,7 @@ def per_cent(flags: Iterable[bool]) -> str:
 
 
 def share_of(shares: Iterable[float]) -> str:
-    """Mean of shares."""
+    """The mean of shares, as a percentage."""
     listed = list(shares)
     return f"{sum(listed) / len(listed):.0%}" if listed else NONE
 

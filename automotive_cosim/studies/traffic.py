@@ -33,7 +33,7 @@ class Gridlock:
     rule: str
     """Which rule says so, in two or three words."""
     why: str
-    """The figures."""
+    """The figures behind it."""
 
 
 def gridlock(pulses: Sequence[Pulse]) -> Gridlock | None:

@@ -83,7 +83,7 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
     try:
         made_from = tuple(float(number) for number in location.get("origBoundary", "").split(",") if number)
     except ValueError as error:
-        raise ValueError("its origBoundary has something that is no number") from error
+        raise ValueError("its origBoundary contains something other than numbers") from error
     if len(made_from) != 4 or made_from[0] > made_from[2]:
         return ""
     west, south, east, north = made_from

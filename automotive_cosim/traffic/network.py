@@ -69,7 +69,7 @@ def quantity(text: str, least: float = -LARGEST) -> float:
     except ValueError:
         number = math.nan
     if not least <= number <= LARGEST:
-        raise ValueError(f"{text[:80]!r} is no number of a network")
+        raise ValueError(f"{text[:80]!r} is not a number")
     return number
 
 

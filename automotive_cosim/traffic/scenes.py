@@ -94,7 +94,7 @@ class _Breakdown(_Scene):
         if not 5.0 <= incident.position_m <= length_m:
             raise ScenarioError(
                 f"[[incidents]]: edge {incident.edge!r} is {length_m:.0f} m long, so a car cannot stand at "
-                f"position_m = {incident.position_m:g}; say 5 to {length_m:.0f}"
+                f"position_m = {incident.position_m:g}; give 5 to {length_m:.0f}"
             )
 
     def begin(self) -> str:
@@ -119,7 +119,7 @@ class _Roadworks(_Scene):
         self._closed = tuple(stage.lane(incident.edge, lane) for lane in incident.closed_lanes)
         if len(set(self._closed)) >= len(stage.edge(incident.edge).lane_ids):
             raise ScenarioError(
-                f"[[incidents]]: roadworks on {incident.edge!r} leave no lane; say kind = 'closure'"
+                f"[[incidents]]: roadworks on {incident.edge!r} leave no lane; use kind = 'closure'"
             )
 
     def begin(self) -> str:

@@ -274,10 +274,10 @@ class _Watchdog:
             TrafficError: it was killed.
         """
         if self._has_bitten:
-            raise TrafficError(f"SUMO hung in {config} and was ended; try again, or a smaller network")
+            raise TrafficError(f"SUMO hung in {config} and was stopped; try again, or use a smaller network")
         if self._process.returncode < 0:
             name = signal.Signals(-self._process.returncode).name
-            raise TrafficError(f"SUMO was ended by {name} while it ran {config}; is there enough memory?")
+            raise TrafficError(f"SUMO was killed by {name} while running {config}; is there enough memory?")
 
     def stop(self) -> None:
         """Stops watching."""

@@ -19,7 +19,7 @@ from automotive_cosim.proof.prover import GATES, Proof
         (("--part", "0/10"), "'0/10' is not a part such as 3/10"),
         (("--part", "11/10"), "not a part"),
         (("--part", "third"), "not a part"),
-        (("--tasks", "hvac_fan_max", "--part", "2/10"), "--part 2/10 holds none of 1 task"),
+        (("--tasks", "hvac_fan_max", "--part", "2/10"), "--part 2/10 contains none of 1 task"),
         (("--out", "file"), "file is a file"),
     ],
 )

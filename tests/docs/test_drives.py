@@ -4,10 +4,21 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from automotive_cosim.contracts import AlertKind
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.staging import STUNTS
 from automotive_cosim.drives.wakes import WAKES
+from automotive_cosim.traffic.ego import (
+    BRAKING_MPS2,
+    EASING_MPS2,
+    GAP_KINDS,
+    ROOM_KINDS,
+    SAFE_HEADWAY_S,
+    SPEED_KINDS,
+    WAKING_KINDS,
+)
+from automotive_cosim.traffic.profiles import PROFILES
 
 PAGE = (Path(__file__).parents[2] / "docs" / "drives.md").read_text("utf-8")
 
@@ -36,3 +47,19 @@ def test_every_kind_of_event_has_its_line() -> None:
 
 def test_all_that_wakes_has_its_line() -> None:
     assert all(f"| {wake.name} | {wake.about} |" in PAGE.splitlines() for wake in WAKES)
+
+
+def test_what_a_driver_does_after_each_alert_is_told() -> None:
+    begun = PAGE.split("## What a warning does", 1)[1].split("\n## ", 1)[0]
+    rows = [line.split("|")[1:3] for line in begun.splitlines() if line.startswith("| ")][1:]
+    noted = frozenset(AlertKind) - SPEED_KINDS - GAP_KINDS - ROOM_KINDS - WAKING_KINDS
+    assert [kinds.strip() for kinds, _ in rows] == [
+        ", ".join(sorted(kinds)) for kinds in (SPEED_KINDS, GAP_KINDS, ROOM_KINDS, WAKING_KINDS, noted)
+    ]
+    assert f"at {EASING_MPS2:g} m/s2, after a critical alert at {BRAKING_MPS2:g} m/s2" in rows[0][1]
+    assert SAFE_HEADWAY_S == 2.0
+    assert "two seconds" in rows[1][1]
+    reactions_s = [each.reaction_s for each in PROFILES.values()]
+    assert f"a median of {min(reactions_s)} to {max(reactions_s)} s" in begun
+    follows = [100 * each.compliance for each in PROFILES.values()]
+    assert f"follows {min(follows):.0f} to {max(follows):.0f} % of the alerts" in begun

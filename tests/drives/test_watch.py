@@ -81,6 +81,32 @@ def test_a_leader_that_is_gone_is_told_with_the_next_change() -> None:
     assert [(change.words, change.wakes) for change in gone] == [("vehicle ahead: over", False)]
 
 
+def test_three_seconds_above_the_limit_wake_also_a_car_that_gets_faster() -> None:
+    alarm = under_way()
+    speeds = [52.0, 56.0, 61.0, 66.0, 66.0, 66.0, 66.0]
+    told = {second: alarm.see(moment(float(second), kmh=kmh)) for second, kmh in enumerate(speeds, start=2)}
+    assert {second: [one.words for one in changes] for second, changes in told.items() if changes} == {
+        5: ["speed: 66 km/h where 50 apply"]
+    }
+
+
+def test_a_reading_that_only_flickers_wakes_nobody() -> None:
+    alarm = under_way()
+    classes = ["trunk", "secondary", "trunk", "secondary", "trunk", "trunk"]
+    told = [alarm.see(moment(float(second), road_class=road)) for second, road in enumerate(classes, start=2)]
+    assert [len(changes) for changes in told] == [0, 0, 0, 0, 0, 1]
+
+
+def test_a_vehicle_ahead_wakes_in_time_to_brake_gently_and_once_more_when_it_is_urgent() -> None:
+    alarm = under_way()
+    left = [8.5, 7.5, 6.5, 5.5, 4.5, 3.5]
+    told = [
+        alarm.see(moment(float(second), leader=vehicle(100.0, 10.0, time_to_collision_s=left_s)))
+        for second, left_s in enumerate(left, start=2)
+    ]
+    assert [len(changes) for changes in told] == [0, 0, 1, 0, 0, 1]
+
+
 def test_a_gauge_below_its_step_does_not_read_as_if_it_had_reached_it() -> None:
     tyre = {TYRE.REAR_LEFT.path: 199.9}
     told = [change.words for second in (2, 3) for change in under_way().see(moment(float(second), signals=tyre))]

@@ -16,7 +16,7 @@ from automotive_cosim.drives.looks import LOOK_S
 from automotive_cosim.drives.reading import Reader
 from automotive_cosim.drives.wakes import Alarm
 from automotive_cosim.drives.watchers import RulePerfect
-from tests.drives.scenes import moment
+from tests.drives.scenes import NOON, limit, moment
 
 CAR = {
     "speed_kmh": 50.0,
@@ -29,7 +29,9 @@ CAR = {
     "is_rear_fog_on": False,
     "range_km": 250.0,
 }
-IRELAND, ULSTER, SWEDEN = (-7.5, 53.3), (-6.5, 54.25), (20.2, 67.8)
+IRELAND, ULSTER, SWEDEN, MANHATTAN = (-7.5, 53.3), (-6.5, 54.25), (20.2, 67.8), (-73.97, 40.77)
+FOG = {"visibility": 40.0, "weather_code": 45, "kmh": 10.0, "limit": limit(90)}
+NIGHT = NOON.replace(hour=23, minute=30)
 
 
 def seen(now: Moment, words: Sequence[str] = (), **car: Any) -> Any:
@@ -99,3 +101,50 @@ def test_it_keeps_looking_at_a_sign_ahead_that_a_slow_car_may_yet_meet_too_fast(
     assert (slow.action_type, slow.seconds) == (ActionType.WAIT, LOOK_S)
     fast = watcher.act(seen(moment(2.0, kmh=60.0), speed_kmh=60.0))
     assert (fast.action_type, fast.kind) == (ActionType.SHOW_ALERT, AlertKind.SPEED)
+
+
+@pytest.mark.parametrize(
+    ("scene", "car"),
+    [
+        ({"at": NIGHT, "kmh": 0.0}, {"speed_kmh": 0.0, "is_low_beam_on": False}),
+        (FOG, {"speed_kmh": 10.0}),
+        (FOG | {"position": MANHATTAN}, {"speed_kmh": 10.0}),
+        ({"position": MANHATTAN}, {"leader_gap_m": 25.0}),
+    ],
+    ids=["no lamps at a red light", "a law for fog while slow", "fog while slow", "a gap that may close"],
+)
+def test_it_keeps_looking_at_what_nothing_wakes_for(scene: dict[str, Any], car: dict[str, Any]) -> None:
+    act = RulePerfect().act(seen(moment(**scene), **car))
+    assert (act.action_type, act.seconds) == (ActionType.WAIT, LOOK_S)
+
+
+def test_it_tells_of_a_slow_vehicle_also_where_the_limit_is_not_certain() -> None:
+    told = {}
+    for kmh in (50, 90):
+        now = seen(moment(kmh=90.0), speed_kmh=90.0, leader_gap_m=140.0, leader_time_to_collision_s=8.0)
+        limits = ("Speed limit here: ", "Default limit: ")
+        lines = [line for line in now.context.splitlines() if not line.startswith(limits)]
+        now.context = "\n".join(
+            [*lines, "Speed limit here: none posted", f"Default limit: {kmh} km/h (XX 1, knowledge)"]
+        )
+        told[kmh] = RulePerfect().act(now).kind
+    assert told == {50: None, 90: AlertKind.TRAFFIC}
+
+
+def warnings_of_breakdown(speeds_kmh: Sequence[float]) -> list[int]:
+    """When it warns of a breakdown that the car nears at these speeds, a second each."""
+    watcher = RulePerfect()
+    acts = [
+        watcher.act(seen(moment(float(second), kmh=kmh), ["breakdown: in 120 m"] * (second == 0), speed_kmh=kmh))
+        for second, kmh in enumerate(speeds_kmh)
+    ]
+    return [second for second, act in enumerate(acts) if act.kind is AlertKind.MOVE_OVER]
+
+
+def test_it_warns_again_of_a_breakdown_if_the_car_stood_before_it_was_due() -> None:
+    assert warnings_of_breakdown([32.0] * 2 + [0.0] * 20 + [32.0] * 5) == [0, 22]
+
+
+def test_it_warns_once_of_a_breakdown_that_was_due_or_that_the_car_only_paused_before() -> None:
+    assert warnings_of_breakdown([40.0] * 2 + [0.0] * 20 + [40.0] * 5) == [0]
+    assert warnings_of_breakdown([32.0] * 2 + [0.0] * 5 + [32.0] * 5) == [0]

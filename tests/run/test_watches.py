@@ -1,6 +1,9 @@
 """Evaluations of drives: the plan, the rows, resuming, and the report."""
 
 import json
+import subprocess
+import sys
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 from itertools import pairwise
@@ -130,6 +133,94 @@ def test_what_is_left_when_a_run_is_broken_off_is_made_up_for(folder: Path, tmp_
     assert {name: steady(row) for name, row in rows_of(tmp_path / "e").items()} == {
         name: steady(row) for name, row in rows_of(folder).items()
     }
+
+
+EVALUATES = """
+from dataclasses import replace
+from types import SimpleNamespace
+from automotive_cosim.cli.main import main
+from automotive_cosim.drives.families import FAMILIES
+
+family = FAMILIES["grid_june"]
+shorter = replace(family.draw(1), duration_s=80.0)
+FAMILIES["grid_june"] = SimpleNamespace(
+    id=family.id, scenario=family.scenario, season=family.season, draw=lambda seed: shorter
+)
+if __name__ == "__main__":
+    main()
+"""
+"""The command line, with a short drive: its workers import this file as well."""
+MARKS = """
+from pathlib import Path
+from automotive_cosim.drives.watchers import RulePerfect
+
+class Marks(RulePerfect):
+    def reset(self, goal):
+        super().reset(goal)
+        self.begins = True
+
+    def act(self, observation):
+        with Path(__file__).with_name("marks").open("a") as file:
+            file.write("drive act\\n" if self.begins else "act\\n")
+        self.begins = False
+        return super().act(observation)
+"""
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+@pytest.mark.long
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
+def test_an_evaluation_killed_in_the_middle_of_a_drive_resumes_to_the_same_rows_and_traces(
+    program: Callable[..., subprocess.Popen[str]],
+    until: Callable[[Callable[[], object]], None],
+    session: Callable[[int], list[str]],
+    tmp_path: Path,
+) -> None:
+    """Killed, a program can write nothing more; the drive that it was in is made anew, the finished one is kept."""
+    (tmp_path / "evaluates.py").write_text(EVALUATES)
+    (tmp_path / "marked.py").write_text(MARKS)
+    (tmp_path / "marks").touch()
+
+    def begin(out: str) -> subprocess.Popen[str]:
+        return program(
+            sys.executable, "evaluates.py", "eval", "--drives", "grid_june", "--agents", "marked:Marks",
+            "--latency", "0,3", "--workers", "1", "--out", out, cwd=tmp_path, stdout=subprocess.DEVNULL,
+        )  # fmt: skip
+
+    def acts() -> list[int]:
+        """How often the agent acted on each drive that it began."""
+        return [drive.count("act") for drive in (tmp_path / "marks").read_text().split("drive")[1:]]
+
+    def lines() -> bytes:
+        path = tmp_path / "killed" / "episodes.jsonl"
+        return path.read_bytes() if path.is_file() else b""
+
+    assert begin("whole").wait(300) == 0
+    whole = acts()
+    assert len(whole) == 2
+    process = begin("killed")
+    until(lambda: len(acts()) == 4 and acts()[3] >= whole[1] // 2)
+    process.kill()
+    process.wait()
+    kept = lines()
+    assert kept.count(b"\n") == 1, "the second drive was over already"
+    until(lambda: not session(process.pid))
+    assert begin("killed").wait(300) == 0
+    assert acts() == [*whole, whole[0], acts()[3], whole[1]], "the finished drive was made again"
+    assert acts()[3] < whole[1]
+    assert lines().startswith(kept)
+    assert all(row.events for row in read_rows(tmp_path / "whole", WatchRow).values())
+    rows, again = (read_rows(tmp_path / name, WatchRow) for name in ("whole", "killed"))
+    assert {id_: steady(row) for id_, row in again.items()} == {id_: steady(row) for id_, row in rows.items()}
+    assert len({row.trace_sha256 for row in rows.values()}) == 2
+    for part in ("traces", "timelines"):
+        files, others = (
+            {path.name: path.read_bytes() for path in (tmp_path / name / part).iterdir()}
+            for name in ("whole", "killed")
+        )
+        assert len(files) == 2
+        assert others == files
 
 
 @pytest.mark.slow

@@ -30,7 +30,7 @@ class Sentence:
     most: float
 
     def said(self, value: float) -> Text:
-        """The whole message."""
+        """The whole message, with the value in its sentence."""
         if self.label == "Arrival":
             return self.text(f"{int(value) // 60:02d}:{int(value) % 60:02d}")
         return self.text(Quantity(f"{value:.1f}" if self.fine < 1 else f"{value:.0f}"))

@@ -20,7 +20,7 @@ PHOTO_WIDE, PHOTO_HIGH = 460, 288
 
 
 def contact(state: State) -> tuple[Widget, ...]:
-    """One person."""
+    """The screen of one contact."""
     who = state.picked.get("contact") or state.directory.contacts[0].name
     number = state.directory.number(who)
     favourite = who in state.phone.favourites
