@@ -205,7 +205,7 @@ def test_what_cannot_be_calibrated_is_refused_before_anything_runs(tmp_path: Pat
         attempt()
     with pytest.raises(CountsError, match="no counts of 11 h"):
         attempt(hours=(10, 11))
-    with pytest.raises(CountsError, match="--at 8 is none of the hours"):
+    with pytest.raises(CountsError, match="--at 8 is not one of the calibrated hours"):
         attempt(hours=(10, 10), at_hour=8)
     with pytest.raises(CountsError, match=r"no site could be placed.*\na: the network has no edge"):
         attempt(hours=(8, 8))

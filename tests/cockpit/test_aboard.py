@@ -60,7 +60,7 @@ def test_the_signals_hold_exactly_who_took_a_seat(party: tuple[Occupant, ...]) -
 @pytest.mark.parametrize(
     ("party", "words"),
     [
-        ((Occupant(Seat.PASSENGER, Kind.PET), Occupant(Seat.PASSENGER, Kind.BABY)), "two are to sit .* passenger"),
+        ((Occupant(Seat.PASSENGER, Kind.PET), Occupant(Seat.PASSENGER, Kind.BABY)), "two occupants .* passenger"),
         ((Occupant(Seat.DRIVER, Kind.PET),), "the driver is of the kind pet"),
         ((Occupant(Seat.DRIVER, Kind.ADULT, asleep=True),), "the driver is asleep"),
         ((Occupant(Seat.REAR_LEFT, Kind.OBJECT, asleep=True),), "only people and pets sleep"),

@@ -138,7 +138,7 @@ def test_anything_is_an_action_or_an_action_error(value: object):
 def test_a_route_to_no_place_on_earth_is_refused(cockpit: Cockpit, destination: str):
     asked = perform(Action(ActionType.REQUEST_REROUTE, destination=destination), cockpit, ())
     assert asked.code is FeedbackCode.REFUSED
-    assert "no place on earth" in asked.text
+    assert "not a position on earth" in asked.text
     assert (
         perform(Action(ActionType.REQUEST_REROUTE, destination="2.35,48.85"), cockpit, ()).code is FeedbackCode.OK
     )

@@ -113,7 +113,7 @@ def test_only_the_pages_themselves_may_act(serving: Serving, tmp_path: Path) -> 
     ("path", "value", "why"),
     [
         ("start", {"task": "no_such_task", "name": "x"}, "no_such_task"),
-        ("start", {"task": 3}, "texts"),
+        ("start", {"task": 3}, "must be strings"),
         ("start", {"task": "hvac_fan_max", "seed": True}, "whole number"),
         ("start", {"task": "hvac_fan_max", "seed": -1}, "whole number"),
         ("start", {"task": "hvac_fan_max", "half": "second"}, "half"),
@@ -138,7 +138,7 @@ def test_what_makes_no_sense_is_refused_in_words(
 def test_a_slowed_second_is_longer_and_a_stopped_clock_takes_no_act() -> None:
     person = Person(clock=lambda: 0.0)
     person.pace(0.25, paused=True)
-    with pytest.raises(UserError, match="stands"):
+    with pytest.raises(UserError, match="is stopped"):
         person.give(CLICK)
     person.pace(1.0, paused=False)
     person.give(CLICK)

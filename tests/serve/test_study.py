@@ -66,7 +66,7 @@ def test_a_study_is_resumed_and_becomes_results_and_an_export(tmp_path: Path) ->
         log.write(b'{"at": "2026-')  # a kill in the middle of a line
 
     study = PeopleStudy(PLAN, folder)
-    with pytest.raises(UserError, match="sit down again"):
+    with pytest.raises(UserError, match="choose your code name again"):
         study.turn(heron)
     heron, fox = study.join("heron", heron), study.join("fox")
     assert finish(study, heron) == ["ask", *["play", "ask"] * 2]
@@ -105,7 +105,7 @@ def test_a_code_name_is_for_one_window(tmp_path: Path, monkeypatch: pytest.Monke
         study.join("heron", study.join("fox"))
     monkeypatch.setattr("automotive_cosim.serve.study.AWAY_S", 0.0)
     assert study.join("heron") != seat
-    with pytest.raises(UserError, match="sit down again"):
+    with pytest.raises(UserError, match="choose your code name again"):
         study.begin(seat)
     study.close()
 
@@ -114,7 +114,7 @@ def test_a_code_name_is_for_one_window(tmp_path: Path, monkeypatch: pytest.Monke
 def test_an_answer_is_a_number_of_the_scale(tmp_path: Path, wrong: object) -> None:
     study = PeopleStudy(PLAN, tmp_path / "mine")
     seat = study.join("heron")
-    with pytest.raises(UserError, match="nothing is asked"):
+    with pytest.raises(UserError, match="no question to answer"):
         study.answer(seat, ANSWERS)
     study.begin(seat)
     with pytest.raises(UserError, match="1 to 5"):
