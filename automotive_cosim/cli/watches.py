@@ -90,7 +90,7 @@ def _announce(console: Console, plan: WatchPlan, folder: Path) -> None:
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
     table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
-    table.add_row("drives", f"{len({job.setup.family for job in jobs})} families")
+    table.add_row("drives", counted(len({job.setup.family for job in jobs}), "family", "families"))
     if plan.scenarios:
         table.add_row("scenarios", ", ".join(plan.scenarios))
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))

@@ -169,8 +169,8 @@ def _tyre(cue: Cue) -> Props:
 
 
 def _range(cue: Cue) -> Props:
-    """A cell fails and ten kilometres are left; as a bait, a hundred."""
-    return Props(changes=(CarChange(cue.at_s, ENERGY.LEVEL.path, 25.0 if cue.is_bait else 2.5, 20.0),))
+    """A cell fails and ten kilometres are left; as a bait, eighty: low, but enough."""
+    return Props(changes=(CarChange(cue.at_s, ENERGY.LEVEL.path, 18.0 if cue.is_bait else 2.5, 20.0),))
 
 
 def _lamps(cue: Cue) -> Props:

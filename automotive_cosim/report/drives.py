@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.score import Score, together
 from automotive_cosim.errors import UserError
@@ -90,7 +91,7 @@ def standings(rows: Iterable[WatchRow]) -> list[str]:
         lines.append(
             f"{each.label}: score {told(mine, _value, '.0f')}; {recall}, "
             f"{total.false_alarms_per_h:.1f} false alarms and {total.nuisances_per_h:.1f} nuisances an hour, "
-            f"{len(mine)} drives"
+            f"{counted(len(mine), 'drive')}"
         )
     return lines
 

@@ -10,14 +10,15 @@ from itertools import pairwise
 from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated, take_seats
-from automotive_cosim.cockpit.signals import Signals, named
+from automotive_cosim.cockpit.signals import ENERGY, Signals, named
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.family import FEWEST, MOST, Season
 from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, plan_json, read_plan
-from automotive_cosim.drives.staging import ONCE, STUNTS
+from automotive_cosim.drives.staging import ONCE, STUNTS, Cue
 from automotive_cosim.errors import UserError
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.scenarios import load, shipped
@@ -25,6 +26,7 @@ from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.profiles import PROFILES
+from tests.drives.scenes import CLEAR, found, moment
 
 SEEDS = range(12)
 EVERY = [pytest.param(family, id=family.id) for family in FAMILIES.values()]
@@ -191,3 +193,13 @@ def test_a_wrong_plan_is_refused_in_one_line(change: dict[str, Any], told: str) 
 def test_what_is_no_plan_is_refused(text: str) -> None:
     with pytest.raises(UserError):
         read_plan(text)
+
+
+@pytest.mark.parametrize("is_bait", [True, False])
+def test_a_battery_that_runs_low_is_an_event_or_looks_like_one(is_bait: bool) -> None:
+    cue = Cue(10.0, is_bait, "average", CLEAR, np.random.default_rng(0))
+    (change,) = STUNTS["range"](cue).changes
+    assert isinstance(change.value, float)
+    signals = {change.path: change.value, ENERGY.RANGE.path: 4_000.0 * change.value}
+    drive = [moment(float(second), signals=signals, route_left_m=20_000.0) for second in range(10)]
+    assert [event.bait for event in found(drive, "range")] == [is_bait]
