@@ -63,7 +63,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def pytest_collection_finish() -> None:
     gc.collect()
-    gc.freeze()  # nine thousand tests live to the end: no later collection looks at them again
+    gc.freeze()  # six thousand tests live to the end: no later collection looks at them again
 
 
 @pytest.hookimpl(wrapper=True)
