@@ -136,14 +136,15 @@ def test_a_plan_with_nothing_to_run_says_why():
         plan(tasks=["road_speed_80_in_50"], scenarios=["grid"]).check()
 
 
-@pytest.mark.slow
-def test_ids_are_good_for_files_and_tell_everything_apart():
-    wide = plan(
-        agents=["a.b:C", "a.b:D"], models=["x/y?seed=1"], seeds=[0, 1], geo=["full", "none"], repeats=2,
-        scenarios=["grid", "/elsewhere/grid"],
-    )  # fmt: skip
+@pytest.mark.parametrize("tasks", [{}, {"tasks": ["hvac_fan_max", "road_speed_80_in_50"]}], ids=["all", "two"])
+def test_ids_are_good_for_files_and_tell_everything_apart(tasks):
+    """All tasks under one condition, and two under all of them."""
+    one = {"agents": ["a.b:C"], "models": ["x/y?seed=1"], "seeds": [0], "scenarios": ["grid"]}
+    more = {"agents": ["a.b:C", "a.b:D"], "seeds": [0, 1], "geo": ["full", "none"], "repeats": 2}
+    conditions = one | more | {"scenarios": ["grid", "/elsewhere/grid"]} if tasks else one
+    wide = plan(**conditions, **tasks)
     jobs = wide.jobs()
-    assert len({job.id for job in jobs}) == len(jobs)
+    assert len({job.id for job in jobs}) == len(jobs) >= 64
     assert all(re.fullmatch(r"[A-Za-z0-9_.-]{1,180}", job.id) for job in jobs)
     assert [job.id for job in wide.jobs()] == [job.id for job in jobs]
 
