@@ -7,6 +7,7 @@ marks it. Any other test that loads libsumo or runs one of SUMO's programs fails
 import gc
 import os
 import signal
+import socket
 import subprocess
 import sys
 import time
@@ -32,7 +33,9 @@ from automotive_cosim.contracts import (
     VehicleState,
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
+from automotive_cosim.traffic import remote
 from automotive_cosim.traffic.fork import Simulations
+from tests import preloaded
 
 PROXIES = [f"{kind}_proxy" for kind in ("http", "https", "all")]
 for _name in (
@@ -47,6 +50,7 @@ typer.main.get_command = cache(typer.main.get_command)
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
 NO_LIBSUMO = Path(__file__).parent / "no_libsumo"
 """What the children of a test find in the place of libsumo."""
+TRAFFIC = Path(__file__).parent / "traffic"
 _forbidden = False
 
 
@@ -65,9 +69,21 @@ def pytest_collection_finish() -> None:
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     if item.get_closest_marker("sumo"):
-        return (yield)
+        with pytest.MonkeyPatch.context() as patch:
+            if preloaded.POSSIBLE and TRAFFIC not in item.path.parents:
+                patch.setattr(remote, "_popen", _popen)
+            return (yield)
     with _without_sumo():
         return (yield)
+
+
+@cache
+def _preloaded() -> preloaded.Preloaded:
+    return preloaded.Preloaded()
+
+
+def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> preloaded.Process:
+    return _preloaded().start(connection, complaints, alarm_s)
 
 
 @contextmanager

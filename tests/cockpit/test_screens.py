@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 import pytest
 
 from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.drawing import Ink
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.screens import SCREENS
@@ -165,6 +167,29 @@ def screens(
     return [view.cockpit for view in walker(CASES[request.param](make, outdoors()))]
 
 
+@dataclass
+class Drawn:
+    """A view, and each text on its picture with the pixels around it."""
+
+    cockpit: Cockpit
+    inks: list[tuple[Ink, npt.NDArray[np.int64]]]
+
+
+@pytest.fixture(scope="module")
+def drawn(screens: list[Cockpit]) -> list[Drawn]:
+    """Every view, drawn once for all laws over pictures."""
+    views = []
+    for cockpit in screens:
+        canvas = render(cockpit.tree)
+        pixels, inks = canvas.pixels(), []
+        for ink in canvas.inks:
+            rect = ink.rect.inset(-2)
+            patch = pixels[max(0, rect.y) : rect.bottom, max(0, rect.x) : rect.right]
+            inks.append((ink, patch.astype(np.int64) @ np.array((1 << 16, 1 << 8, 1))))
+        views.append(Drawn(cockpit, inks))
+    return views
+
+
 def test_every_screen_is_reached_from_home(make: Make, around: Surroundings, walker: Any) -> None:
     parked = walker(CASES["parked"](make, around))
     assert {view.cockpit.screen for view in parked} == set(SCREENS)
@@ -236,14 +261,14 @@ def test_every_usable_widget_does_something_and_every_other_says_why_not(screens
                 assert not changed
 
 
-def test_no_text_is_cut_off_leaves_its_box_or_lies_over_another(screens: list[Cockpit]) -> None:
-    for cockpit in screens:
-        inks = render(cockpit.tree).inks
+def test_no_text_is_cut_off_leaves_its_box_or_lies_over_another(drawn: list[Drawn]) -> None:
+    for view in drawn:
+        screen, inks = view.cockpit.screen, [ink for ink, _ in view.inks]
         for ink in inks:
-            assert not ink.cut, f"{cockpit.screen}: {ink.text}"
-            assert ink.box.inset(-1, -3).encloses(ink.rect), f"{cockpit.screen}: {ink}"
+            assert not ink.cut, f"{screen}: {ink.text}"
+            assert ink.box.inset(-1, -3).encloses(ink.rect), f"{screen}: {ink}"
         for one, other in combinations(inks, 2):
-            assert not one.rect.overlaps(other.rect), f"{cockpit.screen}: {one.text} over {other.text}"
+            assert not one.rect.overlaps(other.rect), f"{screen}: {one.text} over {other.text}"
 
 
 LONG = (
@@ -281,28 +306,24 @@ def test_the_longest_street_names_are_not_cut(
                 assert ink.box.inset(-1, -3).encloses(ink.rect), f"{view.name}: {ink}"
 
 
-def test_every_text_on_the_picture_is_in_the_list(screens: list[Cockpit]) -> None:
-    for cockpit in screens:
+def test_every_text_on_the_picture_is_in_the_list(drawn: list[Drawn]) -> None:
+    for view in drawn:
         said = " ".join(
-            f"{element.text} {element.content_description} {element.hint_text}" for element in cockpit.elements()
+            f"{element.text} {element.content_description} {element.hint_text}"
+            for element in view.cockpit.elements()
         )
-        for ink in render(cockpit.tree).inks:
+        for ink, _ in view.inks:
             assert ink.text in said
 
 
-@pytest.mark.slow
-def test_every_text_stands_out_from_its_ground(screens: list[Cockpit]) -> None:
-    for cockpit in screens:
-        canvas = render(cockpit.tree)
-        pixels = canvas.pixels().astype(np.int64) @ np.array((1 << 16, 1 << 8, 1))
-        for ink in canvas.inks:
-            rect = ink.rect.inset(-2)
-            patch = pixels[max(0, rect.y) : rect.bottom, max(0, rect.x) : rect.right]
+def test_every_text_stands_out_from_its_ground(drawn: list[Drawn]) -> None:
+    for view in drawn:
+        for ink, patch in view.inks:
             colours, counts = np.unique(patch, return_counts=True)
             own = int(np.dot(ink.colour, (1 << 16, 1 << 8, 1)))
             ground = int(colours[np.argmax(np.where(colours == own, 0, counts))])
             shade = (ground >> 16, ground >> 8 & 255, ground & 255)
-            assert contrast(ink.colour, shade) >= 4.5, f"{cockpit.screen}: {ink.text}"
+            assert contrast(ink.colour, shade) >= 4.5, f"{view.cockpit.screen}: {ink.text}"
 
 
 def contrast(one: Colour, other: Colour) -> float:

@@ -107,6 +107,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"run .*--model", HELP, "asks a language model"),
     (r"run .*(city|my|any)\.(net|sumocfg)", HELP, "needs a network of the reader's"),
     (r"run --agent (my_package|\$agent)", HELP, "needs what only the reader has"),
+    (r"run --scenario hamlet --task road_speed_80_in_50", HELP, "takes five seconds; test_examples.py runs it"),
     (r"run .*--(scenario (hamlet|grid)|task my_)", ("--force", "--out", "runs/last"), ""),
     (r"run --agent my_", (*SMALL[:4], "--force", "--out", "runs/last"), "takes ten seconds in its own scenario"),
     (

@@ -42,6 +42,35 @@ def begin(simulations: Simulations) -> Iterator[Begin]:
         watch.close()
 
 
+@pytest.fixture(scope="module")
+def departures(simulations: Simulations) -> Iterator[Begin]:
+    """The same for drives that several tests look at."""
+    watches: list[Watch] = []
+
+    def departed() -> Watch:
+        world = depart(FAMILIES[FAMILY].draw(SEED), simulations)
+        watches.append(Watch.depart_with(world, Conditions(READS, max_steps=10_000, max_sim_s=FOR_S)))
+        return watches[-1]
+
+    yield departed
+    for watch in watches:
+        watch.close()
+
+
+@pytest.fixture(scope="module")
+def perfect(departures: Begin) -> tuple[Watch, Score]:
+    """A drive with the rule-perfect watcher."""
+    watch = departures()
+    return watch, played(watch, RulePerfect())
+
+
+@pytest.fixture(scope="module")
+def silent(departures: Begin) -> tuple[Watch, Score]:
+    """A drive with a watcher that says nothing."""
+    watch = departures()
+    return watch, played(watch, Silent())
+
+
 def played(watch: Watch, actor: Actor) -> Score:
     play(watch, actor)
     assert watch.judgement is not None
@@ -182,18 +211,16 @@ def test_the_same_seed_and_actions_give_the_same_trace(begin: Begin) -> None:
 
 
 @pytest.mark.slow
-def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(begin: Begin) -> None:
-    watch = begin()
-    found = played(watch, Silent())
+def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(silent: tuple[Watch, Score]) -> None:
+    watch, found = silent
     assert found.events >= 2
     assert (found.value, found.recall, found.false_alarms) == (0.0, 0.0, 0)
     assert [m.driving for m in watch.moments] == [m.driving for m in watch.baseline_moments]
 
 
 @pytest.mark.slow
-def test_the_rule_perfect_watcher_meets_every_event_and_disturbs_nobody(begin: Begin) -> None:
-    watch = begin()
-    found = played(watch, RulePerfect())
+def test_the_rule_perfect_watcher_meets_every_event_and_disturbs_nobody(perfect: tuple[Watch, Score]) -> None:
+    watch, found = perfect
     assert found.events >= 2
     assert found.recall == 1.0
     assert found.nuisances == 0
@@ -227,8 +254,9 @@ def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
 
 
 @pytest.mark.slow
-def test_a_late_watcher_loses_and_delays(begin: Begin) -> None:
-    prompt, late = played(begin(), RulePerfect()), played(begin(), RulePerfect(delay_s=8.0))
+def test_a_late_watcher_loses_and_delays(begin: Begin, perfect: tuple[Watch, Score]) -> None:
+    _, prompt = perfect
+    late = played(begin(), RulePerfect(delay_s=8.0))
     assert late.value < prompt.value
     assert late.late + late.missed > 0
 
@@ -272,9 +300,10 @@ def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(begin: Begin)
 
 
 @pytest.mark.slow
-def test_the_most_frequent_right_alert_by_rote_does_worse_than_nobody(begin: Begin) -> None:
-    watch = begin()
-    played(watch, Silent())
+def test_the_most_frequent_right_alert_by_rote_does_worse_than_nobody(
+    begin: Begin, silent: tuple[Watch, Score]
+) -> None:
+    watch, _ = silent
     assert watch.judgement is not None
     kind = most_frequent(watch.judgement, KINDS)
     assert kind is not None

@@ -111,15 +111,9 @@ def test_a_finished_drive_is_not_run_again(folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_same_plan_gives_the_same_rows(folder: Path, tmp_path: Path) -> None:
-    only = PLAN | {"agents": ["rule-perfect"]}
-    run_watch_plan(make_watch_plan(only), tmp_path / "again", executor=Processes(1), retries=0)
-    (again,) = read_rows(tmp_path / "again", WatchRow).values()
-    assert steady(again) == steady(rows_of(folder)["rule-perfect"])
-
-
-@pytest.mark.slow
 def test_what_is_left_when_a_run_is_broken_off_is_made_up_for(folder: Path, tmp_path: Path) -> None:
+    """And the same plan gives the same rows."""
+
     def break_off(progress: Progress[WatchRow]) -> None:
         if progress.done == 1:
             raise KeyboardInterrupt

@@ -1,0 +1,106 @@
+"""Simulations' processes forked from one that has imported everything, which takes half a second of a core.
+
+SUMO is started hundreds of times by the tests. Those of ``tests/traffic``, which are about the process, start it as
+programs do; ``python -m tests.preloaded DESCRIPTOR`` is the process that the others' are forked from.
+"""
+
+from __future__ import annotations
+
+import atexit
+import json
+import os
+import select
+import signal
+import socket
+import subprocess
+import sys
+from contextlib import suppress
+from pathlib import Path
+
+from automotive_cosim.traffic.channel import MessageChannel
+from automotive_cosim.traffic.process import Server
+from automotive_cosim.traffic.remote import DROPPED_VARIABLES, ONE_THREAD
+
+POSSIBLE = hasattr(os, "pidfd_open") and hasattr(socket, "recv_fds")
+MOST = 65_536
+
+
+class Process:
+    """As much of ``subprocess.Popen`` as ``RemoteProcess`` uses."""
+
+    def __init__(self, pid: int) -> None:
+        self.pid = pid
+        self._handle = os.pidfd_open(pid)
+
+    def __del__(self) -> None:
+        os.close(self._handle)
+
+    def poll(self) -> int | None:
+        return 0 if select.select([self._handle], [], [], 0)[0] else None
+
+    def wait(self, timeout: float | None = None) -> int:
+        if not select.select([self._handle], [], [], timeout)[0]:
+            raise subprocess.TimeoutExpired("a simulation", timeout or 0.0)
+        return 0
+
+    def kill(self) -> None:
+        with suppress(ProcessLookupError):
+            signal.pidfd_send_signal(self._handle, signal.SIGKILL)
+
+
+class Preloaded:
+    """The process that others are forked from, as seen from the tests."""
+
+    def __init__(self) -> None:
+        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        environment = {name: value for name, value in os.environ.items() if name not in DROPPED_VARIABLES}
+        environment |= ONE_THREAD | {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))}
+        with theirs:
+            self._process = subprocess.Popen(
+                [sys.executable, "-P", "-m", "tests.preloaded", str(theirs.fileno())],
+                env=environment,
+                stdin=subprocess.DEVNULL,
+                stdout=subprocess.DEVNULL,
+                pass_fds=[theirs.fileno()],
+            )
+        atexit.register(self.close)
+
+    def start(self, connection: socket.socket, complaints: int, alarm_s: float) -> Process:
+        """What ``remote._popen`` does."""
+        request = json.dumps([alarm_s, str(Path.cwd())]).encode()
+        socket.send_fds(self._socket, [request], [connection.fileno(), complaints])
+        return Process(int(self._socket.recv(MOST)))
+
+    def close(self) -> None:
+        self._socket.close()
+        self._process.wait()
+
+
+def main() -> None:
+    from automotive_cosim.traffic.sumo import load_library
+
+    load_library()
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)
+    requests = socket.socket(fileno=int(sys.argv[1]))
+    while True:
+        request, descriptors, _, _ = socket.recv_fds(requests, MOST, 2)
+        if not request:
+            os._exit(0)
+        connection, complaints = descriptors
+        child = os.fork()
+        if not child:
+            requests.close()
+            os.dup2(complaints, 2)
+            os.close(complaints)
+            alarm_s, folder = json.loads(request)
+            os.chdir(folder)
+            Server(MessageChannel(socket.socket(fileno=connection)), alarm_s).run()
+            os._exit(0)
+        for each in descriptors:
+            os.close(each)
+        requests.send(str(child).encode())
+
+
+if __name__ == "__main__":
+    main()
