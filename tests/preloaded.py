@@ -1,7 +1,7 @@
 """Simulations' processes forked from one that has imported everything, which takes half a second of a core.
 
 SUMO is started hundreds of times by the tests. Those of ``tests/traffic``, which are about the process, start it as
-programs do; ``python -m tests.preloaded DESCRIPTOR`` is the process that the others' are forked from.
+programs do.
 """
 
 from __future__ import annotations
@@ -57,7 +57,7 @@ class Preloaded:
         environment |= ONE_THREAD | {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))}
         with theirs:
             self._process = subprocess.Popen(
-                [sys.executable, "-P", "-m", "tests.preloaded", str(theirs.fileno())],
+                [sys.executable, "-P", __file__, str(theirs.fileno())],
                 env=environment,
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
