@@ -4,6 +4,7 @@
     python benchmarks/drives.py beauce_june grid_january --seeds 0 1 2 3 4
     python benchmarks/drives.py --watch perfect late             # plays them, and scores what they do
     python benchmarks/drives.py --watch perfect --seeds 0 1 2 3 4 --keep runs/perfect    # resumes; docs/drives.md
+    python benchmarks/drives.py --watch silent always wakes often late    # the negative controls, in one table
 
 Staged is what the plans ask for. On the drive with nobody at the cockpit, an event *came off* if its kind obliged
 within five minutes, and a bait if nothing of its kind did while it lasted. None of it depends on how busy the
@@ -51,6 +52,8 @@ WATCHERS: Mapping[str, Callable[[], RulePerfect | Silent | AlertAll | AlertOnWak
 LATEST_S = 300.0
 """An event comes off by this time after it was staged: a tyre leaks for minutes, an incident lies ahead."""
 STEPS = 10**6
+FIGURES = ("hours", "events", "recall", "false/h", "repeats/h", "score")
+"""Columns of ``_row``, after the name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +164,7 @@ def watched(drives: Sequence[Kept]) -> Iterator[str]:
     """How well a watcher did, by family, then by kind."""
     rows = [_row(name, together([drive.score for drive in kept])) for name, kept in _by_family(drives)]
     rows.append(_row("all", together([drive.score for drive in drives])))
-    yield from _table(("family", "hours", "events", "recall", "false/h", "repeats/h", "score"), rows)
+    yield from _table(("family", *FIGURES), rows)
     yield ""
     events, met, void = Counter[str](), Counter[str](), Counter[str]()
     for event in (event for drive in drives for event in drive.events if not event.bait):
@@ -186,6 +189,17 @@ def watched(drives: Sequence[Kept]) -> Iterator[str]:
             for kind in KINDS
         ),
     )
+
+
+def compared(whos: Sequence[str], drives: Sequence[Kept]) -> Iterator[str]:
+    """Watchers, one line each, with the lowest and the highest score of a family."""
+    rows = []
+    for who in whos:
+        mine = [drive for drive in drives if drive.watcher == who]
+        values = [together([drive.score for drive in kept]).value for _, kept in _by_family(mine)]
+        spread = f"{min(values):.0f} to {max(values):.0f}" if values else "-"
+        rows.append((*_row(who, together([drive.score for drive in mine])), spread))
+    yield from _table(("watcher", *FIGURES, "by family"), rows)
 
 
 def _row(name: str, total: Score) -> tuple[object, ...]:
@@ -273,6 +287,8 @@ def main() -> None:
         asked.keep.mkdir(parents=True, exist_ok=True)
     drives = run(asked.watch or ["silent"], asked.families, asked.seeds, asked.keep, asked.minutes)
     print(f"{len(drives)} drives, {sum(drive.driven_s for drive in drives) / 3600:.1f} h", end="\n\n")
+    if asked.watch:
+        print(*compared(asked.watch, drives), sep="\n", end="\n\n")
     for who in asked.watch or ():
         print(f"{who}:", *watched([drive for drive in drives if drive.watcher == who]), sep="\n", end="\n\n")
     print(*staged(drives), sep="\n")
