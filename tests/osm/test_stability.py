@@ -175,7 +175,7 @@ def test_a_sumo_that_is_killed_is_told_from_one_that_refuses(
     imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _stand_in(tmp_path, f"{STEP}\nos.kill(os.getpid(), signal.SIGKILL)", monkeypatch)
-    with pytest.raises(TrafficError, match="ended by SIGKILL"):
+    with pytest.raises(TrafficError, match="killed by SIGKILL"):
         measure(load(imported[0]), observe_s=60)
     _stand_in(tmp_path, "sys.exit('Error: no way')", monkeypatch)
     with pytest.raises(ScenarioError, match="no way"):
