@@ -133,8 +133,8 @@ COOL_WITH_AIR = hard(
         " percent.",
         "Get the air conditioning going, {degrees} on both sides and {fan} on the fan; windows not shut, just 20"
         " percent each.",
-        "All four windows to 20, then make it cold: air conditioning on, {fan} on the fan, {degrees}"
-        " left and right.",
+        "Make it cold: air conditioning on, {fan} on the fan, {degrees} left and right, and all four windows"
+        " at 20.",
     ),
     done(
         OPEN_CAR,
