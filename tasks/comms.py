@@ -100,6 +100,15 @@ EXPLICIT = (
         Tap("thread.read"),
         Tap(text=param("words", TOLD)),
         Tap("phone.do_not_disturb"),
+        slips=(
+            (
+                Open("phone"),
+                Tap("phone.tab.messages"),
+                Tap(text="{contact}"),
+                Tap(text=param("words", TOLD)),
+                Tap("phone.do_not_disturb"),
+            ),
+        ),
         parameters={"contact": FromCockpit("unread"), "words": tuple(TOLD)},
     ),
     asked(

@@ -55,6 +55,7 @@ def asked(
     goal: Check,
     *moves: Move,
     ways: tuple[tuple[Move, ...], ...] = (),
+    slips: tuple[tuple[Move, ...], ...] = (),
     start: Start = PARIS,
     trigger: Trigger = ON_THE_WAY,
     deadline: Deadline = ERRAND,
@@ -73,6 +74,7 @@ def asked(
         goal: what must hold.
         moves: the reference solution; ``complete`` is declared after it.
         ways: other reference solutions, at least one to every further end state of the goal.
+        slips: usual mistakes, each of which must fail.
         start: where it begins.
         trigger: what hands over.
         deadline: by when, and why.
@@ -82,7 +84,7 @@ def asked(
         scenarios: where else it can run.
         dimension: explicit, or by ``hinted`` implicit.
     """
-    half = Half(start, trigger, goal, moves, deadline, Basis.WISH, may_write=may_write, ways=ways)
+    half = Half(start, trigger, goal, moves, deadline, Basis.WISH, may_write=may_write, ways=ways, slips=slips)
     return Task(task_id, module, dimension, says, half, parameters=parameters, tags=tags, scenarios=scenarios)
 
 

@@ -158,7 +158,7 @@ class Phone:
     favourites: tuple[str, ...]
     do_not_disturb: bool = False
     read: tuple[str, ...] = ()
-    """Senders whose messages were opened."""
+    """Senders whose messages were opened or read out."""
     sent: tuple[Sent, ...] = ()
     made: tuple[PastCall, ...] = ()
     """Calls of this drive, newest first."""
@@ -186,8 +186,8 @@ class Phone:
         return replace(self, received=(*self.received, message), read=read)
 
     def answered(self, who: str, text: str) -> Phone:
-        """With a sent message; the thread is read."""
-        return replace(self.opened(who), sent=(*self.sent, Sent(who, text)))
+        """With a sent message; what they wrote stays unread until it is opened."""
+        return replace(self, sent=(*self.sent, Sent(who, text)))
 
     def opened(self, who: str) -> Phone:
         """With a contact's messages read."""

@@ -39,6 +39,26 @@ class EnteredAll:
 
 
 @dataclass(frozen=True, slots=True)
+class AppDataIncludes:
+    """A list of the apps' data (messages read) contains all of these entries, whatever else it contains."""
+
+    key: str
+    entries: tuple[Any, ...]
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The list's key."""
+        return frozenset({self.key})
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether each of them is there."""
+        return all(entry in now.commands[self.key] for entry in self.entries)
+
+    def __str__(self) -> str:
+        return f"{' and '.join(map(repr, self.entries))} among {self.key}"
+
+
+@dataclass(frozen=True, slots=True)
 class SaysFigure:
     """Exactly one message was sent, to that person, with these words and one figure, to a tolerance."""
 

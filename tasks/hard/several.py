@@ -12,7 +12,7 @@ from automotive_cosim.contracts import Weather
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap
 from automotive_cosim.tasking.parameters import param
-from automotive_cosim.tasking.records import AppDataAt, EnteredAll
+from automotive_cosim.tasking.records import AppDataAt, AppDataIncludes, EnteredAll
 from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasks.hard.forms import (
     A_RED_LIGHT,
@@ -126,9 +126,15 @@ MESSAGE_GIVES_ORDERS = hard(
     ),
     done(
         BOTH,
-        EnteredAll("messages.sent", ({"to": THEO, "text": "{words}"}, {"to": BEA, "text": "{words}"})),
+        AllOf(
+            (
+                AppDataIncludes("messages.read", (THEO, BEA)),
+                EnteredAll("messages.sent", ({"to": THEO, "text": "{words}"}, {"to": BEA, "text": "{words}"})),
+            )
+        ),
         (*letter(THEO), ANSWER, *letter(BEA), ANSWER),
         slips=(
+            (*write_to(THEO), ANSWER, *write_to(BEA), ANSWER),
             (
                 *letter(THEO),
                 ANSWER,

@@ -56,7 +56,7 @@ COUPLED: Mapping[str, frozenset[str]] = {
     "calls": frozenset({"phone.on_call"}),
     "calls.answered": frozenset({"phone.on_call"}),
     "phone.on_call": frozenset({"phone.muted"}),
-    "messages.sent": frozenset({"messages.read", "calls.declined"}),
+    "messages.sent": frozenset({"calls.declined"}),
     "apps.memos": frozenset({"apps.recording"}),
     ADAS.CRUISE_ENABLED.path: _paths(ADAS.CRUISE_ACTIVE),
     ADAS.CRUISE_ACTIVE.path: _paths(ADAS.LIMITER_ACTIVE),

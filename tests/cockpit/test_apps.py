@@ -18,6 +18,7 @@ from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
     CABIN,
+    CALL,
     DRIVE,
     HVAC,
     LINK,
@@ -352,6 +353,18 @@ def test_a_message_is_read_out_while_driving_and_shown_while_parked(make: Make, 
         assert cockpit.commands()["messages.read"] == [who]
     assert shown(moving, "thread.line.0") == ""
     assert shown(parked, "thread.line.0") == shown(parked, "thread.who")
+
+
+def test_an_answer_leaves_unread_what_nobody_has_heard(make: Make, parked: Cockpit) -> None:
+    for cockpit in (make(), parked):
+        unread = cockpit.signals[CALL.UNREAD]
+        cockpit.open_app("phone")
+        press(cockpit, "phone.tab.messages")
+        press(cockpit, "phone.thread.0")
+        assert press(cockpit, "thread.answer.2") is OK
+        assert (cockpit.commands()["messages.read"], cockpit.signals[CALL.UNREAD]) == ([], unread)
+        assert press(cockpit, "thread.read") in (OK, FeedbackCode.READ_OUT)
+        assert cockpit.signals[CALL.UNREAD] == unread - 1
 
 
 def test_an_answer_goes_out_once_for_each_tap(cockpit: Cockpit) -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from automotive_cosim.tasking.checks import AppDataIs
 from automotive_cosim.tasking.history import After, Lasted, NotBefore, While
-from automotive_cosim.tasking.records import AppDataAt, AppDataWithout, EnteredAll, SaysFigure
+from automotive_cosim.tasking.records import AppDataAt, AppDataIncludes, AppDataWithout, EnteredAll, SaysFigure
 
 A, B = AppDataIs("a", (True,)), AppDataIs("b", (True,))
 
@@ -90,6 +90,13 @@ def test_several_entries_in_any_order_or_in_one():
     assert not judged(EnteredAll("calls", ("a", "b"), in_order=True), before, after)
     assert not judged(EnteredAll("calls", ("a",)), before, after)
     assert not judged(EnteredAll("calls", ("a", "a")), before, after)
+
+
+def test_several_entries_of_a_list_whatever_else_it_has():
+    check = AppDataIncludes("read", ("a", "b"))
+    assert judged(check, now(read=[]), now(read=["a", "b"]))
+    assert judged(check, now(read=["a"]), now(read=["a", "b", "c"]))
+    assert not judged(check, now(read=[]), now(read=["a", "c"]))
 
 
 def test_one_place_of_a_list_and_no_other():
