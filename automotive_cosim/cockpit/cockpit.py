@@ -78,13 +78,13 @@ APP_ALIASES = {
     "weather": "outside",
     "phenomenon": "outside",
     "comms": "phone",
-    "messages": "phone",
     "system": "settings",
     "road": "vehicle",
     "memos": "memo",
 }
 """Other names by which an app opens."""
-
+PARTS = {"messages": ("phone", "messages")}
+"""Names that open an app at one of its parts."""
 
 DIRECTIONS = {
     Direction.UP: say_in("towards", "up"),
@@ -376,7 +376,7 @@ class Cockpit:
     def open_app(self, name: str) -> Feedback:
         """Opens an app by its name."""
         wanted = " ".join(name.casefold().split())
-        wanted = APP_ALIASES.get(wanted, wanted)
+        wanted, part = PARTS.get(wanted, (APP_ALIASES.get(wanted, wanted), ""))
         if wanted in PART_OF and wanted not in APPS:
             return Feedback(
                 FeedbackCode.NO_SUCH_ELEMENT,
@@ -394,7 +394,7 @@ class Cockpit:
         if wanted in desk.TOOLS and wanted not in self._state.desk.installed:
             return Feedback(FeedbackCode.REFUSED, say("{app} is not installed; the store has it", app=wanted))
         self._tree = None
-        return update.show(self._state, wanted)
+        return update.show(self._state, wanted, part)
 
     def visit(self, screen: str) -> Feedback:
         """Shows any screen by its name directly, for pictures and studies.

@@ -143,6 +143,18 @@ def test_every_app_opens_by_name_and_from_the_dock(cockpit: Cockpit) -> None:
         assert cockpit.screen == app
 
 
+def test_messages_opens_the_messages_of_the_phone(cockpit: Cockpit) -> None:
+    cockpit.open_app("phone")
+    assert shown(cockpit, "phone.thread.0") == ""
+    assert cockpit.open_app("Messages").code is OK
+    first = shown(cockpit, "phone.thread.0")
+    assert first in cockpit.content["unread"]
+    assert cockpit.open_app("messages").code is NO_EFFECT
+    assert cockpit.back().code is OK
+    assert shown(cockpit, "phone.thread.0") == ""
+    assert shown(cockpit, "phone.favourite.0") in cockpit.content["favourite_contacts"]
+
+
 def test_an_app_opens_once_it_is_installed_which_is_done_while_parked(make: Make, around: Surroundings) -> None:
     moving = make()
     assert moving.open_app("calendar").code is FeedbackCode.REFUSED
