@@ -331,6 +331,18 @@ def test_a_call_goes_out_lasts_and_ends(cockpit: Cockpit, around: Surroundings) 
     assert shown(cockpit, "phone.recent.0") == name
 
 
+def test_a_list_of_people_says_that_a_tap_opens_them_and_calls_nobody(cockpit: Cockpit) -> None:
+    for tab, first in (("favourites", "favourite"), ("recents", "recent"), ("contacts", "contact")):
+        cockpit.open_app("phone")
+        press(cockpit, f"phone.tab.{tab}")
+        assert shown(cockpit, "phone.about") == "Tap a name to call or send a message"
+        entry = next(one for one in cockpit.elements() if one.resource_id == shown_id(f"phone.{first}.0"))
+        assert entry.content_description.startswith("Call or message")
+        assert press(cockpit, f"phone.{first}.0") is OK
+        assert (cockpit.screen, shown(cockpit, "contact.call")) == ("contact", "Call")
+        assert cockpit.commands()["calls"] == []
+
+
 def test_no_call_without_a_phone(cockpit: Cockpit) -> None:
     cockpit.open_app("settings")
     press(cockpit, "settings.page.connections")

@@ -8,7 +8,7 @@ from automotive_cosim.cockpit.messages import BACKSPACE, Dial, Key, Pick, Show
 from automotive_cosim.cockpit.people import PastCall
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.screens.handset import handset, handset_and_page
-from automotive_cosim.cockpit.screens.parts import choices, note, rows, search
+from automotive_cosim.cockpit.screens.parts import choices, heading, note, rows, search
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Row, Widget
@@ -23,6 +23,10 @@ TABS = (
     ("keypad", say("Keypad"), Icon.DIALPAD),
 )
 KEYS = "123456789*0#"
+OPENS = say("Call or message")
+"""What may be done with somebody whom a tap opens."""
+ABOUT = 36
+"""Height of the line above a list of people."""
 
 
 def phone(state: State) -> tuple[Widget, ...]:
@@ -47,13 +51,19 @@ def phone(state: State) -> tuple[Widget, ...]:
     )
 
 
+def _about(rect: Rect) -> Label:
+    """What a tap on somebody does, above the list that fills the rest."""
+    return heading(rect.top(28), say("Tap a name to call or send a message"), "phone.about")
+
+
 def _favourites(rect: Rect, state: State) -> tuple[Widget, ...]:
     names = state.phone.favourites
     if not names:
         return (note(rect, "phone.favourites.empty", say("No favourites yet: add them from a contact")),)
     return (
+        _about(rect),
         rows(
-            rect,
+            rect.below(ABOUT),
             "phone.favourites",
             say("Favourites"),
             state,
@@ -62,6 +72,7 @@ def _favourites(rect: Rect, state: State) -> tuple[Widget, ...]:
                 rect=cell,
                 key=f"phone.favourite.{index}",
                 text=names[index],
+                description=OPENS,
                 icon=Icon.ACCOUNT,
                 icon_size=44,
                 stacked=True,
@@ -83,6 +94,7 @@ def _recents(rect: Rect, state: State) -> tuple[Widget, ...]:
             rect=cell,
             key=f"phone.recent.{index}",
             text=call.who,
+            description=OPENS,
             detail={"in": say("Received"), "out": say("Made"), "missed": say("Missed")}[call.way],
             trail=call.when,
             icon=WAYS[call.way],
@@ -90,40 +102,49 @@ def _recents(rect: Rect, state: State) -> tuple[Widget, ...]:
             on_tap=Show("contact", call.who),
         )
 
-    return (rows(rect, "phone.recents", say("Recent calls"), state, len(calls), line, height=64),)
+    return (
+        _about(rect),
+        rows(rect.below(ABOUT), "phone.recents", say("Recent calls"), state, len(calls), line, height=64),
+    )
 
 
 def _contacts(rect: Rect, state: State) -> tuple[Widget, ...]:
     wanted = state.typed.get("phone.search", "").casefold().strip()
     found = tuple(contact for contact in state.directory.contacts if wanted in contact.name.casefold())
-    bar = rect.top(60)
+    people = rect.below(72)
     return (
         search(
-            bar,
+            rect.top(60),
             "phone.search",
             say("Search contacts"),
             say("Search contacts"),
             state,
             Show("contact", found[0].name) if found else None,
         ),
-        rows(
-            rect.below(72),
-            "phone.contacts",
-            say("Contacts"),
-            state,
-            len(found),
-            lambda index, cell: Row(
-                rect=cell,
-                key=f"phone.contact.{index}",
-                text=found[index].name,
-                trail=found[index].number,
-                icon=Icon.STAR if found[index].name in state.phone.favourites else Icon.ACCOUNT,
-                on_tap=Show("contact", found[index].name),
-            ),
-            height=56,
-        )
-        if found
-        else note(rect.below(72), "phone.contacts.empty", say("No contact with this name")),
+        *(
+            (
+                _about(people),
+                rows(
+                    people.below(ABOUT),
+                    "phone.contacts",
+                    say("Contacts"),
+                    state,
+                    len(found),
+                    lambda index, cell: Row(
+                        rect=cell,
+                        key=f"phone.contact.{index}",
+                        text=found[index].name,
+                        description=OPENS,
+                        trail=found[index].number,
+                        icon=Icon.STAR if found[index].name in state.phone.favourites else Icon.ACCOUNT,
+                        on_tap=Show("contact", found[index].name),
+                    ),
+                    height=56,
+                ),
+            )
+            if found
+            else (note(people, "phone.contacts.empty", say("No contact with this name")),)
+        ),
     )
 
 
