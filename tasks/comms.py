@@ -12,7 +12,7 @@ from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.task import Deadline, Module
 from automotive_cosim.tasking.triggers import All, Driving, Not, SignalAbove, SignalHas, Trigger
 from automotive_cosim.tasks.comms_safety import PAIRS
-from automotive_cosim.tasks.forms import PARIS, asked, hinted, locked
+from automotive_cosim.tasks.forms import DEVICES, PARIS, asked, hinted, linked, locked
 
 RINGING = Trigger(All((Driving(), Not(SignalHas(CALL.RINGING, "")))), for_s=2.0, within_s=180.0)
 CALLED = replace(PARIS, arrivals=tuple(Arrival("call", at_s) for at_s in (15.0, 70.0, 125.0)))
@@ -215,16 +215,16 @@ EXPLICIT = (
         Module.COMMS,
         (
             "Pair the {device} with the car.",
-            "Use my {device} instead of this phone.",
+            "Find my {device} and link it.",
             "Connect the {device} over Bluetooth, please.",
             "I brought the {device} along today, link that one.",
-            "Make the {device} the one you talk through.",
+            "Make my {device} known to this car.",
         ),
-        AppDataIs("bluetooth.device", (param("device", {"second phone": "Second phone", "tablet": "Tablet"}),)),
+        linked("device"),
         Open("phone"),
         Tap("phone.devices"),
         Tap(param("device", {"second phone": "link.device.1", "tablet": "link.device.2"})),
-        parameters={"device": ("second phone", "tablet")},
+        parameters={"device": tuple(DEVICES)},
         tags=frozenset({"two_modules"}),
     ),
 )

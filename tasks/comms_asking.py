@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.signals import CALL
-from automotive_cosim.tasking.checks import AppDataIs, Entered, EnteredOf
+from automotive_cosim.tasking.checks import Entered, EnteredOf
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Move, Open, Tap
 from automotive_cosim.tasking.parameters import param
@@ -14,10 +14,12 @@ from automotive_cosim.tasking.task import Deadline, Dimension, Module
 from automotive_cosim.tasking.triggers import All, Driving, Not, SignalHas, Trigger
 from automotive_cosim.tasks.forms import (
     AT_THE_KERB,
+    DEVICES,
     ELSEWHERE,
     FRIENDS,
     PARIS,
     PARKED_WHEN_WRITTEN,
+    linked,
     read_out,
     unclear,
     wrote,
@@ -27,7 +29,6 @@ PRACTICES = {"dentist": "Dental practice", "optician": "Eye clinic"}
 TODAY, IN_MARCH = "We expect you today at {hour}.", "Your next appointment is in March."
 AT_NIGHT = replace(AT_THE_KERB, start="2026-11-17T22:40:00")
 PARENTS = {"mum": "Mum", "dad": "Dad"}
-DEVICES = {"second phone": "Second phone", "tablet": "Tablet"}
 MILO = replace(PARIS, arrivals=tuple(Arrival("call", at_s, "{who}") for at_s in (25.0, 80.0, 135.0)))
 """Repeated calls, so that one of them rings while the car moves."""
 MILO_RINGS = Trigger(All((Driving(), Not(SignalHas(CALL.RINGING, "")))), for_s=2.0, within_s=180.0)
@@ -212,7 +213,7 @@ TASKS = (
             ("device", "gadget", "{who}"),
         ),
         "Which one, the second phone or the tablet?",
-        AppDataIs("bluetooth.device", (param("which", DEVICES),)),
+        linked("which"),
         Open("phone"),
         Tap("phone.devices"),
         Tap(text=param("which", DEVICES)),

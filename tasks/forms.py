@@ -14,9 +14,10 @@ from typing import Any
 
 from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.desk import PHONES, TABLET
 from automotive_cosim.cockpit.signals import LIGHTS, Signal
 from automotive_cosim.contracts import GoalStatus, Reason
-from automotive_cosim.tasking.checks import AllOf, AskedFirst, Check, NotAsked, NothingDone
+from automotive_cosim.tasking.checks import AllOf, AppDataIs, AskedFirst, Check, NotAsked, NothingDone
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Consult, Move, Open, Tap
 from automotive_cosim.tasking.parameters import Choices, param
@@ -298,3 +299,13 @@ def read_out(*senders: str) -> tuple[Move, ...]:
         for who in senders
         for move in (Open("phone"), Tap("phone.tab.messages"), Tap(text=who), Tap("thread.read"))
     )
+
+
+DEVICES = {"second phone": "Second phone", "tablet": "Tablet"}
+"""What the driver says, and the name in the list of Bluetooth devices."""
+
+
+def linked(parameter: str, devices: Mapping[str, str] = DEVICES) -> AppDataIs:
+    """The drawn device is paired: a phone in place of the driver's, the tablet beside it."""
+    paired = {said: [PHONES[0], name] if name == TABLET else [name] for said, name in devices.items()}
+    return AppDataIs("bluetooth.devices", (param(parameter, paired),))

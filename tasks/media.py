@@ -20,7 +20,7 @@ from automotive_cosim.tasking.checks import (
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TypeText
 from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.task import Module
-from automotive_cosim.tasks.forms import COMFORT, PARIS, asked, hinted, locked
+from automotive_cosim.tasks.forms import COMFORT, DEVICES, PARIS, asked, hinted, linked, locked
 from automotive_cosim.tasks.media_safety import PAIRS
 
 PLAYS = SignalIs(MEDIA.ACTION, ("PLAY",))
@@ -363,9 +363,7 @@ EXPLICIT = (
             (
                 PLAYS,
                 SignalIs(MEDIA.SHUFFLE, (True,)),
-                AppDataIs(
-                    "bluetooth.device", (param("device", {"second phone": "Second phone", "tablet": "Tablet"}),)
-                ),
+                linked("device"),
             )
         ),
         Open("settings"),
@@ -374,7 +372,7 @@ EXPLICIT = (
         Open("media"),
         Tap("media.shuffle"),
         Tap("media.play"),
-        parameters={"device": ("second phone", "tablet")},
+        parameters={"device": tuple(DEVICES)},
         tags=frozenset({"two_modules"}),
     ),
 )

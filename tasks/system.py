@@ -13,7 +13,7 @@ from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasks import system_safety
-from automotive_cosim.tasks.forms import ANYWHERE, PARIS, asked, hinted, locked
+from automotive_cosim.tasks.forms import ANYWHERE, DEVICES, PARIS, asked, hinted, linked, locked
 from automotive_cosim.tasks.hvac import METRIC
 
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
@@ -86,15 +86,15 @@ TASKS = (
         Module.SYSTEM,
         (
             "Link the {device} over Bluetooth.",
-            "Pair with the {device} instead.",
-            "I want my {device} connected, not this one.",
+            "Pair with the {device} that I have here.",
+            "I want my {device} connected.",
             "Bluetooth to {device}, now.",
             "Could you hook up the {device} to the car?",
         ),
-        AppDataIs("bluetooth.device", (param("device", {"second phone": "Second phone", "tablet": "Tablet"}),)),
+        linked("device"),
         *CONNECTIONS,
-        Tap(text=param("device", {"second phone": "Second phone", "tablet": "Tablet"})),
-        parameters={"device": ("second phone", "tablet")},
+        Tap(text=param("device", DEVICES)),
+        parameters={"device": tuple(DEVICES)},
         scenarios=ANYWHERE,
     ),
     locked(

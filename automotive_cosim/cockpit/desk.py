@@ -36,7 +36,10 @@ REMEMBERED: tuple[Signal[float], ...] = (
 """Signals stored in a seat memory."""
 PROFILES = (say("Driver 1"), say("Driver 2"), say("Guest"))
 NETWORKS = ("Home-5G", "CityFree", "Garage", "Coffee-Guest")
-DEVICES = (say("Driver's phone"), say("Second phone"), say("Tablet"))
+PHONES = (say("Driver's phone"), say("Second phone"))
+"""Of these one is paired, for calls and messages."""
+TABLET = say("Tablet")
+"""It is paired beside the phone, for its music."""
 MANUAL: tuple[tuple[str, Icon, str], ...] = (
     (
         say("Windows are fogged"),
@@ -220,7 +223,10 @@ class Desk:
     climate_at: Timer = Timer()
     charge_by: Timer = Timer()
     network: str = ""
-    device: str = DEVICES[0]
+    phone: str = PHONES[0]
+    """The paired phone."""
+    tablet: bool = False
+    """Whether the tablet is paired too."""
     resets: int = 0
     trip_from: tuple[float, float, float] = (0.0, 0.0, 0.0)
     """Driven metres, time and battery when the trip computer was reset."""
@@ -253,7 +259,7 @@ class Desk:
             "seat.memory": [list(values) for values in self.memory],
             "driver.profile": self.profile,
             "wifi.network": self.network,
-            "bluetooth.device": self.device,
+            "bluetooth.devices": [self.phone, *([TABLET] if self.tablet else [])],
             "trip.resets": self.resets,
             "trip.resets_b": self.trip_b.resets,
             "calendar.entries": [

@@ -8,12 +8,13 @@ from typing import Any
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.desk import Appointment
 from automotive_cosim.cockpit.signals import CABIN, HMI, HVAC, MEDIA
-from automotive_cosim.tasking.checks import AllOf, AppDataIs, Check, Entered, SignalIs
+from automotive_cosim.tasking.checks import AllOf, Check, Entered, SignalIs
 from automotive_cosim.tasking.dialogue import Says
 from automotive_cosim.tasking.moves import Hear, Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import AppDataAt, SaysFigure
 from automotive_cosim.tasking.task import Half, Module, Start
+from automotive_cosim.tasks.forms import linked
 from automotive_cosim.tasks.hard.dialogue import speaking
 from automotive_cosim.tasks.hard.forms import (
     BEA,
@@ -341,7 +342,7 @@ DEVICE_FROM_OSKAR = hard(
         with_papers(PARKED, contacts=knowing(OSKAR), threads=(wrote(OSKAR, READY),)),
         AllOf(
             (
-                AppDataIs("bluetooth.device", (param("device", OFFERED),)),
+                linked("device", OFFERED),
                 Entered("messages.sent", {"to": OSKAR, "text": "Yes"}),
             )
         ),

@@ -11,6 +11,7 @@ from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.records import EnteredAll
 from automotive_cosim.tasking.task import Half, Module, Start
+from automotive_cosim.tasks.forms import linked
 from automotive_cosim.tasks.hard.forms import (
     A_RED_LIGHT,
     BEA,
@@ -221,8 +222,8 @@ HOTEL_NETWORK = hard(
         " arrived' to Bea.",
         "Get us on the hotel Wi-Fi, name in the notes, end the roaming, link {device}; Bea hears that I've"
         " arrived.",
-        "No more mobile data please, but the Wi-Fi from my hotel memo, and {device} as the phone in use. A text to"
-        " Bea, I've arrived.",
+        "No more mobile data please, but the Wi-Fi from my hotel memo, and make {device} known to the car. A text"
+        " to Bea, I've arrived.",
     ),
     done(
         with_papers(
@@ -235,7 +236,7 @@ HOTEL_NETWORK = hard(
                 SignalIs(LINK.WIFI, (True,)),
                 AppDataIs("wifi.network", ("{network}",)),
                 SignalIs(LINK.MOBILE_DATA, (False,)),
-                AppDataIs("bluetooth.device", (param("device", DEVICES),)),
+                linked("device", DEVICES),
                 Entered("messages.sent", {"to": BEA, "text": "I've arrived"}),
             )
         ),

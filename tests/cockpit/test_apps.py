@@ -343,6 +343,23 @@ def test_a_list_of_people_says_that_a_tap_opens_them_and_calls_nobody(cockpit: C
         assert cockpit.commands()["calls"] == []
 
 
+def test_one_phone_is_paired_for_calls_and_the_tablet_beside_it(parked: Cockpit) -> None:
+    def paired() -> list[str]:
+        return list(parked.commands()["bluetooth.devices"])
+
+    parked.open_app("settings")
+    press(parked, "settings.page.connections")
+    assert press(parked, "link.device.2") is OK
+    assert paired() == ["Driver's phone", "Tablet"]
+    assert press(parked, "link.device.1") is OK
+    assert paired() == ["Second phone", "Tablet"]
+    parked.open_app("phone")
+    assert shown(parked, "phone.device") == "Second phone"
+    press(parked, "phone.devices")
+    assert press(parked, "link.device.2") is OK
+    assert paired() == ["Second phone"]
+
+
 def test_no_call_without_a_phone(cockpit: Cockpit) -> None:
     cockpit.open_app("settings")
     press(cockpit, "settings.page.connections")

@@ -80,7 +80,7 @@ def _linked(picture: Rect, name: Rect, line: Rect, act: Rect, state: State) -> t
         Label(
             rect=name,
             key="phone.device",
-            text=state.desk.device if on else say("No phone paired"),
+            text=state.desk.phone if on else say("No phone paired"),
             style=Type.STRONG,
             align="centre",
         ),

@@ -309,7 +309,7 @@ def _phone_line(state: State) -> tuple[Icon, str, str]:
     if phone.on_call is not None:
         return Icon.IN_CALL, phone.on_call.who, say("On the phone")
     new = counted("{n} new message", "{n} new messages", count) if count else say("No new messages")
-    return Icon.PHONE, new, say("Do not disturb") if phone.do_not_disturb else state.desk.device
+    return Icon.PHONE, new, say("Do not disturb") if phone.do_not_disturb else state.desk.phone
 
 
 def media_card(rect: Rect, state: State) -> Widget:

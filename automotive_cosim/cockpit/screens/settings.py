@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.desk import DEVICES, NETWORKS
+from automotive_cosim.cockpit.desk import NETWORKS, PHONES, TABLET
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
-from automotive_cosim.cockpit.messages import Drive, Put, Set, SetAll
+from automotive_cosim.cockpit.messages import Drive, Message, Put, Set, SetAll
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.screens.parts import (
     choices,
@@ -265,19 +265,24 @@ def connections(state: State) -> tuple[Widget, ...]:
                         key=f"link.device.{at}",
                         raised=True,
                         text=name,
-                        trail=say("Paired") if name == desk.device else "",
+                        trail=say("Paired") if paired else "",
                         icon=Icon.MOBILE,
-                        selected=name == desk.device,
+                        selected=paired,
                         disabled=bluetooth_off,
                         locked=locked,
-                        on_tap=Put("desk", replace(desk, device=name), say("{name} is paired", name=name)),
+                        on_tap=pair,
                     )
-                    for at, (line, name) in enumerate(zip(devices.rows(3, 8), DEVICES, strict=True))
+                    for at, (line, (name, paired, pair)) in enumerate(
+                        zip(devices.rows(len(PHONES) + 1, 8), _devices(state), strict=True)
+                    )
                 ),
                 Label(
                     rect=about,
                     key="link.about",
-                    text=say("Connect to networks and pair phones while parked."),
+                    text=say(
+                        "Connect and pair while parked. A tablet adds its music;"
+                        " calls and messages stay with the phone."
+                    ),
                     style=Type.CAPTION,
                     tone="muted",
                     lines=2,
@@ -285,6 +290,17 @@ def connections(state: State) -> tuple[Widget, ...]:
             ),
         ),
     )
+
+
+def _devices(state: State) -> tuple[tuple[str, bool, Message], ...]:
+    """Each device, whether it is paired, and what a tap does: a phone takes the other's place, the tablet none."""
+    desk = state.desk
+    phones = tuple(
+        (name, name == desk.phone, Put("desk", replace(desk, phone=name), say("{name} is paired", name=name)))
+        for name in PHONES
+    )
+    said = say("{name} is no longer paired", name=TABLET) if desk.tablet else say("{name} is paired", name=TABLET)
+    return (*phones, (TABLET, desk.tablet, Put("desk", replace(desk, tablet=not desk.tablet), said)))
 
 
 # --- language, time -------------------------------------------------------------------------------------------
