@@ -222,7 +222,10 @@ def _charge(limit: Any, by: Any = BEFORE_THE_FERRY) -> Moves:
 
 
 def _lake(memo: Any) -> Start:
-    agenda = (Appointment(param("ferry"), "Ferry to the lake", "Work"), Appointment("19:00", "Dinner", "Home"))
+    agenda = (
+        Appointment(param("ferry"), "Ferry to the lake", "Bridge Car Park"),
+        Appointment("19:00", "Dinner", "Home"),
+    )
     early = replace(PARKED, start="2026-11-18T05:10:00", signals={ENERGY.LEVEL.path: 30.0})
     return with_papers(early, memos=("Bread, milk, batteries", memo), agenda=agenda)
 

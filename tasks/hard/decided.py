@@ -491,7 +491,8 @@ NOT_THAT_MEETING = hard(
     tags=frozenset({"two_modules"}),
 )
 
-LEGS = {1: (14, 23, 8), 2: (21, 17, 6), 3: (12, 31, 9), 4: (18, 26, 7), 5: (11, 28, 13)}
+LEGS = {1: (15, 16, 8), 2: (21, 17, 6), 3: (12, 18, 9), 4: (18, 21, 7), 5: (11, 19, 13)}
+"""Kilometres of the three legs; no leg is longer than the other two together."""
 TOTAL = {way: sum(legs) for way, legs in LEGS.items()}
 BY_CAR = {way: legs[0] + legs[2] for way, legs in LEGS.items()}
 
@@ -528,7 +529,7 @@ LEGS_BY_CAR = hard(
         "How far did the car go, hut, lake and home? Total its distances in my note and message them to Bea.",
     ),
     done(
-        _legs("Home to hut {a} km, to the lake and back {b} km on foot, hut to home {c} km"),
+        _legs("Home to hut {a} km, to the lake and back {b} km on foot, hut to home by the other road {c} km"),
         SaysFigure(BEA, "driven", param("way", BY_CAR), 0.0),
         _driven(BY_CAR),
         slips=(_driven(TOTAL), _driven(dict.fromkeys(LEGS, 76))),

@@ -174,7 +174,7 @@ WINDOW_COMES_DOWN = hard(
         " window"
         " lock, so that it stays so.",
         "Shut everything, take in fresh air through the purifier, and put the fan on {fan}. Last of"
-        " all lock the windows in the back, and see that they're up.",
+        " all lock the windows in the back.",
     ),
     done(
         replace(

@@ -122,7 +122,9 @@ ZONE_ON_THE_SIGN = pictured(
 SHOWN = {"15:45": 3, "16:15": 5, "16:30": 6, "16:45": 7, "17:15": 9}
 """Time on the clock, and quarters of an hour from the appointment to it."""
 HOUR_ON = {time: f"{int(time[:2]) + 1}{time[2:]}" for time in SHOWN}
-REPAIR = (Appointment("09:00", "Briefing", "Work"), Appointment("15:00", "Watch repair", "Home"))
+MARKET = "Corner Market"
+REPAIR = (Appointment("09:00", "Briefing", "Work"), Appointment("15:00", "Watch repair", MARKET))
+OPEN = {MARKET: "Open until 20:00"}
 
 
 def _moved(quarters: dict[str, int]) -> Moves:
@@ -158,6 +160,7 @@ MALIKS_CLOCK = pictured(
             Photo(Shows.CLOCK, param("time")),
             "When it's this time today. The clock is right!",
             agenda=REPAIR,
+            details=OPEN,
         ),
         _repair({time: time for time in SHOWN}),
         AS_SHOWN,
@@ -169,6 +172,7 @@ MALIKS_CLOCK = pictured(
             Photo(Shows.CLOCK, param("time")),
             "When it's this time today. But mind, the clock is an hour slow!",
             agenda=REPAIR,
+            details=OPEN,
         ),
         _repair(HOUR_ON),
         AN_HOUR_ON,
@@ -204,7 +208,7 @@ MARKED_SEAT = pictured(
     (
         "Wanda has marked a rear seat on a photo. A tick means its heating on High, a cross means off. Do that, the"
         " rest stays, and send her '{words}'.",
-        "Heat the seat behind that Wanda ticked in her picture fully, or turn it off if she crossed it out; then"
+        "Heat the back seat that Wanda ticked in her picture fully, or turn it off if she crossed it out; then"
         " '{words}' to her.",
         "See the drawing from Wanda: crossed, that seat gets no heat any more, ticked, it gets the most. Only that"
         " one. She's to read '{words}'.",
@@ -212,13 +216,13 @@ MARKED_SEAT = pictured(
         " for her.",
     ),
     done(
-        sent(WANDA, Photo(Shows.SEAT, param("seat")), "About this seat behind", start=BOTH_WARM),
+        sent(WANDA, Photo(Shows.SEAT, param("seat")), "About this seat in the back", start=BOTH_WARM),
         _warm(100.0),
         _heated(SAME_SEAT, 1),
         slips=(_heated(OTHER_SEAT, 1), _heated(SAME_SEAT, 2)),
     ),
     done(
-        sent(WANDA, Photo(Shows.SEAT, param("seat"), struck=True), "About this seat behind", start=BOTH_WARM),
+        sent(WANDA, Photo(Shows.SEAT, param("seat"), struck=True), "About this seat in the back", start=BOTH_WARM),
         _warm(0.0),
         _heated(SAME_SEAT, 2),
         slips=(_heated(OTHER_SEAT, 2), _heated(SAME_SEAT, 1)),
