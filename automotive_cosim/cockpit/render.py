@@ -284,8 +284,10 @@ def _slider(canvas: Canvas, slider: Slider, palette: Palette) -> None:
     if slider.icon is not None:
         canvas.icon((rect.x + 14, line.centre[1]), slider.icon, 26, palette.muted)
         left += 40
-    canvas.text(Rect(left, line.y, 200, line.height), slider.description, Type.LABEL, palette.muted)
-    canvas.text(line.right_part(90), slider.text, Type.STRONG, palette.text, "right")
+    wide = max(90, round(text_width(slider.text, Type.STRONG)) + 2)
+    name = Rect(left, line.y, min(200, line.right - wide - left), line.height)
+    canvas.text(name, slider.description, Type.LABEL, palette.muted)
+    canvas.text(line.right_part(wide), slider.text, Type.STRONG, palette.text, "right")
     canvas.box(track, palette.pressed, 4)
     low, high = slider.signal.low, slider.signal.high
     done = round(track.width * (slider.value - low) / (high - low))

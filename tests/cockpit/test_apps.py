@@ -360,6 +360,18 @@ def test_one_phone_is_paired_for_calls_and_the_tablet_beside_it(parked: Cockpit)
     assert paired() == ["Second phone"]
 
 
+def test_balance_and_fader_tell_the_side(cockpit: Cockpit) -> None:
+    cockpit.open_app("settings")
+    press(cockpit, "settings.page.sound")
+    assert (shown(cockpit, "sound.balance"), shown(cockpit, "sound.fader")) == ("0", "0")
+    cockpit.inject(MEDIA.BALANCE.path, -20.0)
+    cockpit.inject(MEDIA.FADER.path, 30.0)
+    assert (shown(cockpit, "sound.balance"), shown(cockpit, "sound.fader")) == ("left 20", "front 30")
+    cockpit.inject(MEDIA.BALANCE.path, 100.0)
+    cockpit.inject(MEDIA.FADER.path, -10.0)
+    assert (shown(cockpit, "sound.balance"), shown(cockpit, "sound.fader")) == ("right 100", "rear 10")
+
+
 def test_no_call_without_a_phone(cockpit: Cockpit) -> None:
     cockpit.open_app("settings")
     press(cockpit, "settings.page.connections")
@@ -557,6 +569,7 @@ def test_all_doors_and_windows_go_together(cockpit: Cockpit) -> None:
     assert not cockpit.signals[CABIN.REAR_LEFT_LOCK]
     press(cockpit, "door.all")
     assert cockpit.signals[CABIN.DRIVER_LOCK]
+    assert shown(cockpit, "window.vent") == "Open all windows 20 %"
     press(cockpit, "window.vent")
     assert cockpit.signals[CABIN.REAR_RIGHT_WINDOW] == 20.0
     press(cockpit, "window.close_all")

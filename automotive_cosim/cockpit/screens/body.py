@@ -39,6 +39,8 @@ MODES = {
     "SNOW": ("snow", say("Snow")),
     "RAIN": ("rain", say("Rain")),
 }
+A_LITTLE = 20
+"""Percent that the windows are opened for some air."""
 MASSAGE_LEVELS = ((0.0, say("Off")), (50.0, say("Low")), (100.0, say("High")))
 COLOURS = {
     "#FFE3B0": ("warm", say("Warm")),
@@ -239,11 +241,14 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
         Button(
             rect=buttons[1],
             key="window.vent",
-            text=say("Open a little"),
+            text=say("Open all windows {percent} %", percent=A_LITTLE),
             icon=Icon.WINDOW,
-            on_tap=SetAll(tuple((window, 20.0) for window in WINDOWS), say("all windows are open a little")),
-            disabled=say("They are already open a little")
-            if all(signals[window] == 20 for window in WINDOWS)
+            on_tap=SetAll(
+                tuple((window, float(A_LITTLE)) for window in WINDOWS),
+                say("all windows are open {percent} %", percent=A_LITTLE),
+            ),
+            disabled=say("They are already open {percent} %", percent=A_LITTLE)
+            if all(signals[window] == A_LITTLE for window in WINDOWS)
             else "",
         ),
         switch(buttons[2], "window.lock", say("Window lock"), Icon.CHILD, CABIN.WINDOW_LOCK, signals),

@@ -153,11 +153,11 @@ def sound(state: State) -> tuple[Widget, ...]:
         ("sound.calls", say("Calls"), Icon.PHONE, VOICE.CALL_VOLUME),
     )
     bands = (
-        ("sound.bass", say("Bass"), MEDIA.BASS, "dB"),
-        ("sound.middle", say("Middle"), MEDIA.MIDDLE, "dB"),
-        ("sound.treble", say("Treble"), MEDIA.TREBLE, "dB"),
-        ("sound.balance", say("Left, right"), MEDIA.BALANCE, ""),
-        ("sound.fader", say("Rear, front"), MEDIA.FADER, ""),
+        ("sound.bass", say("Bass"), MEDIA.BASS, _decibels(signals[MEDIA.BASS])),
+        ("sound.middle", say("Middle"), MEDIA.MIDDLE, _decibels(signals[MEDIA.MIDDLE])),
+        ("sound.treble", say("Treble"), MEDIA.TREBLE, _decibels(signals[MEDIA.TREBLE])),
+        ("sound.balance", say("Left, right"), MEDIA.BALANCE, _left_right(signals[MEDIA.BALANCE])),
+        ("sound.fader", say("Rear, front"), MEDIA.FADER, _rear_front(signals[MEDIA.FADER])),
     )
     flat = tuple((signal, 0.0) for _, _, signal, _ in bands)
     even = all(signals[signal] == 0 for signal, _ in flat)
@@ -179,16 +179,8 @@ def sound(state: State) -> tuple[Widget, ...]:
             children=(
                 title(equaliser, Icon.EQUALIZER, say("Equaliser")),
                 *(
-                    slider(
-                        line,
-                        key,
-                        name,
-                        Icon.EQUALIZER,
-                        signal,
-                        signals,
-                        f"{signals[signal]:+.0f} {unit}".strip() if signals[signal] else "0",
-                    )
-                    for line, (key, name, signal, unit) in zip(tones.rows(5, 6), bands, strict=True)
+                    slider(line, key, name, Icon.EQUALIZER, signal, signals, shown)
+                    for line, (key, name, signal, shown) in zip(tones.rows(5, 6), bands, strict=True)
                 ),
                 Button(
                     rect=neutral,
@@ -201,6 +193,24 @@ def sound(state: State) -> tuple[Widget, ...]:
             ),
         ),
     )
+
+
+def _decibels(gain: float) -> str:
+    return f"{gain:+.0f} dB" if gain else "0"
+
+
+def _left_right(balance: float) -> str:
+    share = f"{abs(balance):.0f}"
+    if not balance:
+        return share
+    return say("right {share}", share=share) if balance > 0 else say("left {share}", share=share)
+
+
+def _rear_front(fader: float) -> str:
+    share = f"{abs(fader):.0f}"
+    if not fader:
+        return share
+    return say("front {share}", share=share) if fader > 0 else say("rear {share}", share=share)
 
 
 # --- connections --------------------------------------------------------------------------------------------
