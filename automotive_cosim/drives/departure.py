@@ -79,6 +79,7 @@ def _ego_plan(plan: DrivePlan, scenario: Scenario, draws: Draws) -> EgoPlan:
         datetime.fromisoformat(plan.start).replace(tzinfo=scenario.start.tzinfo),
         onward=(*others, first),
         moods=plan.moods,
+        at_schools=plan.at_schools,
         halts=plan.halts,
         incidents=plan.incidents,
     )

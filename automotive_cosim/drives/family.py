@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, Staged
-from automotive_cosim.drives.staging import ONCE, STUNTS, TAKES_S, Cue, Spell
+from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STUNTS, TAKES_S, Cue, Spell
 from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.tasking.draws import Draws, Purpose
 
@@ -41,7 +41,8 @@ class Season(StrEnum):
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Family:
     """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order.
-    What cannot be undone (``staging.ONCE``) comes in addition, in half the drives, and is either at equal rates."""
+    What cannot be undone (``staging.ONCE``) comes in addition, in half the drives, and is either at equal rates.
+    School zones at their hours are events and baits in turn, and the first one is either."""
 
     id: str
     """Name by which commands refer to it."""
@@ -56,7 +57,7 @@ class Family:
     weather: Weather
     """The usual weather; the drawn one differs by a degree or two."""
     cast: tuple[str, ...]
-    """Kinds of events that may be staged (``staging.STUNTS``)."""
+    """Kinds of events that may be staged (``staging.STAGED``)."""
     driver: str = "average"
     origin: tuple[float, float] | None = None
     """Longitude and latitude that the network is moved to."""
@@ -66,7 +67,7 @@ class Family:
     def draw(self, seed: int) -> DrivePlan:
         """The drive of a seed."""
         rng = Draws(self.id, seed).rng(Purpose.DRIVE)
-        kinds = [kind for kind in self.cast if kind not in ONCE]
+        kinds = [kind for kind in self.cast if kind in STUNTS and kind not in ONCE]
         drawn = rng.permutation(len(kinds))[: int(rng.integers(FEWEST, MOST))]
         roles = [(kinds[index], is_bait) for index in drawn for is_bait in (False, True)]
         once = [kind for kind in self.cast if kind in ONCE]
@@ -82,21 +83,25 @@ class Family:
         cues = [Cue(one.at_s, one.is_bait, self.driver, weather, rng, company) for one in staged]
         props = [STUNTS[one.kind](cue) for one, cue in zip(staged, cues, strict=True)]
         turned = int(rng.integers(len(self.trips)))
+        start = self.starts[int(rng.integers(len(self.starts)))]
+        arrivals = _arrivals(rng, end_s)
+        at_schools = [AT_SCHOOLS[index] for index in rng.permutation(len(AT_SCHOOLS))]
         return DrivePlan(
             family=self.id,
             seed=seed,
             scenario=self.scenario,
             trips=self.trips[turned:] + self.trips[:turned],
             duration_s=end_s,
-            start=self.starts[int(rng.integers(len(self.starts)))],
+            start=start,
             weather=_timeline(weather, [spell for each in props for spell in each.spells]),
             origin=self.origin,
             driver=self.driver,
             aboard=company,
             moods=tuple(sorted((mood for each in props for mood in each.moods), key=lambda mood: mood.at_s)),
+            at_schools=tuple(at_schools) if SCHOOL_ZONE in self.cast else (),
             halts=tuple(halt for each in props for halt in each.halts),
             changes=tuple(change for each in props for change in each.changes),
-            arrivals=_arrivals(rng, end_s),
+            arrivals=arrivals,
             incidents=tuple(incident for each in props for incident in each.incidents),
             driven_s=max(each.driven_s for each in props),
             staged=staged,

@@ -66,6 +66,8 @@ class DrivePlan:
     """Name of a driver profile."""
     moods: tuple[DriverAt, ...] = ()
     """Changes of the way that the driver drives."""
+    at_schools: tuple[str, ...] = ()
+    """Names of the driver profiles for school zones at their hours, one a zone, over and over again."""
     aboard: tuple[Occupant, ...] = ()
     """Who is in the car besides the driver."""
     signals: Mapping[str, bool | float | str] = field(default_factory=dict)

@@ -293,7 +293,13 @@ STUNTS: Mapping[str, Stunt] = {
     "jam_tail": _ahead("jam"),
     "tractor": _ahead("tractor"),
 }
-"""The stunts by the kind of event that they stage."""
+"""The stunts by the kind of event that they stage at a time."""
+SCHOOL_ZONE = "school_zone"
+"""The kind that is staged by place: where a school zone begins at its hours."""
+AT_SCHOOLS = ("hurried", "brisk")
+"""Driver profiles in school zones: as an event and as its bait."""
+STAGED = STUNTS.keys() | {SCHOOL_ZONE}
+"""Every kind that a cast may hold."""
 
 ONCE = frozenset({"fatigue", "range", "left_behind"})
 """Kinds that a drive stages as an event or as a bait, not both: a battery does not fill up again, and one halt is

@@ -27,6 +27,7 @@ from automotive_cosim.contracts import (
     Hazards,
     PullOver,
     Reroute,
+    RoadHere,
     RoadRequest,
     Severity,
     SlowDown,
@@ -226,6 +227,11 @@ class Driver:
     _departed_s: float = math.nan
     _moods: int = 0
     """How many changes of the plan's have come."""
+    _mood: str = field(init=False)
+    """Name of the profile outside school zones."""
+    _schools: int = 0
+    """How many school zones it has entered at their hours."""
+    _in_school_zone: bool = False
     _halts: int = 0
     """How many halts of the plan's have ended."""
     _halting: bool = False
@@ -233,7 +239,8 @@ class Driver:
     _sets_off_s: float = math.inf
 
     def __post_init__(self) -> None:
-        self._profile = profile(self.plan.driver)
+        self._mood = self.plan.driver
+        self._profile = profile(self._mood)
         self._draws = np.random.default_rng([self.plan.seed, 0])
         self._headway_s = self._profile.headway_s
         self._choose_speed()
@@ -274,6 +281,8 @@ class Driver:
             self._departed_s = now.time_s
         if self._moods < len(self.plan.moods):
             self._change_mood(now.time_s - self._departed_s)
+        if self.plan.at_schools:
+            self._pass_school(now.state.road)
         if self._halts < len(self.plan.halts):
             events = tuple(self._halt(self.plan.halts[self._halts], now))
         if now.time_s >= self._forecast.until_s:
@@ -385,12 +394,30 @@ class Driver:
         return Event(state.time_s, "driver_holds", f"driver goes no faster than {wanted_kmh:.0f} km/h, {after}")
 
     def _change_mood(self, since_s: float) -> None:
-        """Drives in another way once that is due; what an alert had brought about is forgotten."""
+        """Drives in another way once that is due, but in a school zone only after it."""
         mood = self.plan.moods[self._moods]
         if since_s < mood.at_s - 1e-9:
             return
         self._moods += 1
-        self._profile = profile(mood.driver)
+        self._mood = mood.driver
+        if not self._in_school_zone:
+            self._drive_as(mood.driver)
+
+    def _pass_school(self, road: RoadHere) -> None:
+        """Drives in another way from where a school zone begins at its hours to where it ends."""
+        in_zone = road.school_zone and road.limit_by_clock
+        if in_zone is self._in_school_zone:
+            return
+        self._in_school_zone = in_zone
+        if in_zone:
+            self._drive_as(self.plan.at_schools[self._schools % len(self.plan.at_schools)])
+            self._schools += 1
+        else:
+            self._drive_as(self._mood)
+
+    def _drive_as(self, name: str) -> None:
+        """Drives by another profile; what an alert had brought about is forgotten."""
+        self._profile = profile(name)
         self._law_abiding, self._easing_mps2 = False, EASING_MPS2
         self._headway_s = self._profile.headway_s
         self._choose_speed()

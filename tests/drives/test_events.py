@@ -263,6 +263,14 @@ def test_the_obligation_comes_sooner_the_faster_the_car() -> None:
     assert due == [6.0, 5.0, 4.0, 3.0]
 
 
+def test_a_little_above_the_sign_of_a_school_zone_is_a_look_alike() -> None:
+    at_hours = {"limit_by_clock": True, **SCHOOL}
+    events = found([moment(second, kmh=32, **at_hours) for second in range(20)], "school_zone")
+    assert [(event.bait, event.obliged_s) for event in events] == [(True, None)]
+    events = found([moment(second, kmh=29, **at_hours) for second in range(20)], "school_zone")
+    assert [(event.bait, event.obliged_s) for event in events] == [(False, None)]
+
+
 def test_an_advised_speed_above_the_limit_settles_nothing() -> None:
     kind = KINDS["over_limit"]
     assert kind.settles(WatchAct(0.0, AlertKind.SPEED, speed_kmh=50.0), 50.0)

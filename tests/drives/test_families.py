@@ -18,7 +18,7 @@ from automotive_cosim.cockpit.signals import ENERGY, Signals, named
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.family import FEWEST, MOST, Season
 from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, plan_json, read_plan
-from automotive_cosim.drives.staging import ONCE, STUNTS, Cue
+from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGED, STUNTS, Cue
 from automotive_cosim.errors import UserError
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.scenarios import load, shipped
@@ -44,7 +44,7 @@ def test_every_scenario_has_a_drive_in_summer_and_in_winter() -> None:
 
 
 def test_every_stunt_is_in_a_cast_and_every_cast_is_of_stunts() -> None:
-    assert {kind for family in FAMILIES.values() for kind in family.cast} == set(STUNTS)
+    assert {kind for family in FAMILIES.values() for kind in family.cast} == STAGED
     for family in FAMILIES.values():
         assert len(set(family.cast)) == len(family.cast) > FEWEST
 
@@ -94,12 +94,18 @@ def test_what_is_staged_once_is_an_event_as_often_as_a_bait(kind: str) -> None:
     assert abs(baits - len(drawn) / 2) < 2 * len(drawn) ** 0.5
 
 
+def test_school_zones_are_an_event_and_a_bait_in_turn_and_either_comes_first() -> None:
+    for family in FAMILIES.values():
+        drawn = {plan.at_schools for plan in plans(family)}
+        assert drawn == ({AT_SCHOOLS, AT_SCHOOLS[::-1]} if SCHOOL_ZONE in family.cast else {()})
+
+
 @pytest.mark.parametrize("family", EVERY)
 def test_a_plan_asks_only_for_what_there_is(family: Any) -> None:
     scenario = load(family.scenario)
     for plan in plans(family):
         assert [scenario.trip(name).name for name in plan.trips] == list(plan.trips)
-        assert {plan.driver, *(mood.driver for mood in plan.moods)} <= PROFILES.keys()
+        assert {plan.driver, *(mood.driver for mood in plan.moods), *plan.at_schools} <= PROFILES.keys()
         assert [mood.at_s for mood in plan.moods] == sorted(mood.at_s for mood in plan.moods)
         assert plan.weather[0].at_s == 0.0
         assert all(here.at_s < there.at_s for here, there in pairwise(plan.weather))

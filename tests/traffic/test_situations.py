@@ -14,7 +14,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, EgoEnd, Incide
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.incidents import AnyIncident
-from automotive_cosim.traffic.base import Advance, EgoPlan
+from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess, InProcessTraffic
@@ -178,6 +178,37 @@ def test_a_school_zone_keeps_school_hours(staged: Staged, average: EgoPlan) -> N
             limits[name] = {round((state.road.limit.mps or 0) * KMH_PER_MPS) for state in inside}
     assert limits == {"school": {20}, "later": {50}, "saturday": {50}}
     assert tuesday.weekday() < 5
+
+
+@pytest.mark.sumo
+def test_a_driver_hurries_through_a_school_zone_at_its_hours_only(staged: Staged, average: EgoPlan) -> None:
+    """One profile a zone, in turn; a mood that would change meanwhile comes after the zone."""
+    zones = [
+        f'kind = "school_zone"\nedges = ["{edge}"]\nlimit_kmh = 20\nopens = 08:00:00\ncloses = 09:00:00'
+        for edge in ("c0c1", "c2c3")
+    ]
+    plan = replace(average, at_schools=("hurried", "brisk"), moods=(DriverAt(1.0, "calm"),))
+    quiet = staged(*zones, empty=True)
+    over_kmh: dict[str, dict[str, float]] = {}
+    with closing(Forked(quiet, seed=1)) as simulation:
+        for name, hour in {"school": 8, "later": 10}.items():
+            with closing(
+                simulation.depart(replace(plan, start=quiet.start.replace(hour=hour, minute=30)))
+            ) as traffic:
+                states = traffic.advance(300.0).states
+            assert states[-1].end is EgoEnd.ARRIVED
+            over_kmh[name] = {
+                edge: max(
+                    (state.speed_mps - (state.road.limit.mps or 0.0)) * KMH_PER_MPS
+                    for state in states
+                    if state.road.edge_id == edge
+                )
+                for edge in ("c0c1", "c1c2", "c2c3")
+            }
+    assert over_kmh["school"]["c0c1"] > 10
+    assert over_kmh["school"]["c1c2"] < 1
+    assert 0 < over_kmh["school"]["c2c3"] < 3
+    assert max(over_kmh["later"].values()) < 1
 
 
 @pytest.mark.sumo

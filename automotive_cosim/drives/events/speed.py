@@ -128,7 +128,7 @@ class SchoolHours(SpeedKind):
 
     name = "school_zone"
     about = "the car is in a school zone at its hours, faster than its sign"
-    bait = "a school zone outside its hours"
+    bait = "a school zone outside its hours, or a little above its sign"
     source = "Regulation (EU) 2021/1958, annex I, the tone after 3 s; deadline: 8 s, 100 m at 50 km/h"
     weight = 2.0
     grace_s = 8.0
@@ -144,6 +144,11 @@ class SchoolHours(SpeedKind):
         if not is_school_time(now) or limit_kmh is None:
             if road.limit_hours:
                 yield Sighting("a school zone outside its hours", road.name, bait=True, value=limit_kmh)
+            return
+        if 1.0 < kmh - limit_kmh <= margin_kmh(limit_kmh):
+            yield Sighting(
+                f"{kmh:.0f} km/h in a school zone of {limit_kmh:.0f}", road.name, bait=True, value=limit_kmh
+            )
             return
         over_kmh = kmh - limit_kmh - margin_kmh(limit_kmh)
         yield Sighting(

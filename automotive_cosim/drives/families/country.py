@@ -96,7 +96,7 @@ COUNTRY = (
         trips=("school_run", "richmond", "putty_road"),
         starts=("2026-11-18T08:20:00", "2026-11-22T08:20:00"),
         weather=Weather(20.0, 66.0, 0.0, 1, 20.0, 25000.0, 10.0),
-        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers", "tractor"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, "wipers", "tractor", "school_zone"),
     ),
     Family(
         id="sydney_july",
@@ -106,6 +106,6 @@ COUNTRY = (
         trips=("school_run", "richmond", "putty_road"),
         starts=("2026-07-22T14:20:00", "2026-07-22T18:10:00"),
         weather=Weather(12.0, 75.0, 0.0, 2, 50.0, 18000.0, 8.0),
-        cast=(*DRIVER, *PARKS, *CAR, *ROAD, *WET, "weather_speed"),
+        cast=(*DRIVER, *PARKS, *CAR, *ROAD, *WET, "weather_speed", "school_zone"),
     ),
 )

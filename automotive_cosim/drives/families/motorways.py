@@ -15,7 +15,7 @@ MOTORWAYS = (
         trips=("south", "north"),
         starts=("2026-01-14T17:40:00", "2026-01-18T18:30:00"),
         weather=Weather(1.5, 90.0, 0.0, 3, 95.0, 9000.0, 9.0),
-        cast=(*DRIVER, *CAR, "leader_brakes", "blue_light", "breakdown", *DARK, *COLD, "wipers"),
+        cast=(*DRIVER, *CAR, "leader_brakes", "blue_light", "breakdown", *DARK, *COLD, "wipers", "range"),
     ),
     Family(
         id="autobahn_july",
@@ -25,7 +25,7 @@ MOTORWAYS = (
         trips=("south", "north"),
         starts=("2026-07-15T09:30:00", "2026-07-19T15:00:00"),
         weather=Weather(23.0, 58.0, 0.0, 1, 30.0, 24000.0, 12.0),
-        cast=(*DRIVER, *CAR, "leader_brakes", *ROAD, "wipers"),
+        cast=(*DRIVER, *CAR, "leader_brakes", *ROAD, "wipers", "range"),
     ),
     Family(
         id="peripherique_november",
