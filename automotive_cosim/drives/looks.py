@@ -258,9 +258,8 @@ def _car(known: Gathered) -> Iterator[Concern]:
     hours = re.match(r"(\d+\.\d+) h", known.words("driving time"))
     if hours is not None:
         yield Concern("fatigue", AlertKind.FATIGUE, float(hours[1]) >= 2, 5.0)
-    left = re.search(r"(\d+) km, (\d+\.\d) km to go", known.words("range"))
-    if left is not None:
-        yield Concern("range", AlertKind.VEHICLE, known.vehicle.range_km < float(left[2]) + 2, 5.0)
+    if (left_km := known.left_km) is not None:
+        yield Concern("range", AlertKind.VEHICLE, known.vehicle.range_km < left_km + 2, 5.0)
 
 
 # --- borders ---------------------------------------------------------------------------------------------------

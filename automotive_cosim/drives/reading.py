@@ -120,6 +120,13 @@ class Gathered:
         found = _AWAY.search(words)
         return None if found is None else float(found[1]) - (self.driven_m - at_m)
 
+    @property
+    def left_km(self) -> float | None:
+        """Distance to the destination: what the last change of the range said, less what has been driven since."""
+        at_m, words = self.changes.get("range", (0.0, ""))
+        found = re.search(r"(\d+\.\d) km to go", words)
+        return None if found is None else float(found[1]) - (self.driven_m - at_m) / 1000
+
 
 class Reader:
     """Reads the observations of one drive, and remembers what they said."""

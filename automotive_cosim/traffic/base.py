@@ -72,8 +72,8 @@ class EgoPlan:
     moods: tuple[DriverAt, ...] = ()
     """Changes of the way it is driven, in the order of their times. Acceleration and gap when standing stay."""
     at_schools: tuple[str, ...] = ()
-    """Names of the driver profiles by which it is driven through school zones at their hours, one for each zone that
-    it enters, over and over again. Empty means as elsewhere."""
+    """Names of the driver profiles in school zones at their hours: one for each zone that it enters, over and over
+    again. Empty means that it is driven as elsewhere."""
     halts: tuple[HaltAt, ...] = ()
     """Where it is parked for a while, in the order of the times."""
     incidents: tuple[AnyIncident, ...] = ()

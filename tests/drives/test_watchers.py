@@ -88,6 +88,18 @@ def test_a_distance_shrinks_by_what_was_driven_whatever_the_speed_is_now() -> No
     assert later.away_m("jam") == standing.away_m("jam") == pytest.approx(290.0)
 
 
+def test_the_distance_to_go_shrinks_while_a_low_battery_is_watched() -> None:
+    """The words that the range is low come once, and the car drives on."""
+    reader = Reader()
+    reader.read(seen(moment(0.0, kmh=72.0), ["range: 10 km, 6.9 km to go"], speed_kmh=72.0))
+    known = reader.read(seen(moment(50.0, kmh=72.0), speed_kmh=72.0))
+    assert known is not None
+    assert known.left_km == pytest.approx(5.9)
+    known = reader.read(seen(moment(51.0, kmh=72.0), ["range: over"], speed_kmh=72.0))
+    assert known is not None
+    assert known.left_km is None
+
+
 def test_it_waits_as_long_as_the_rule() -> None:
     drive = [moment(float(second), kmh=90.0) for second in range(8)]
     alerts = [at for at, act in enumerate(watched(drive, speed_kmh=90.0)) if act.kind is AlertKind.SPEED]
