@@ -39,7 +39,7 @@ class Agent(Protocol):
         """The next action.
 
         Raises:
-            ActionError: its model's answer could not be read; the step counts all the same.
+            ActionError: its model's answer could not be read; the step still counts.
             OutOfBudgetError: its budget is spent; the episode ends and is judged as it is.
             ModelError: its model could not be reached; the episode says nothing about it.
         """

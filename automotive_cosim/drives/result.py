@@ -17,15 +17,15 @@ class DriveResult:
     """The figures of a judged drive."""
 
     agent_error: str | None
-    """How the agent's side failed: the rest of the drive then went on without it."""
+    """How the agent's side failed; the rest of the drive then ran without it."""
     score: Score
     value: float
-    """The headline: 0 is doing nothing, 100 the rule-perfect watcher."""
+    """The headline figure: 0 is doing nothing, 100 is the rule-perfect watcher."""
     harm: Harm
     baseline_harm: Harm
-    """The same of the drive with nobody at the cockpit."""
+    """The same for the do-nothing run."""
     distraction_s: float
-    """Seconds for which what the driver was told took the eyes off the road."""
+    """Seconds for which messages took the driver's eyes off the road."""
     events: tuple[JudgedEvent, ...]
     acts: tuple[JudgedAct, ...]
     steps: int

@@ -19,7 +19,7 @@ class Actor(Protocol):
         """The next action.
 
         Raises:
-            ActionError: its answer could not be read; the step counts all the same.
+            ActionError: its answer could not be read; the step still counts.
             OutOfBudgetError: its budget is spent; the session ends as it is.
             AgentError: it can act no more; the session ends, and is not a success.
         """

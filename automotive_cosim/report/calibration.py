@@ -24,10 +24,10 @@ if TYPE_CHECKING:
 UNFITTED, CALIBRATED, HELD_OUT = PALETTE[7], PALETTE[0], PALETTE[1]
 
 MANY_HOURS = 3
-"""With more, a table of every site and hour is too long to read in a terminal."""
+"""With more hours, a table of every site and hour is too long to read in a terminal."""
 
 FEW_SITES = 20
-"""With fewer, many demands meet the counts, and the true one cannot be told."""
+"""With fewer sites, many demands match the counts, and the true one cannot be identified."""
 
 
 def write_page(folder: Path) -> Path:
@@ -66,7 +66,7 @@ def write_page(folder: Path) -> Path:
 
 
 def require_plots() -> None:
-    """Checks for matplotlib before anything long begins.
+    """Checks that matplotlib is installed before any long work starts.
 
     Raises:
         SetupError: it is not installed.
@@ -75,7 +75,7 @@ def require_plots() -> None:
 
 
 def findings(found: Calibration) -> Iterator[str]:
-    """What came out, in sentences, the bad news included."""
+    """The results in sentences, including the bad ones."""
     sites = {row.site for row in found.rows if not row.held_out}
     yield f"calibrated: {found.met(held_out=False)}"
     yield f"calibrated, before the fit: {found.met(held_out=False, unfitted=True)}"
@@ -83,12 +83,12 @@ def findings(found: Calibration) -> Iterator[str]:
         yield f"held out: {found.met(held_out=True)}"
         yield f"held out, before the fit: {found.met(held_out=True, unfitted=True)}"
     else:
-        yield "held out: none, so nothing is known of roads that nobody counted"
+        yield "held out: none, so nothing is known about uncounted roads"
     carried = found.carried
     yield (
         f"{carried.vehicles} vehicles on {carried.routes} routes ({found.given.vehicles} on {found.given.routes}"
-        f" before); {carried.teleports} teleports, {carried.backlog} waiting to enter at the end,"
-        f" {carried.halted_share:.0%} standing in the last half hour"
+        f" before); {carried.teleports} teleports, {carried.backlog} vehicles waiting to enter at the end,"
+        f" {carried.halted_share:.0%} halted in the last half hour"
     )
     yield f"round {found.kept + 1} of {len(found.tries)} kept, seed {found.seed}"
     yield f"calibrated, with seed {found.seed + 1}: {found.again}"
@@ -96,7 +96,7 @@ def findings(found: Calibration) -> Iterator[str]:
         near = sum(row.is_met for row in found.times)
         yield f"travel times: {near} of {len(found.times)} within 15 % or a minute"
     if len(sites) < FEW_SITES:
-        yield f"{len(sites)} sites leave the demand open: many others carry these counts as well"
+        yield f"{len(sites)} sites do not determine the demand: many other demands match these counts as well"
     for site, why in found.unmapped.items():
         yield f"left out: {site}: {why}"
     for doubt in found.doubts:
@@ -122,8 +122,8 @@ def table(found: Calibration) -> Table:
     )
     columns = ("site", "edge", "", "hour", "counted", "unfitted", "fitted", "simulated", "GEH unfitted", "GEH")
     note = (
-        "Vehicles per hour that leave the counted edge. Unfitted: the scenario's own demand, in the simulation."
-        " Fitted: on paper. GEH: of the simulation."
+        "Vehicles per hour that leave the counted edge. Unfitted: simulated with the scenario's own demand."
+        " Fitted: computed by the fit, not simulated. GEH: of the simulated flows."
     )
     return Table("sites", "Site by site", columns, rows, note, heads=4)
 
@@ -193,8 +193,8 @@ def times(found: Calibration) -> Table:
         )
         for row in found.times
     )
-    columns = ("way", "hour", "measured, s", "unfitted, s", "simulated, s", "met")
-    note = "Met within 15 % or a minute. No fit uses them."
+    columns = ("route", "hour", "measured, s", "unfitted, s", "simulated, s", "met")
+    note = "Met: within 15 % or a minute. The fit does not use travel times."
     return Table("times", "Travel times", columns, rows, note, heads=2)
 
 

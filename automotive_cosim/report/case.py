@@ -1,4 +1,4 @@
-"""The case that shows what place is worth: one instance, once with geo-context and once without."""
+"""One instance that shows the effect of place: an agent's episode with geo-context and one without."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Side:
 def contrast(results: Results) -> tuple[Side, Side] | None:
     """An instance that the same agent solved with geo-context and not without; None if there is none.
 
-    Pairs that place decides come first, then other safety tasks, then the order of the ids.
+    Pairs that depend on place come first, then other safety tasks, each in the order of their ids.
     """
     rows = [row for row in results.rows if row.success is not None and _has_trace(results, row)]
     solved = {_key(row): row for row in rows if row.geo == "full" and row.success}

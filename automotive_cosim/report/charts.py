@@ -32,7 +32,7 @@ DASHES: dict[str, Any] = {
 """Dashes of the geo controls."""
 MARKERS = "osD^vP*X"
 WIDE_IN, NARROW_IN = 9.6, 4.0
-"""A page is at most 1040 pixels wide, a telephone about 390; an inch is 96 pixels."""
+"""A page is at most 1040 pixels wide, a phone about 390; an inch is 96 pixels."""
 
 
 def charts(results: Results) -> dict[str, tuple[str, str, str]]:

@@ -25,7 +25,7 @@ COLOURS = {
     EventOutcome.AVOIDED: GREY,
     EventOutcome.TAKEN: RED,
 }
-"""Colour of a bar by what became of the event."""
+"""Colour of a bar by the outcome of the event."""
 MARKS = {
     "right": ("o", GREEN),
     "late": ("o", ORANGE),
@@ -33,7 +33,7 @@ MARKS = {
     "repeat": ("s", ORANGE),
     "false": ("X", RED),
 }
-"""Mark of an act by what it was; bait and wrong acts are false ones."""
+"""Marker of an act by how it was judged; acts on bait and wrong acts count as false."""
 LEAST_S = 6.0
 """Shortest bar that can be seen."""
 ROW_IN, SPEED_IN = 0.24, 1.7
@@ -84,7 +84,7 @@ def _drawing(row: WatchRow, timeline: Json) -> Drawing:
 
 
 def _kinds(events: Sequence[JudgedEvent]) -> list[str]:
-    """Kinds with an event in which something had to be done, or a look-alike that was taken, in order of time."""
+    """Kinds with an event that required an act, or with a look-alike that was acted on, in order of time."""
     shown = [event for event in events if event.outcome.counts or event.outcome is EventOutcome.TAKEN]
     return list(dict.fromkeys(event.kind for event in shown))
 

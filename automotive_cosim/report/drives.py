@@ -29,9 +29,9 @@ from automotive_cosim.run.watches import TIMELINES
 DRAWS = 2000
 """Bootstrap samples of whole drives, at which the second digit of a bound is stable."""
 LEAST_DRIVES = 5
-"""Fewer drives give no interval: drives are the clusters, and so few say little about others."""
+"""Fewer drives give no interval: drives are the clusters, and so few say little about other drives."""
 SHOWN = 8
-"""Timelines on the page; all of them are files."""
+"""Maximum number of timelines on the page; all of them are written as files."""
 
 Figure = Callable[[Sequence[WatchRow]], float | None]
 """A figure of several drives together; None if there is nothing to divide by."""
@@ -39,7 +39,7 @@ Figure = Callable[[Sequence[WatchRow]], float | None]
 
 @dataclass(frozen=True, slots=True)
 class WatchedBy:
-    """Who watched, and under which conditions: one line of the tables."""
+    """An agent and its conditions: one row of the tables."""
 
     agent: str
     model: str
@@ -57,12 +57,12 @@ class WatchedBy:
         parts += [f"geo {self.geo}"] if self.geo != "full" else []
         parts += seen_and_told(self.see, self.feedback, self.screen)
         parts += [f"{self.clock} clock"] if self.clock != "fixed" else []
-        parts += [f"{self.latency_s:g} s later"] if self.latency_s else []
+        parts += [f"latency {self.latency_s:g} s"] if self.latency_s else []
         return ", ".join(parts)
 
 
 def watcher_of(row: WatchRow) -> WatchedBy:
-    """Who watched a drive."""
+    """The agent and the conditions of a drive."""
     return WatchedBy(
         row.agent, row.model, str(row.geo), str(row.clock), row.latency_s, row.see, row.feedback, row.screen
     )
@@ -112,7 +112,7 @@ def _share(of: Callable[[Score], float | None]) -> Figure:
 
 
 def _saved(of: Callable[[Any], float]) -> Figure:
-    """Share of the do-nothing drives' harm that did not come about."""
+    """The share of the do-nothing runs' harm that was avoided."""
 
     def figure(rows: Sequence[WatchRow]) -> float | None:
         pairs = [(row.harm, row.baseline_harm) for row in rows if row.harm and row.baseline_harm]
@@ -151,7 +151,7 @@ WITH_INTERVAL = 5
 
 
 def interval(rows: Sequence[WatchRow], figure: Figure) -> Interval | None:
-    """Bounds from resampling whole drives, the repeats of one together; None with fewer than ``LEAST_DRIVES``."""
+    """Bounds from resampling whole drives, each with its repeats; None with fewer than ``LEAST_DRIVES``."""
     clusters: dict[tuple[str, int], list[WatchRow]] = {}
     for row in rows:
         clusters.setdefault((row.family, row.seed), []).append(row)
@@ -210,9 +210,9 @@ def _watchers(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
         "Watchers",
         ("Watcher", "Drives", "Hours", *(name for name, _, _ in FIGURES)),
         lines,
-        "Score: 0 is doing nothing, 100 the rule-perfect watcher; a nuisance costs as much as "
-        "a miss. In brackets 95 % intervals from resampling whole drives. Saved: compared with the same "
-        "drives with nobody at the cockpit.",
+        "Score: 0 is doing nothing, 100 is the rule-perfect watcher; a nuisance costs as much as "
+        "a miss. In brackets: 95 % intervals from resampling whole drives. Saved: compared with the "
+        "do-nothing run of the same drive.",
     )
 
 
@@ -232,9 +232,9 @@ def _kinds(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
     return Table(
         "kinds",
         "Kinds of events",
-        ("Kind", "What is due", *(each.label for each in groups)),
+        ("Kind", "Required act", *(each.label for each in groups)),
         tuple(lines),
-        "Events met, of those in which something had to be done; then look-alikes left alone, of all.",
+        "Events met, out of those that required an act; then look-alikes left alone, out of all.",
         heads=2,
     )
 

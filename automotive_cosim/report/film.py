@@ -72,10 +72,10 @@ class Film(Watcher):
         if self._map is None:
             if not self._before or moment.time_s - self._before[-1].time_s >= BEFORE_EVERY_S:
                 title = "The drive up to the hand-over"
-                words = "nobody acts yet; at the hand-over the car and its clock are as they were at departure"
+                words = "no agent acts yet; the hand-over resets the car and its clock to their state at departure"
                 self._before.append(self._frame(moment.time_s, cockpit.screenshot(), title, words, BEFORE_MS))
         elif not self._after or moment.time_s - self._after[-1].time_s >= AFTER_EVERY_S:
-            title, words = "After the end", "how the drive continues"
+            title, words = "After the end", "the drive continues"
             self._after.append(self._frame(moment.time_s, cockpit.screenshot(), title, words, AFTER_MS))
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
@@ -166,7 +166,7 @@ def _why(result: EpisodeResult) -> str:
 
 def _road_sign(canvas: Canvas, here: Sample) -> None:
     """The road's name and its limit, on the map."""
-    name = here.road or "a road without a name"
+    name = here.road or "an unnamed road"
     canvas.box(SIGN, NIGHT.surface, 12)
     canvas.text(Rect(SIGN.x + 14, SIGN.y, SIGN.width - 82, SIGN.height), name, Type.STRONG, NIGHT.text)
     if here.limit_kmh is not None:
@@ -182,7 +182,7 @@ def _limit_sign(canvas: Canvas, rect: Rect, limit_kmh: float, unit: str) -> None
 
 
 def _info(canvas: Canvas, frame: FilmFrame, here: Sample, at_s: float) -> None:
-    """Clock, speed, and what is being done and why."""
+    """Clock, speed, the current action and its reason."""
     canvas.box(INFO, NIGHT.surface, 14)
     inner = INFO.inset(18, 12)
     over = is_over(here.speed_kmh, here.limit_kmh)

@@ -139,7 +139,7 @@ class RoadPainter:
     def _around(
         self, here: Sample, second: Second, colours: Colours, scale: float, size: tuple[int, int]
     ) -> Image.Image:
-        """The streets around with a dot for each vehicle, the same way up."""
+        """The surrounding streets with a dot for each vehicle, also heading up."""
         picture = Image.new("RGB", size, colours.land)
         camera = Camera(here.x_m, here.y_m, here.heading_deg, WIDE_M / WIDE_PX, 0.5)
         view = View(camera, size[0] / WIDE_M, size[0] / 2, size[1] / 2)
@@ -219,7 +219,7 @@ class _Pen:
         self.brush.line((x, y - 0.4 * size, x, y + 0.2 * size), NIGHT.background, max(1, round(2.5 * self.unit)))
 
     def dot(self, vehicle: SeenVehicle) -> None:
-        """A vehicle from far above."""
+        """A vehicle as a dot."""
         is_ego = vehicle.vehicle_id == EGO
         x, y = self.view.pixel(vehicle.x_m, vehicle.y_m)
         r = (4.0 if is_ego else 2.4) * self.unit

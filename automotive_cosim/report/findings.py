@@ -57,10 +57,10 @@ def failures(results: Results, found: Mapping[str, FailureClass]) -> Table:
             rows.append((each.label, Cell(str(len(lost)), tuple(lost)), *cells))
     columns = ("Contestant", "Not solved", *(name.replace("_", " ").capitalize() for name in FailureClass))
     note = (
-        "Read from the trace by fixed rules, of which the first that fits decides. They are documented in "
+        "Read from the trace by fixed rules; the first rule that matches decides. The rules are documented in "
         "automotive_cosim.report.failures and tested on injected faults."
     )
-    return Table("failure_classes", "Why it was not solved", columns, tuple(rows), note)
+    return Table("failure_classes", "Why episodes were not solved", columns, tuple(rows), note)
 
 
 def harm(results: Results) -> Table:
@@ -73,10 +73,10 @@ def harm(results: Results) -> Table:
                 rows.append((each.label, half, *(_difference(mine, digits, of) for _, digits, of in FIGURES)))
     columns = ("Contestant", "Half", *(title for title, _, _ in FIGURES))
     note = (
-        "Mean of the agent's drive minus its baseline run, in which nobody touches the cockpit, taken "
+        "Mean difference between the agent's drive and its baseline run, in which nobody touches the cockpit, "
         "from the hand-over to 12 s after the end, with 95 % bootstrap intervals over tasks and the "
-        "number of episodes. Below 0: fewer metres above the limit, time saved, energy saved; for the time to "
-        "collision, more is better. The car is electric: energy from its battery stands for emissions."
+        "number of episodes. Below 0: fewer metres above the limit, less delay, less energy; for the time to "
+        "collision, higher is better. The car is electric: energy from its battery stands in for emissions."
     )
     return Table("harm", "Harm caused or averted", columns, tuple(rows), note, heads=2)
 
@@ -97,7 +97,7 @@ def _difference(rows: Iterable[EpisodeRow], digits: int, of: Callable[[DriveFigu
 
 
 def place_effect(results: Results) -> Table:
-    """What place is worth: success on pairs that place decides, with and without it; the others are the placebo."""
+    """The effect of place: success on pairs that depend on it, with and without it; the others are the placebo."""
     rows: list[TableRow] = []
     ranked = [each for each in results.contestants if each.agent not in NOT_RANKED]
     for full in ranked:
@@ -106,13 +106,13 @@ def place_effect(results: Results) -> Table:
                 told = [_effect(results, full, other, decided) for decided in (True, False)]
                 if any(cell.episodes for cell in told):
                     rows.append((f"{full.method}, {full.base_model}", other.geo, *told))
-    columns = ("Contestant", "Without: geo", "Pairs that place decides", "Placebo: the other pairs")
+    columns = ("Contestant", "Compared with geo", "Pairs that depend on place", "Placebo: the other pairs")
     note = (
-        f"Pair success with full geo-context minus that under the other control, on the same pairs, with 95 % "
-        f"intervals over tasks, and McNemar's exact p. Place decides the pairs tagged “{PLACE}”; where "
-        "the screens decide, place should make no difference."
+        f"Pair success with full geo-context minus that under the other geo control, on the same pairs, with 95 % "
+        f"intervals over tasks, and McNemar's exact p. Pairs tagged “{PLACE}” depend on place; in the others "
+        "the screens decide, so place should make no difference."
     )
-    return Table("place_effect", "What place is worth", columns, tuple(rows), note, heads=2)
+    return Table("place_effect", "Effect of place", columns, tuple(rows), note, heads=2)
 
 
 def think_time(results: Results) -> Table:
@@ -125,23 +125,27 @@ def think_time(results: Results) -> Table:
         if len(latencies) > 1
     ]
     columns = ("Contestant", *(f"{latency_s:g} s" for latency_s in latencies))
-    note = f"Every answer took this long on the road before its action. All halves. {RATES}"
+    note = f"Simulated seconds added to every answer before its action. All halves. {RATES}"
     return Table("think_time", "Success over think time", columns, tuple(rows), note)
 
 
 def sight(results: Results) -> Table:
-    """Success by how the screen is seen; no rows if all saw it alike."""
+    """Success by how agents see the screen; no rows if all see it in the same way."""
     note = "The list of elements, the picture, or both; the picture alone comes without ids and descriptions."
     if beyond := results.beyond_the_list:
-        note += f" Left out: {counted(len(beyond), 'task')} in which something needed is in the picture only."
+        note += f" Left out: {counted(len(beyond), 'task')} in which something needed is only in the picture."
     return _side_by_side(
-        results, ("sight", "Success by how the screen is seen"), See, lambda each, see: replace(each, see=see), note
+        results,
+        ("sight", "Success by how the agent sees the screen"),
+        See,
+        lambda each, see: replace(each, see=see),
+        note,
     )
 
 
 def feedback(results: Results) -> Table:
-    """Success by what an agent is told of its last action; no rows if all were told alike."""
-    note = "Quiet feedback names the control and says whether it took; verbose also says what became of the car."
+    """Success by what an agent is told of its last action; no rows if all were told the same."""
+    note = "Quiet feedback names the control and says if it worked; verbose also says what changed in the car."
     return _side_by_side(
         results,
         ("feedback", "Success by feedback"),
@@ -153,7 +157,7 @@ def feedback(results: Results) -> Table:
 
 def screen(results: Results) -> Table:
     """Success by the size of the screen; no rows if all had the same."""
-    note = "1920x720 shows map and music beside each app, 1080x1920 above it."
+    note = "1920x720 shows the map and music beside each app; 1080x1920 shows them above it."
     return _side_by_side(
         results,
         ("screen", "Success by the size of the screen"),
@@ -182,7 +186,7 @@ def _side_by_side(
     under: Callable[[Contestant, str], Contestant],
     note: str,
 ) -> Table:
-    """A column for each value of a condition, and a row for what contestants are otherwise.
+    """A column for each value of a condition, and a row for each contestant.
 
     Args:
         results: the episodes.
@@ -252,7 +256,9 @@ def prompts(results: Results) -> Table:
             ids = tuple(row.id for row in asked)
             rows.append((each.label, each.geo, str(len(lengths)), *(Cell(text, ids) for text in shown)))
     columns = ("Contestant", "Geo", "Prompts", "5 %", "25 %", "Median", "75 %", "95 %")
-    note = "Tokens of one prompt, percentiles over all calls. For rules, estimates at four characters each."
+    note = (
+        "Tokens per prompt, as percentiles over all calls. For rules, tokens are estimated at four characters each."
+    )
     return Table("prompts", "Length of prompts", columns, tuple(rows), note, heads=3)
 
 

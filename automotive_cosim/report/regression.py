@@ -105,7 +105,7 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
     if minor(old.version) != minor(new.version) and not mixed:
         raise UserError(
             f"{before} was run with automotive-cosim {old.version} and {after} with {new.version}, whose tasks or "
-            "verdicts differ; rerun one of them, or compare them all the same with --mixed-versions"
+            "verdicts differ; rerun one of them, or compare them anyway with --mixed-versions"
         )
     problems = tuple(f"{each.folder}: {each.coverage}" for each in (old, new) if each.coverage.problem)
     found: list[SuccessChange] = []
@@ -120,8 +120,8 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
         labels = ("; ".join(each.label for each in results.contestants) or "nobody" for results in (old, new))
         named = " and ".join(f"{folder} ({label})" for folder, label in zip((before, after), labels, strict=True))
         raise UserError(
-            f"{named} share no agent, model and geo control; compare the same agent before and after a change. Two "
-            "agents, or people and an agent, are set side by side by Compare in `automotive-cosim serve`"
+            f"{named} have no contestant in common; compare the same agent, model and geo control before and after "
+            "a change. To compare two agents, or people and an agent, use Compare in `automotive-cosim serve`"
         )
     return tuple(found)
 
@@ -191,9 +191,9 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
             "Not judged now",
         ),
         tuple(rows),
-        "On the instances that were judged before, with 95 % intervals over tasks. Worse: a fall of "
-        f"more than {allowed:.1%}, or something that is no longer judged. Incomplete: no fall, but "
-        "something that was planned has not been run, or it is not known. Judged: of what was planned.",
+        "On the instances that were judged before, with 95 % intervals over tasks. Worse: success fell by "
+        f"more than {allowed:.1%}, or something is no longer judged. Incomplete: success did not fall, but "
+        "something planned was not run, or it is not known what was planned. Judged: out of what was planned.",
         heads=3,
     )
     mixed = mixed_versions(found)
@@ -214,8 +214,8 @@ def mixed_versions(found: Sequence[SuccessChange]) -> str:
     if minor(old) == minor(new):
         return ""
     return (
-        f"Before is automotive-cosim {old}, after is {new}: their tasks or verdicts differ, so a difference need "
-        "not be the agent's."
+        f"Before is automotive-cosim {old}, after is {new}: their tasks or verdicts differ, so a difference may "
+        "not be due to the agent."
     )
 
 

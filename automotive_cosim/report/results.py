@@ -113,7 +113,7 @@ class Results:
 
     @property
     def beyond_the_list(self) -> tuple[str, ...]:
-        """Tasks that those who see the screen as a list alone are not given, because they need the picture."""
+        """Tasks not given to contestants that see only the list of elements, because they need the picture."""
         if See.TREE not in self.manifest["plan"].get("see", ()):
             return ()
         given = (row for row in (*self.rows, *self.coverage.not_run) if NEEDS_PICTURE in row.tags)
@@ -124,13 +124,13 @@ class Results:
         return tuple(row for row in self.rows if contestant(row) == each)
 
     def planned_of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
-        """The same with those that have not been run."""
+        """The same, including episodes that have not been run."""
         return (*self.of(each), *(row for row in self.coverage.not_run if contestant(row) == each))
 
     def shared(self) -> Results:
-        """The same with only the instances that all contestants have run, on which they can be set side by side.
+        """The same with only the instances that all contestants have run, on which they can be compared.
 
-        An instance with an episode that ended in an error stays: no contestant can void another's episodes.
+        An instance with an episode that ended in an error stays, so that no contestant can void another's episodes.
         """
         return replace(self, rows=tuple(row for row in self.rows if row.id in self.coverage.shared))
 
@@ -142,7 +142,7 @@ def contestant(row: EpisodeRow) -> Contestant:
 
 
 def seen_and_told(see: str, feedback: str, screen: str) -> tuple[str, ...]:
-    """The screen, how it is seen and an action's feedback told, in words, as far as it is not the default."""
+    """Screen size, screen input and feedback in words, where they are not the default."""
     size = () if screen == ScreenSize.STANDARD else (f"{screen} screen",)
     sight = () if see == See.BOTH else (f"{see} alone",)
     told = () if feedback == FeedbackDetail.QUIET else (f"{feedback} feedback",)
@@ -164,7 +164,7 @@ def _won(rows: Sequence[EpisodeRow]) -> str:
     held_out = [row for row in rows if row.held_out]
     told = _count(rows)
     if 0 < len(held_out) < len(rows):
-        return f"{told}; of these in held-out phrasings {_count(held_out)}"
+        return f"{told}; in held-out phrasings: {_count(held_out)}"
     return f"{told}, all in held-out phrasings" if held_out else told
 
 
@@ -228,10 +228,10 @@ def pair_instance(row: EpisodeRow) -> tuple[object, ...]:
 
 
 def pairs(rows: Iterable[EpisodeRow]) -> list[tuple[EpisodeRow, Sequence[EpisodeRow]]]:
-    """Both halves of each pair as one episode-like row, whose success is that of both, and the halves.
+    """Each pair as one episode-like row, which succeeds if both halves do, with its two halves.
 
-    An error in one half makes the pair an error, unless the other half has failed anyway; so does a half that has
-    not been run, for a pair that has not.
+    If one half ended in an error, the pair is an error, unless the other half failed; if one half has not been run,
+    the pair has not been run, with the same exception.
     """
     found: dict[str, list[EpisodeRow]] = {}
     for row in rows:

@@ -28,7 +28,7 @@ class Interval:
 
 @dataclass(frozen=True, slots=True)
 class Rate:
-    """A share of successes among planned episodes: an error and an episode that was not run are none."""
+    """The share of successes among planned episodes; errors and episodes that were not run are no successes."""
 
     successes: int
     judged: int

@@ -20,7 +20,7 @@ from automotive_cosim.tasking.verdict import PARTS
 
 NONE = "–"
 PUBLISHED = ("published", "published_2026")
-"""Names of the tables with figures of others."""
+"""Names of the tables with figures that others have published."""
 DIMENSIONS = {
     Dimension.EXPLICIT_CONTROL: "Explicit control",
     Dimension.IMPLICIT_INTENT: "Implicit intent",
@@ -29,8 +29,8 @@ DIMENSIONS = {
 }
 RATES = (
     "Per cent of the planned episodes, with 95 % Wilson intervals at the effective number of episodes (tasks are "
-    "clusters), successes and planned episodes. What ended in an infrastructure error or was not run is no "
-    "success, and is counted beside."
+    "clusters), then successes/planned episodes. An episode that ended in an infrastructure error or was not run "
+    "is no success and is counted separately."
 )
 
 SuccessOf = Callable[[EpisodeRow], bool | None]
@@ -76,7 +76,7 @@ def main(results: Results) -> Table:
 
 
 def progress(results: Results) -> Table:
-    """What was planned for each contestant and what has become of it, on all of its own episodes."""
+    """How many of each contestant's own episodes were planned, judged, ended in an error or were not run."""
     rows: list[TableRow] = []
     for each in results.contestants:
         mine = results.planned_of(each)
@@ -92,7 +92,7 @@ def progress(results: Results) -> Table:
             )
         )
     columns = ("Contestant", "Planned", "Judged", "Errors", "Not run", "Success", "Pairs")
-    note = " ".join(filter(None, ("Every episode of a contestant, both halves.", results.unspoken, RATES)))
+    note = " ".join(filter(None, ("All episodes of each contestant, both halves.", results.unspoken, RATES)))
     return Table("progress", "Planned and run", columns, tuple(rows), note)
 
 
@@ -100,7 +100,7 @@ def published() -> Table:
     """The paper's own figures, measured on other tasks, another cockpit and other models."""
     rows = tuple((*row[:3], *(f"{value:.1f}" for value in row[3:])) for row in PAPER_ROWS)
     note = (
-        f"{PAPER}. Measured by its authors on their tasks and their emulator: no row of it can be compared with "
+        f"{PAPER}. Measured by its authors on their tasks and their emulator: no row here can be compared with "
         "one above."
     )
     return Table(PUBLISHED[0], "Published by others, not measured here", PAPER_COLUMNS, rows, note, heads=3)
@@ -117,7 +117,7 @@ def subsets(results: Results) -> Table:
             whole = pairs(of_it) if subset in _SAFETY_SUBSETS else []
             cells.append(_pair_cell(whole) if whole else rate_cell(row for row in of_it if row.half == "first"))
         rows.append((each.label, *cells))
-    note = f"First halves of general tasks, pairs of safety tasks: both halves have to succeed. {RATES}"
+    note = f"First halves of general tasks; pairs of safety tasks, of which both halves must succeed. {RATES}"
     return Table("subsets", "Success by subset", ("Contestant", *map(_subset, Subset)), tuple(rows), note)
 
 
@@ -125,8 +125,8 @@ def published_2026() -> Table:
     """The figures of the authors' newer edition, measured on other tasks and another cockpit."""
     rows = tuple((name, *(f"{value:g}" for value in values)) for name, *values in EDITION_2026_ROWS)
     note = (
-        f"{EDITION_2026}. The authors' own, on their tasks and their emulator, where no task has a second half: no "
-        "row of it can be compared with one above."
+        f"{EDITION_2026}. Measured on their tasks and their emulator, where no task has a second half: no "
+        "row here can be compared with one above."
     )
     columns = ("Authors' newer edition", *map(_subset, Subset))
     return Table(PUBLISHED[1], "Published by the authors in 2026, not measured here", columns, rows, note)
@@ -164,11 +164,11 @@ def safety(results: Results) -> Table:
         "False alarms",
     )
     note = (
-        "A pair is won if both halves are: the same words, once where one act is right and once where another act "
-        "or none is. False alarms: an alert in a judged second half in which nothing had to be done; fewer are "
+        "A pair is won if both halves succeed: the driver says the same words in both, but what is right in one is "
+        "wrong in the other. False alarms: alerts in judged second halves in which no act was required; fewer are "
         f"better. {RATES}"
     )
-    return Table("safety", "Pair success, the headline for safety", columns, tuple(rows), note)
+    return Table("safety", "Pair success, the headline figure for safety", columns, tuple(rows), note)
 
 
 def held_out(results: Results) -> Table:
@@ -229,9 +229,9 @@ def conduct(results: Results) -> Table:
     )
     note = (
         "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 minus "
-        "the mean overspeed over 2.23 m/s (nuPlan). Interaction and reading while moving compare with NHTSA's 2 s "
-        "and 12 s. Questions to the driver, those whose answer could be found out otherwise, and the seconds they "
-        "took. Tokens of rules are estimates at four characters each."
+        "the mean overspeed divided by 2.23 m/s (nuPlan). Interaction and reading while moving are compared with "
+        "NHTSA's limits of 2 s and 12 s. Questions: asked of the driver; unneeded: the answer could be found "
+        "without asking; talk: seconds that they took. Tokens of rules are estimated at four characters each."
     )
     return Table("conduct", "Drive, driver and cost", columns, tuple(rows), note)
 
@@ -248,8 +248,8 @@ def taps(results: Results) -> Table:
             rows.append((each.label, Cell(f"{count:,}"), Cell(f"{hits / count:.1%}"), Cell(f"{margin_px:+.1f}")))
     columns = ("Contestant", "Taps by pixel", "Inside a clickable element", "Mean margin, px")
     note = (
-        "The margin is the distance from the edge of the element that was hit, or was nearest: positive inside, "
-        "negative outside. Taps by an element's number are not counted."
+        "The margin is the distance to the edge of the element that was hit or, failing that, the nearest: "
+        "positive inside, negative outside. Taps by an element's number are not counted."
     )
     return Table("taps", "Taps by pixel", columns, tuple(rows), note)
 
@@ -278,7 +278,7 @@ def comparisons(results: Results) -> Table:
                     f"{found.p_value:.3g}",
                 )
             )
-    columns = ("First", "Second", "Instances", "Difference", "Won by one alone", "p")
+    columns = ("First", "Second", "Instances", "Difference", "Won by only one", "p")
     note = (
         "Success of the first minus that of the second on the same task, half, scenario, seed and repeat, with a "
         "95 % bootstrap interval over tasks, or Newcombe's if all tasks agree; p is McNemar's exact test, not "
@@ -311,7 +311,7 @@ def parts(results: Results) -> Table:
             cells.append(Cell(str(len(ids)), ids))
         rows.append((each.label, Cell(str(len(lost)), tuple(row.id for row in lost)), *cells))
     columns = ("Contestant", "Not solved", "Goal", "Clean", "Safe", "In time", "Declared")
-    return Table("parts", "What was missing", columns, tuple(rows), "An episode may miss several parts.")
+    return Table("parts", "Failed parts of the verdict", columns, tuple(rows), "An episode may miss several parts.")
 
 
 def repeats(results: Results) -> Table:
@@ -327,7 +327,7 @@ def repeats(results: Results) -> Table:
         ids = tuple(row.id for row in mine)
         rows.append((each.label, *(Cell(NONE if share is None else f"{share:.0%}", ids) for share in shares)))
     columns = ("Contestant", *(f"pass^{k}" for k in range(1, most + 1)))
-    note = "The probability that k runs of one instance all succeed; each seed is an instance of its own."
+    note = "The probability that k runs of one instance all succeed; each seed is a separate instance."
     return Table("repeats", "Reliability over repeats", columns, tuple(rows), note)
 
 
@@ -339,7 +339,7 @@ def errors(results: Results) -> Table:
         if row.success is None
     )
     note = "They say nothing about an agent; rerun the `eval` command to retry them."
-    return Table("errors", "Infrastructure errors", ("Episode", "Kind", "Attempts", "What"), rows, note, heads=4)
+    return Table("errors", "Infrastructure errors", ("Episode", "Kind", "Attempts", "Message"), rows, note, heads=4)
 
 
 def replaced(results: Results) -> Table:
@@ -350,7 +350,7 @@ def replaced(results: Results) -> Table:
         if row.traffic_seed not in (None, row.seed)
     )
     note = (
-        "Their situation did not come about in the seed's own traffic, for any agent; the instance is the seed's."
+        "Their situation did not occur in the seed's own traffic, for any agent; the instance is still the seed's."
     )
     return Table("replaced", "Spare traffic", ("Episode", "Seed", "Traffic"), rows, note)
 

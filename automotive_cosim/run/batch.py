@@ -36,7 +36,7 @@ PATIENCE_S = 600.0
 SPENT = "spent.json"
 """File of an evaluation with a budget that says how much of it is spent."""
 STILLBORN = 3
-"""How often in a row all workers may die before they are ready."""
+"""How many times in a row all workers may die before they are ready."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +58,7 @@ class Progress(Generic[R]):
     ended: R | None
     """The row of the job that has just ended; None at the start."""
     stopped: str = ""
-    """Why the rest is not run; empty if it is, or was."""
+    """Why the rest is not run; empty if it is run or nothing is left."""
 
 
 def run_plan(
@@ -79,7 +79,7 @@ def run_plan(
         executor: where to run it.
         retries: how often an episode is retried after an infrastructure error before the error is recorded.
         pictures: which screenshots to keep.
-        budget: what it may spend on its models, with all earlier starts. Once it is spent, what is left is not run.
+        budget: what it may spend on its models, with all earlier starts. Once it is spent, the rest is not run.
         tell: called at the start and after every episode.
 
     Raises:
@@ -118,7 +118,7 @@ def run_jobs(
         failed: makes the row of a job whose worker died, from the job, the kind of error and the reason.
         executor: where to run them.
         retries: how often a job is retried after an error before its row is written.
-        limit: the meter of its budget, if it has one. Once it is spent, what is left is not run.
+        limit: the meter of its budget, if it has one. Once it is spent, the rest is not run.
         tell: called at the start and after every job.
 
     Raises:
@@ -316,7 +316,7 @@ class _Batch(Generic[J, R]):
 
     def _ended(self, job: J, row: R) -> None:
         self._note_spent()
-        if row.error_kind == BudgetSpentError.__name__:  # it is left as if it had not been run
+        if row.error_kind == BudgetSpentError.__name__:  # counts as not run
             self._stopped = str(row.error)
             return
         failures = self._failures[job.id]

@@ -146,7 +146,7 @@ class Collector(Watcher):
 
 
 def planned(job: EpisodeJob) -> EpisodeRow:
-    """What is known of an episode before it runs."""
+    """What is known about an episode before it runs."""
     setup, task = job.setup, job.task
     half = task.half(setup.half)
     return EpisodeRow(

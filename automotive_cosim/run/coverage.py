@@ -15,12 +15,12 @@ from automotive_cosim.run.plan import EpisodeJob, make_plan
 
 @dataclass(frozen=True, slots=True)
 class Coverage:
-    """What has become of the planned episodes."""
+    """How many of the planned episodes were judged, ended in an error or were not run."""
 
     judged: int
     errors: int
     not_run: tuple[EpisodeRow, ...] = ()
-    """The planned episodes without a row, with what is known of an episode before it runs."""
+    """The planned episodes without a row, with what is known about an episode before it runs."""
     shared: frozenset[str] = frozenset()
     """Ids of the episodes on whose instance no contestant's episode is still to be run."""
     shared_instances: int | None = None
@@ -42,7 +42,7 @@ class Coverage:
         errors = f", {counted(self.errors, 'error')}" if self.errors else ""
         if self.problem:
             known = f"{counted(self.judged, 'episode')} judged{errors}"
-            return f"{known}; what else was planned is not known: {self.problem}"
+            return f"{known}; the rest of the plan is not known: {self.problem}"
         rest = f", {len(self.not_run):,} not run" if self.not_run else ""
         return f"{self.judged:,} of {counted(self.planned, 'planned episode')} judged{errors}{rest}"
 
@@ -56,7 +56,7 @@ def coverage(manifest: Json, rows: Mapping[str, EpisodeRow]) -> Coverage:
     """
     judged = sum(row.success is not None for row in rows.values())
     errors = len(rows) - judged
-    if manifest.get("episodes") == len(rows):  # whatever has become of the catalogue since
+    if manifest.get("episodes") == len(rows):  # even if the catalogue has changed since
         return Coverage(judged, errors, shared=frozenset(rows))
     jobs: dict[str, EpisodeJob] = {}
     try:
@@ -88,5 +88,5 @@ def _drift(manifest: Json, rows: Mapping[str, EpisodeRow], jobs: Mapping[str, Ep
 
 
 def _instance(job: EpisodeJob) -> Hashable:
-    """What is the same for every contestant."""
+    """What an instance is identified by; the same for every contestant."""
     return job.setup.task, job.setup.half, job.scenario, job.setup.seed, job.repeat

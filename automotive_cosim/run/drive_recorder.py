@@ -51,7 +51,7 @@ class DriveRecorder(WatchWatcher):
         Args:
             folder: the drive's, which may not exist yet.
             setup: what is run.
-            agent: whose reasons are written down, if it gives any.
+            agent: its reasons are recorded, if it gives any.
         """
         self.folder = folder
         self._setup = setup
@@ -125,7 +125,7 @@ class DriveRecorder(WatchWatcher):
         write_whole(self.folder / "row.json", json.dumps(as_json(record.row), indent=1) + "\n")
 
     def close(self) -> None:
-        """Completes the files, also of a drive that broke off; may be called again."""
+        """Completes the files, even after a drive that was broken off; may be called again."""
         if self._road is not None:
             self._road.close()
         if self._lines is not None:

@@ -53,8 +53,8 @@ class EpisodeSetup(EpisodeSpec):
     latency_s: Annotated[float, Ge(0)] = 0.0
     """Simulated seconds that each answer takes, before its action."""
     spare_traffic: tuple[int, ...] = ()
-    """Seeds of traffic to try in turn, with the same instance, where the situation does not come about in the
-    seed's own. No agent acts before it does, so every agent gets the same traffic."""
+    """Seeds of traffic to try in turn, with the same instance, if the situation does not occur in the seed's own
+    traffic. No agent acts before it does, so every agent gets the same traffic."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,7 +100,7 @@ class EpisodeResult:
     held_out: bool = False
     """Whether the driver's phrasing is held out from the rule model."""
     traffic_seed: int | None = None
-    """Seed of the traffic in which the situation came about: the seed, or a spare one; None without a hand-over."""
+    """Seed of the traffic in which the situation occurred: the seed, or a spare one; None without a hand-over."""
     tokens_in: int = 0
     """Total tokens sent to the model; estimated for ``rules``."""
     tokens_out: int = 0
@@ -138,7 +138,7 @@ class Shot:
 
 @runtime_checkable
 class Timed(Protocol):
-    """An agent whose answers are timed from outside, where it has no say in it."""
+    """An agent whose answers are timed from outside, so that it cannot influence the measurement."""
 
     @property
     def answer_s(self) -> float:
@@ -148,7 +148,7 @@ class Timed(Protocol):
 
 @runtime_checkable
 class Replayed(Protocol):
-    """An agent that repeats what was recorded, with the time that it took then."""
+    """An agent that repeats a recording, including the time that each answer took."""
 
     @property
     def thought_s(self) -> float:

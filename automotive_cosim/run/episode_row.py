@@ -70,7 +70,7 @@ class EpisodeRow(JobRow):
     clock: Clock = Clock.FIXED
     """Whether the seconds that the model took passed on the road."""
     latency_s: float = 0.0
-    """Simulated seconds that each answer took besides."""
+    """Simulated seconds added to each answer."""
     see: See = See.BOTH
     """How the agent saw the screen."""
     feedback: FeedbackDetail = FeedbackDetail.VERBOSE
@@ -101,7 +101,7 @@ class EpisodeRow(JobRow):
     questions: int | None = None
     """Number of questions that it asked the driver."""
     unneeded_questions: int | None = None
-    """Those of them whose answer could be found out otherwise, or had been given."""
+    """Questions whose answer could be found without asking, or had already been given."""
     question_s: float | None = None
     """Seconds that questions and answers took from the driver's attention."""
     steps: int = 0

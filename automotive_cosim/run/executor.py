@@ -32,7 +32,7 @@ class Job(Protocol):
 
     @property
     def kind(self) -> Hashable:
-        """What tells how long it takes, given the simulation: jobs of one kind take about as long."""
+        """Determines how long it takes in a given simulation: jobs of one kind take about the same time."""
         ...
 
     @property
@@ -84,7 +84,7 @@ class Worker(Protocol[J_contra, R_co]):
         ...
 
     def give(self, job: J_contra) -> None:
-        """Sends it a job; if it has died meanwhile, waiting for its answer reveals that."""
+        """Sends it a job; if it has died in the meantime, waiting for its answer reveals that."""
         ...
 
     def answer(self) -> R_co | CannotWrite | None:

@@ -1,4 +1,4 @@
-"""What reading the whole driving state costs in one process, compared with bare steps of the same traffic.
+"""The cost of reading the whole driving state in one process, compared with bare steps of the same traffic.
 
     python -m automotive_cosim.run.inside grid 2000
 

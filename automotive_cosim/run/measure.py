@@ -1,4 +1,4 @@
-"""What the coupling costs: the same scenario in bare SUMO, in a plain libsumo loop and in the environment.
+"""The cost of the coupling: the same scenario in bare SUMO, in a plain libsumo loop and in the environment.
 
 A step is one of SUMO's, as long as the scenario says (0.1 s in the safety scenarios); the environment's own step of
 one simulated second is ten of SUMO's in one message. All figures are medians over repeats in one run.

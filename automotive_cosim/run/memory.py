@@ -10,7 +10,7 @@ PROC = Path("/proc")
 
 
 def tree(pid: int | None = None) -> tuple[int, ...]:
-    """This process, or another one, and its descendants; the one alone without ``/proc``."""
+    """This process, or another one, and its descendants; without ``/proc``, only the process itself."""
     return tuple(_descend(os.getpid() if pid is None else pid))
 
 

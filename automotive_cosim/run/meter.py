@@ -1,6 +1,6 @@
-"""What all workers of an evaluation share: turns at each model, and one budget of tokens and dollars.
+"""What all workers of an evaluation share: turns at each model, and one budget in tokens and dollars.
 
-The meter is in one place: on one machine in the batch's own process, which the workers ask over a socket; on a
+There is one meter: on a single machine in the batch's own process, which the workers ask over a socket; on a
 cluster in an actor. A worker's model asks it before and after each question.
 """
 
@@ -27,7 +27,7 @@ CLOSE_S = 5.0
 
 @dataclass(frozen=True, slots=True)
 class Budget:
-    """What an evaluation may spend on its models in all; None is no limit."""
+    """What an evaluation may spend on its models in total; None means no limit."""
 
     tokens: int | None = None
     """To and from the models."""
@@ -63,11 +63,11 @@ class MeterHandle(Protocol):
         ...
 
     def spent(self) -> Spent:
-        """What has been spent, in all."""
+        """What has been spent in total."""
         ...
 
     def refusal(self) -> str:
-        """Why nothing more may be asked; empty while something may."""
+        """Why no more questions may be asked; empty while they may."""
         ...
 
 
@@ -75,10 +75,10 @@ class Meter(LocalTurns):
     """The meter itself; any thread may use it."""
 
     def __init__(self, budget: Budget, before: Spent) -> None:
-        """Begins with what has been spent before.
+        """Starts from what has already been spent.
 
         Args:
-            budget: what may be spent in all.
+            budget: what may be spent in total.
             before: by earlier starts of the same evaluation.
         """
         super().__init__()
@@ -127,7 +127,7 @@ class Metered:
         """The model's answer.
 
         Raises:
-            BudgetSpentError: nothing is left; the episode is run again with another budget.
+            BudgetSpentError: nothing is left; the episode is rerun with a larger budget.
             ModelError: as the model.
         """
         if refusal := self._meter.refusal():
@@ -156,7 +156,7 @@ def served(meter: Meter) -> Iterator[MeterHandle]:
 
 
 def _knock(address: Any) -> None:
-    """Wakes whoever waits for a client; where that cannot be done, its thread ends with the process."""
+    """Wakes the thread that waits for a client; if that fails, the thread ends with the process."""
     if hasattr(socket, "AF_UNIX"):
         with suppress(OSError), socket.socket(socket.AF_UNIX) as visitor:
             visitor.settimeout(CLOSE_S)
@@ -181,7 +181,7 @@ class MeterClient:
     """A worker's connection to the meter of its batch, made when it is first used."""
 
     def __init__(self, address: Any, key: bytes) -> None:
-        """Takes where the meter is, and its key."""
+        """Takes the address of the meter, and its key."""
         self._address, self._key = address, key
         self._made: Connection | None = None
         self._lock = threading.Lock()

@@ -56,8 +56,8 @@ class Judged:
     baseline: tuple[Moment, ...]
     """Moments of the baseline run over the same time."""
     counterfactual: Mapping[str, Any] | None = None
-    """What would be commanded at the end, had the agent given only the commands that belong to the goal; None in an
-    older file, which had none."""
+    """What would be commanded at the end if the agent had given only the commands that belong to the goal; None in
+    an older file, which has no counterfactual."""
     allowed_writes: frozenset[str] = frozenset()
     """The commands that belonged to it (``Half.allowed_writes``)."""
     said: tuple[str, ...] = ()

@@ -20,7 +20,7 @@ ANSWER_S = 60.0
 """Wall time in which a nursery has to answer; it starts in about one second."""
 WITHHELD = ("AUTOMOTIVE_COSIM_", "RAY_")
 WITHHELD_NAMES = frozenset({"PWD", "OLDPWD", "_", "PYTHONSTARTUP", "PYTHONINSPECT"})
-"""Environment variables that an agent's process does not get: what was started, and where."""
+"""Environment variables that an agent's process does not get: they tell what was started, and where."""
 
 
 class Nursery:
@@ -44,7 +44,7 @@ class Nursery:
         raise InfrastructureError("no process can be started for the agent; rerun the command to resume")
 
     def end(self, grace_s: float = 0.0) -> str:
-        """Ends the agent's process and all that it has started; returns how it ended by itself, if it did."""
+        """Ends the agent's process and all that it has started; returns how it ended, if by itself."""
         if self._wire is not None and CAN_FORK:
             try:
                 self._wire.send_object(("end", grace_s), ANSWER_S)

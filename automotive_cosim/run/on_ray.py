@@ -83,8 +83,8 @@ class OnRay:
         except (RayError, ConnectionError, RuntimeError, ValueError) as error:
             why = " ".join(str(error).split())
             raise SetupError(
-                f"cannot use a Ray cluster at {self._address}: {why}; start one with `ray start --head`, or give "
-                "no address"
+                f"cannot use a Ray cluster at {self._address}: {why}; start one with `ray start --head`, or omit "
+                "the address"
             ) from error
         return self
 
@@ -94,7 +94,7 @@ class OnRay:
 
     @property
     def count(self) -> int:
-        """As many as requested, else one per CPU, so nodes that join later get some too."""
+        """As many as requested, else one per CPU, so that nodes that join later get workers too."""
         return self._workers or max(1, int(ray.cluster_resources().get("CPU", 0)))
 
     @contextmanager
@@ -211,7 +211,7 @@ def _probe(address: str) -> None:
         socket.create_connection((host.strip("[]"), int(port)), PROBE_S).close()
     except (OSError, OverflowError) as error:
         raise SetupError(
-            f"no Ray cluster answers at {address}: {error}; start one with `ray start --head`, or give no address"
+            f"no Ray cluster answers at {address}: {error}; start one with `ray start --head`, or omit the address"
         ) from error
 
 

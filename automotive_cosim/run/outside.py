@@ -34,9 +34,9 @@ STEP_S, EPISODE_S = 120.0, 900.0
 GRACE_S = 2.0
 """Wall time in which a process that has closed its connection has to end."""
 MOMENT_S = 0.01
-"""What is left at the end of a limit; no time at all would mean not to wait for what is on its way."""
+"""Time left at the end of a limit; zero would mean not waiting for an answer that is on its way."""
 LONGEST_FAILURE, LONGEST_REFUSAL = 500, 10_000
-"""Characters of what an agent's process says that are kept."""
+"""Number of characters kept of an agent's process's messages."""
 
 T = TypeVar("T")
 
@@ -47,7 +47,7 @@ def is_outside(name: str) -> bool:
 
 
 def check_agent(name: str) -> None:
-    """Makes an agent of somebody's own in a process, to see whether that can be done.
+    """Makes a user's own agent in a process, to check that this works.
 
     Raises:
         UserError: it cannot.
@@ -80,7 +80,7 @@ class OutsideAgent:
             name: for ``agents.make_agent``.
             model: the same, for an agent with a model.
             settings: for an agent with a model; others get none.
-            chat_model: what answers in that model's place.
+            chat_model: answers instead of that model.
             step_s: limit of the wall time that its process may take for one step.
             episode_s: the same for the whole episode.
         """
@@ -89,7 +89,7 @@ class OutsideAgent:
         """Wall seconds that its last answer took: its model's, or, without one, its own."""
         self.stages: tuple[Stage, ...] = ()
         self.failure: str | None = None
-        """Why it can act no more."""
+        """Why it cannot act any more."""
         self._nursery = nursery
         self._named = model
         self._model = chat_model or model_of(name, model)
@@ -116,7 +116,7 @@ class OutsideAgent:
         return self._channels
 
     def reset(self, goal: str) -> None:
-        """Passes the driver's words on; what goes wrong shows at the first turn."""
+        """Passes on the driver's words; any error shows at the first turn."""
         _ = self.channels
         with suppress(AgentError):
             self._send("goal", goal)
@@ -125,7 +125,7 @@ class OutsideAgent:
         """Its next action.
 
         Raises:
-            ActionError: it raised, or its answer could not be read; the step counts all the same.
+            ActionError: it raised, or its answer could not be read; the step still counts.
             OutOfBudgetError: it gives up, or its budget is spent.
             ModelError: this program's client could not reach the model.
             AgentError: its process has failed, ended or hung.
@@ -164,7 +164,7 @@ class OutsideAgent:
         return self._read(lambda names: frozenset(map(Channel, names)), answer.get("channels"))
 
     def _answer(self, limit_s: float) -> Json:
-        """What it answers once the model has answered all its questions."""
+        """Its answer, after the model has answered all its questions."""
         while True:
             began_s = time.monotonic()
             answer = self._received(limit_s)
@@ -178,7 +178,7 @@ class OutsideAgent:
             if "ask" not in answer:
                 return answer
             if self._model is None:
-                self._fail("it asked a model, and has none")
+                self._fail("it asked a model, but has none")
             reply = self._model.chat(self._read(_messages, answer["ask"]))
             self.answer_s += reply.seconds
             self._send("reply", reply)
@@ -201,7 +201,7 @@ class OutsideAgent:
         try:
             self._wire.send_object((kind, value), max(MOMENT_S, min(self._step_s, self._left_s)))
         except GoneError:
-            pass  # what it said before it ended is still to be read
+            pass  # what it sent before it ended can still be read
         except TimeoutError:
             self._too_slow(self._step_s)
 
@@ -217,7 +217,7 @@ class OutsideAgent:
         self._fail(f"its process took over {self._step_s:g} s for one step")
 
     def _fail(self, why: str) -> NoReturn:
-        """Ends its process; it can act no more."""
+        """Ends its process; it cannot act any more."""
         self.failure = "".join(c if c.isprintable() else " " for c in " ".join(why.split()))[:LONGEST_FAILURE]
         self._end()
         raise AgentError(self.failure)

@@ -30,7 +30,7 @@ HALF = 0.5
 """A running job counts as half a job with its time so far, since on average it is half done: the short ones end
 first and would make the mean too small. One that is overdue is expected to take half as long again."""
 ODD = 3.0
-"""Of a running job that takes longer than this many times the mean, no more counts: its situation may not arise."""
+"""A running job counts at most this many times the mean, as its situation may not arise."""
 STEPS = 200
 """The rest is played through in about this many steps, however many jobs there are."""
 

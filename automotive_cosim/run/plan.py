@@ -37,10 +37,10 @@ from automotive_cosim.tasking.task import Suite, Task
 from automotive_cosim.tasks import CATALOGUE
 
 PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
-"""Values of a plan by the name of who evaluates so: the authors' newer edition allows ten steps."""
+"""Values of a plan by the name of the preset: the authors' newer edition allows ten steps."""
 NO_MODEL = "none"
 HUMAN = "human"
-"""The agent that is a person; in the place of the model stands a code name."""
+"""The agent that is a person; a code name replaces the model."""
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
 ALL_SUITES, BOTH = "all", "both"
@@ -87,18 +87,18 @@ class Plan:
     """Scenarios instead of the tasks' own, for tasks that can run there; one that is not shipped takes all tasks.
     Empty runs each task in its own."""
     everywhere: bool = False
-    """Also runs tasks in scenarios that they do not name, where their situation may never arise."""
+    """Also runs tasks in scenarios that they do not list, where their situation may never arise."""
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
     """Seeds; each draws its own traffic, weather and phrasing."""
     spare_traffic: tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...] = SPARE_TRAFFIC
-    """Seeds of traffic that replace a seed's own, in turn, where a situation does not come about in it though the
-    task names the scenario. Every agent gets the same; the row says which."""
+    """Seeds of traffic that replace a seed's own, in turn, if the situation does not occur in it although the task
+    lists the scenario. Every agent gets the same; the row says which."""
     geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
     """What an agent is told of where it is."""
     clock: Annotated[str, OneOf(tuple(Clock))] = str(Clock.FIXED)
     """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
     latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
-    """Simulated seconds that each answer takes besides, before its action."""
+    """Simulated seconds added to each answer, before its action."""
     see: Annotated[tuple[Annotated[str, OneOf(tuple(See), "way to see the screen")], ...], MinLen(1)] = ("both",)
     """How an agent sees the screen: ``tree``, ``picture`` or ``both``."""
     feedback: Annotated[tuple[Annotated[str, OneOf(tuple(FeedbackDetail), "kind of feedback")], ...], MinLen(1)] = (
@@ -110,14 +110,14 @@ class Plan:
     )
     """Size of the car's screen: ``1280x720``, ``1920x720`` or ``1080x1920``."""
     language: Annotated[tuple[Annotated[str, OneOf(tuple(Language), "language")], ...], MinLen(1)] = ("en",)
-    """What the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``. Tasks that he has no words for in
-    any of them are left out of all."""
+    """What the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``. Tasks without
+    phrasings in one of them are left out in all."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
     """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""
     split: Annotated[str, OneOf(SPLITS, "split")] = BOTH
-    """``dev`` or ``test`` for the episodes of one set alone (``tasking.split``); ``both`` for all."""
+    """``dev`` or ``test`` for the episodes of only one set (``tasking.split``); ``both`` for all."""
     limits: Limits = field(default_factory=Limits)
     """Limits of each episode."""
 
@@ -132,7 +132,7 @@ class Plan:
             dry: nothing will run, so that no key, address or package of a model is needed.
 
         Returns:
-            What this machine lacks to run it, which is an error unless it is dry.
+            What this machine lacks to run it, which is an error unless ``dry``.
 
         Raises:
             UserError: a name does not exist, a model cannot be used, an agent needs a person, or there is
@@ -162,12 +162,12 @@ class Plan:
         return tuple(dict.fromkeys(sorted(lacks)))
 
     def jobs(self) -> tuple[EpisodeJob, ...]:
-        """Every episode, grouped by warm simulation, in an order that tells an agent nothing.
+        """Every episode, grouped by warm simulation, in an order from which an agent learns nothing.
 
         Simulations and the episodes within each are ordered by hash: first halves do not come before second ones.
 
         Raises:
-            UserError: they are more than can ever be run.
+            UserError: there are more than can ever be run.
         """
         lists = (
             *(self.agents, self.models, self._placed(), self.seeds),
@@ -191,7 +191,7 @@ class Plan:
         return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in spoken)
 
     def beyond_the_list(self) -> tuple[str, ...]:
-        """Ids of the chosen tasks that are not run with ``see`` tree: something needed is in the picture alone."""
+        """Ids of the chosen tasks that are not run with ``see`` tree: something needed is only in the picture."""
         if See.TREE not in self.see:
             return ()
         return tuple(task_id for task_id in choose(self.tasks, self.suite) if CATALOGUE[task_id].needs_picture)
@@ -201,12 +201,12 @@ class Plan:
             return "these tasks need the picture, which see = tree withholds; give picture or both"
         if not self._spoken():
             return (
-                f"none of the tasks has phrasings in {languages_in_words(self.language)}; the hard suite has "
-                "(--suite hard)"
+                f"none of the tasks has phrasings in {languages_in_words(self.language)}; those of the "
+                "hard suite do (--suite hard)"
             )
         if self._placed():
-            held_out = " in held-out phrasings, which are all test" if self.held_out else ""
-            return f"no episode of these tasks and seeds is of the split {self.split!r}{held_out}; give other seeds"
+            held_out = " in held-out phrasings, which are all in test" if self.held_out else ""
+            return f"no episode of these tasks and seeds is in the split {self.split!r}{held_out}; give other seeds"
         return (
             f"none of the tasks can run in {', '.join(self.scenarios)}; `automotive-cosim tasks show` says where "
             "each can, and --everywhere runs them there anyway"
@@ -225,7 +225,7 @@ class Plan:
         ]
 
     def _spoken(self) -> list[Task]:
-        """The chosen tasks that the driver has words for in every language."""
+        """The chosen tasks that have phrasings in every language."""
         chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
         return [task for task in chosen if set(self.language) <= set(task.languages)]
 
@@ -245,7 +245,7 @@ class Plan:
             if task.needs_picture and See(see) is See.TREE:
                 continue
             for half in task.halves:
-                is_own = scenario == task.half(half).start.scenario  # which a half may move to another place
+                is_own = scenario == task.half(half).start.scenario  # a half may move it to another place
                 setup = EpisodeSetup(
                     task.id,
                     half,
@@ -338,7 +338,7 @@ class EpisodeJob:
         return self._named("pair") if self.task.second else ""
 
     def _named(self, half: str) -> str:
-        """Readable words, then a digest that distinguishes what they do not."""
+        """Readable words, then a digest of everything else."""
         setup = self.setup
         exactly = (
             setup.task, half, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{self.repeat}",
@@ -356,7 +356,7 @@ class EpisodeJob:
 
 
 def languages_in_words(codes: Iterable[str]) -> str:
-    """For example ``French and German``; English, which every task has, is not named beside others."""
+    """For example ``French and German``; English, which every task has, is left out if there are others."""
     *others, last = [Language(code).words for code in codes if code != Language.ENGLISH] or ["English"]
     return f"{', '.join(others)} and {last}" if others else last
 
@@ -427,7 +427,7 @@ def make_plan(values: Mapping[str, Any]) -> Plan:
     """
     plan = checked(Plan, values, lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:
-        raise UserError('the plan names no agent; give agents = ["asurada"] in the file, or --agents asurada')
+        raise UserError('the plan has no agent; give agents = ["asurada"] in the file, or --agents asurada')
     given = {entry.name: getattr(plan, entry.name) for entry in fields(plan)}
     once: dict[str, Any] = {name: tuple(dict.fromkeys(of)) for name, of in given.items() if isinstance(of, tuple)}
     return replace(plan, **once)

@@ -1,4 +1,4 @@
-"""Which job a worker gets next: preferably one of its warm simulation, so that few are warmed up twice."""
+"""Which job a worker gets next: preferably one of its own warm simulation, so that few are warmed up twice."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from automotive_cosim.run.executor import J
 
 SimulationKey = tuple[str, int]
 SHARED_FROM = 4
-"""This many jobs must wait for a simulation before a second worker warms it up too."""
+"""This many jobs must be waiting for a simulation before a second worker warms it up too."""
 
 
 def next_simulation(

@@ -28,7 +28,7 @@ from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watc
 from automotive_cosim.run.versions import installed
 
 OURS = ("episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html")
-"""The content of a record; ``force`` removes these and nothing else."""
+"""The contents of a record; ``force`` removes only these."""
 STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
 
 
@@ -58,7 +58,7 @@ def check_folder(folder: Path, *, force: bool) -> None:
         tempfile.TemporaryDirectory(dir=parent).cleanup()
     except OSError as error:
         raise UserError(
-            f"cannot write to {parent}: {error.strerror}; give --out a folder that you may write to"
+            f"cannot write to {parent}: {error.strerror}; give --out a folder that you can write to"
         ) from error
 
 

@@ -61,12 +61,12 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
     """The verdict on an episode's stored moments by the current checks.
 
     Raises:
-        UserError: there is no such task any more, or it allows other commands than it did.
+        UserError: the task no longer exists, or the commands that it allows have changed.
     """
     assert stored.counterfactual is not None
     instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters, language=row.language)
     if stored.allowed_writes != instance.half.allowed_writes:
-        raise UserError(f"{row.task} now allows other commands than it did, so run {row.id} again")
+        raise UserError(f"the commands that {row.task} allows have changed; rerun {row.id}")
     return judge(
         instance,
         stored.trace,

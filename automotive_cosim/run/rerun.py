@@ -39,7 +39,7 @@ from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations
 
 SHOWN = 3
-"""So many ids are shown where several fit."""
+"""How many ids are shown if several match."""
 MISSING: Json = {}
 """Placeholder for a step that one of the two runs does not have."""
 
@@ -74,7 +74,9 @@ def rerun(folder: Path, episode: str = "") -> list[Compared]:
     plan = make_plan(manifest["plan"])
     job = next((job for job in plan.jobs() if job.id == name), None)
     if job is None:
-        raise UserError(f"the plan in {folder / 'manifest.json'} has no episode {name}; it was changed since")
+        raise UserError(
+            f"the plan in {folder / 'manifest.json'} has no episode {name}; the plan was changed after it ran"
+        )
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
     with closing(Nursery()) as nursery, agent_of(job, nursery) as agent:
         channels = frozenset(agent.channels)
@@ -83,7 +85,7 @@ def rerun(folder: Path, episode: str = "") -> list[Compared]:
 
 
 def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
-    """The only id that is asked for, or that begins so.
+    """The one id that equals or begins with the given text.
 
     Raises:
         UserError: there is none, or several.
@@ -115,7 +117,7 @@ def _single(folder: Path, episode: str) -> list[Compared]:
 
 
 def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
-    """What its agent was given; none of its models is asked for."""
+    """The channels that its agent was given; no model is needed."""
     if setup.agent in PROFILES:
         settings = AgentSettings(geo_input(setup.geo), parts(setup.without))
         return PROFILES[setup.agent].under(settings).channels
@@ -140,10 +142,10 @@ def _again(
 
 @dataclass(frozen=True, slots=True)
 class PlayedAgain:
-    """What an evaluation would have kept of an episode that was played again."""
+    """What an evaluation would have kept of the replayed episode."""
 
     lines: list[Json]
-    """Its trace, the result at the end."""
+    """Its trace, with the result as its last line."""
     row: EpisodeRow
     judged: Judged | None
 

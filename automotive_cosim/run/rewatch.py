@@ -47,7 +47,7 @@ def rewatch(folder: Path, drive: str = "") -> list[Compared]:
         raise UserError(f"drive {row.id} ended in an error and has no trace: {row.error}")
     if not all("sha256" in step for step in steps):
         raise UserError(
-            f"the trace of drive {row.id} has no hashes: an earlier version stored it; run the drive again"
+            f"the trace of drive {row.id} has no hashes: it was stored by an earlier version; rerun the drive"
         )
     return compare(steps, watched(row, steps).steps)
 

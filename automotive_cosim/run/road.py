@@ -18,7 +18,7 @@ line says ``format`` and what is run; every other line has one of these keys:
                events     [text, …]
     baseline   [[at_s, x, y, heading, speed], …]                          the car in the baseline run, once judged
 
-The file is written while the drive goes on; what a kill leaves is readable up to the last whole line.
+The file is written during the drive; after a kill, it can be read up to the last complete line.
 """
 
 from __future__ import annotations
@@ -71,7 +71,7 @@ class RoadRecord:
     seconds: tuple[Second, ...]
 
     def at(self, at_s: float) -> Second | None:
-        """The last second up to then, or the first; None if there is none."""
+        """The last second up to that time, else the first; None if there is none."""
         index = bisect_right(self._times, at_s + 0.05) - 1
         return self.seconds[max(0, index)] if self.seconds else None
 
@@ -81,11 +81,11 @@ class RoadRecord:
 
 
 EMPTY = RoadRecord(RoadShapes((), ()), ())
-"""Of a drive at which nobody looked."""
+"""Of a drive without observers."""
 
 
 def read_record(path: Path) -> RoadRecord:
-    """A whole file, up to where a kill cut it off.
+    """A whole file, or as much as was written before a kill.
 
     Raises:
         UserError: it cannot be read, or has another format.
@@ -119,7 +119,7 @@ def _record(path: Path) -> RoadRecord:
 
 
 def read_road(path: Path) -> Iterator[Json]:
-    """The lines of a file, up to where a kill cut it off.
+    """The lines of a file, or those written before a kill.
 
     Raises:
         UserError: it cannot be read, or has another format.

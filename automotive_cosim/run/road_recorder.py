@@ -105,7 +105,7 @@ class RoadRecorder(Watcher):
         self.close()
 
     def close(self) -> None:
-        """Completes the file, also if the episode broke off; may be called again."""
+        """Completes the file, even if the episode was broken off; may be called again."""
         if self._writer is not None:
             self._writer.close()
 
@@ -119,7 +119,7 @@ class RoadRecorder(Watcher):
 
 @dataclass(frozen=True, slots=True)
 class RoadFacts:
-    """What the file tells of a second besides the vehicles and lights."""
+    """What the file holds for a second besides vehicles and lights."""
 
     limit_kmh: float | None
     local_time: datetime
@@ -140,7 +140,7 @@ class RoadFacts:
 
 
 class RoadWriter:
-    """The file, and what it has told already."""
+    """The file, and what has already been written to it."""
 
     def __init__(self, path: Path, traffic: Traffic, about: Json, begin_s: float) -> None:
         """Begins the file.
@@ -176,7 +176,7 @@ class RoadWriter:
         )
 
     def second(self, driving: DrivingState, around: RoadFacts, snapshot: RoadSnapshot) -> None:
-        """One second of the drive, after what is new in it."""
+        """Writes one second of the drive, after the lanes and vehicles that are new in it."""
         self._seek(driving.x_m, driving.y_m)
         new = [each for each in snapshot.vehicles if each.vehicle_id not in self._numbers]
         if new:
@@ -233,7 +233,7 @@ class RoadWriter:
         self._raw.flush()
 
     def baseline(self, moments: Sequence[Moment]) -> None:
-        """The same car with nobody at the cockpit."""
+        """Writes the car in the baseline run."""
         rows = []
         for moment in moments:
             car, at_s = moment.driving, round(moment.time_s - self._begin_s, 2)
@@ -247,7 +247,7 @@ class RoadWriter:
         self._raw.close()
 
     def _seek(self, x_m: float, y_m: float) -> None:
-        """Tells the lanes, junctions and ground that have come into sight."""
+        """Writes the lanes, junctions and ground that have come into sight."""
         if self._sought_at is not None and math.dist(self._sought_at, (x_m, y_m)) < AHEAD_M:
             return
         self._sought_at = x_m, y_m
@@ -315,7 +315,7 @@ def is_being_written(path: Path) -> bool:
 def mark_as_written(file: IO[bytes]) -> None:
     """Marks a file as being written, until it is closed or the program ends."""
     if sys.platform != "win32":
-        with suppress(OSError):  # some file systems have no locks; then it only looks finished
+        with suppress(OSError):  # some file systems have no locks; there it looks finished
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 

@@ -60,7 +60,7 @@ class JobRow:
 
     @property
     def has_succeeded(self) -> bool:
-        """Whether it counts as a success; false for jobs without such a notion."""
+        """Whether it counts as a success; false for jobs that cannot succeed or fail."""
         return False
 
 
@@ -85,7 +85,7 @@ def from_line(kind: type[R], line: bytes) -> R:
 
 
 def from_json(kind: type[T], values: Json) -> T:
-    """The dataclass whose JSON form this is; keys that it does not have are ignored.
+    """The dataclass from its JSON form; unknown keys are ignored.
 
     Raises:
         ValueError: a field is missing or of another type.

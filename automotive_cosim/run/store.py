@@ -78,15 +78,15 @@ def opened(
 
     Args:
         folder: its path.
-        plan: the plan; a folder that was begun with another is refused.
+        plan: the plan; a folder that was started with a different one is refused.
         kind: kind of its rows.
         parts: folders in it.
         planned: how many jobs the plan has, for the manifest of an evaluation.
-        grows: the plan may be another one than before, as where nobody knows what will be run; see ``replan``.
+        grows: the plan may differ from the earlier one, for runs that are not known in advance; see ``replan``.
 
     Raises:
-        UserError: it cannot be written, is not an evaluation's, is in use, or was begun with another plan or
-            other versions.
+        UserError: it cannot be written, is not an evaluation's, is in use, or was started with a different
+            plan or different versions.
     """
     _check(folder)
     try:
@@ -104,7 +104,7 @@ def opened(
 
 
 def replan(folder: Path, plan: Json, planned: int) -> None:
-    """Writes another plan into the manifest of an open folder whose plan grows.
+    """Writes a new plan into the manifest of an open folder whose plan grows.
 
     Raises:
         UserError: it cannot be written.
@@ -119,7 +119,7 @@ def replan(folder: Path, plan: Json, planned: int) -> None:
 def cannot_write(folder: Path, error: OSError) -> UserError:
     """The error for a full disk or a folder that cannot be written."""
     why = error.strerror or str(error)
-    return UserError(f"cannot write to {folder}: {why}; its content is intact, rerun the command to resume")
+    return UserError(f"cannot write to {folder}: {why}; its contents are intact; rerun the command to resume")
 
 
 def read_rows(folder: Path, kind: type[R]) -> dict[str, R]:
@@ -153,7 +153,7 @@ def read_manifest(folder: Path) -> Json:
     """The manifest of an evaluation.
 
     Raises:
-        UserError: there is none, or it is of another format or an older one with the mode ``monitoring``.
+        UserError: there is none, it has another format, or an older one with the mode ``monitoring``.
     """
     path = folder / "manifest.json"
     try:
@@ -182,7 +182,7 @@ def read_evaluation(folder: Path) -> Json:
     """
     manifest = read_manifest(folder)
     if "agents" not in manifest["plan"]:
-        raise UserError(f"{folder} has no episodes of agents; give a results folder of `automotive-cosim eval`")
+        raise UserError(f"{folder} holds no agents' episodes; give a results folder of `automotive-cosim eval`")
     return manifest
 
 
@@ -258,7 +258,7 @@ def _check(folder: Path) -> None:
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "manifest.json").exists():
         begun = {"traces", "pictures", "lock"}
         if not {path.name for path in folder.iterdir()} <= begun:
-            raise UserError(f"{folder} contains something else; give --out an empty folder or an evaluation's")
+            raise UserError(f"{folder} contains other files; give --out an empty folder or an evaluation's")
 
 
 def _manifest(folder: Path, plan: Json, planned: int | None, *, grows: bool) -> None:
@@ -275,9 +275,9 @@ def _manifest(folder: Path, plan: Json, planned: int | None, *, grows: bool) -> 
             before = dict(manifest["starts"][0]["versions"])
         except (LookupError, TypeError, ValueError) as error:
             raise UserError(
-                f"{folder / 'manifest.json'} does not say its versions; give --out another folder"
+                f"{folder / 'manifest.json'} does not list the versions; give --out another folder"
             ) from error
-        _same("versions", before, now["versions"], folder)
+        _same("version", before, now["versions"], folder)
         manifest["starts"].append(now)
     write_whole(folder / "manifest.json", json.dumps(manifest, indent=1))
 
@@ -286,11 +286,11 @@ def _same(what: str, before: Json, now: Json, folder: Path) -> None:
     changed = [name for name in {**before, **now} if before.get(name) != now.get(name)]
     if changed:
         told = "; ".join(f"{name} was {before.get(name)!r} and is {now.get(name)!r}" for name in sorted(changed))
-        raise UserError(f"{folder} was begun with other {what}: {told}. Give --out another folder")
+        raise UserError(f"{folder} was started with a different {what}: {told}. Give --out another folder")
 
 
 def _git() -> Json | None:
-    """State of the checkout the package runs from; None if it is installed."""
+    """State of the checkout that the package runs from; None if it is installed."""
     here = Path(automotive_cosim.__file__).parent
 
     def ask(*words: str) -> str:
@@ -326,7 +326,7 @@ def _locked(folder: Path) -> Iterator[None]:
 
                 try:
                     fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:  # perhaps a page looks at this instant whether it is locked
+                except BlockingIOError:  # perhaps a page is checking at this instant whether it is locked
                     time.sleep(LOOK_S)
                     fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:

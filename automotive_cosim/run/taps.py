@@ -22,7 +22,7 @@ class PixelTaps:
     hits: int
     """Those inside a clickable element."""
     margin_px: float
-    """Mean distance from the edge of the element hit or nearest: positive inside, negative outside."""
+    """Mean distance to the edge of the element hit, else of the nearest: positive inside, negative outside."""
 
 
 def pixel_taps(steps: Sequence[Step]) -> PixelTaps | None:

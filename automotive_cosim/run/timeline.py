@@ -88,7 +88,7 @@ def _entry(moment: Moment, zero_s: float, kind: str, text: str) -> TimelineEntry
 
 def _goal(goal_s: float | None) -> Iterable[TimelineEntry]:
     if goal_s:
-        yield TimelineEntry(round(goal_s, 2), "goal", "goal reached, and it holds to the end")
+        yield TimelineEntry(round(goal_s, 2), "goal", "goal reached and kept to the end")
 
 
 def _actions(steps: Sequence[Step], zero_s: float) -> Iterable[TimelineEntry]:

@@ -13,7 +13,7 @@ SUITE = "automotive-cosim"
 
 def installed(names: Iterable[str]) -> dict[str, str]:
     """The versions of distributions by name, ``not installed`` for those that are missing; the suite's own is that
-    of the code that runs, whatever an editable install noted when it was made."""
+    of the running code, even if an editable install recorded another one."""
     found: dict[str, str] = {}
     for name in names:
         try:

@@ -54,11 +54,11 @@ class WatchSetup:
 
 @dataclass(frozen=True, slots=True)
 class WatchRecord:
-    """What a drive leaves behind."""
+    """What is kept of a drive."""
 
     row: WatchRow
     timeline: Json
-    """Speed, limit and the do-nothing drive's speed, one value a second."""
+    """Speed, limit and the do-nothing run's speed, one value per second."""
     steps: tuple[Json, ...]
     """Action, thinking time and result of each step, with hashes of the state that followed."""
 
@@ -104,9 +104,9 @@ def judged_row(
 
     Args:
         planned: its row before it had run.
-        end: why it is over.
+        end: why it ended.
         channels: what the agent was given.
-        result: what came of it.
+        result: how it was judged.
         totals: fields of the row about the agent's model.
     """
     found = {entry.name: getattr(result, entry.name) for entry in fields(result)}
@@ -127,7 +127,7 @@ def run_watch(
     Args:
         job_id: id of its row.
         setup: what to run.
-        agent: who watches.
+        agent: the agent that watches.
         simulations: warm simulations to use; by default its own, closed with the drive.
         watchers: notified of everything as it happens.
         plan: used instead of the family's plan for the seed.

@@ -31,7 +31,7 @@ class WatchRow(JobRow):
     geo: GeoInput = GeoInput.FULL
     clock: Clock = Clock.FIXED
     latency_s: float = 0.0
-    """Simulated seconds that each answer took besides."""
+    """Simulated seconds added to each answer."""
     see: See = See.BOTH
     """How the agent saw the screen."""
     feedback: FeedbackDetail = FeedbackDetail.VERBOSE
@@ -41,16 +41,16 @@ class WatchRow(JobRow):
     repeat: int = 0
     end: End = End.ERROR
     agent_error: str | None = None
-    """How the agent's side failed: the rest of the drive then went on without it."""
+    """How the agent's side failed; the rest of the drive then ran without it."""
     score: Annotated[Score | None, InColumns("score")] = None
     """None without a judgement."""
     value: float | None = None
-    """The headline: 0 is doing nothing, 100 the rule-perfect watcher."""
+    """The headline figure: 0 is doing nothing, 100 is the rule-perfect watcher."""
     harm: Annotated[Harm | None, InColumns("harm")] = None
     baseline_harm: Annotated[Harm | None, InColumns("baseline_harm")] = None
-    """The same of the drive with nobody at the cockpit."""
+    """The same for the do-nothing run."""
     distraction_s: float = 0.0
-    """Seconds for which what the driver was told took the eyes off the road."""
+    """Seconds for which messages took the driver's eyes off the road."""
     events: tuple[JudgedEvent, ...] = ()
     acts: tuple[JudgedAct, ...] = ()
     steps: int = 0

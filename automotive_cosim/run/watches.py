@@ -66,7 +66,7 @@ class WatchPlan:
     clock: Annotated[str, OneOf(tuple(Clock))] = str(Clock.FIXED)
     """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
     latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
-    """Simulated seconds that each answer takes besides, before its action."""
+    """Simulated seconds added to each answer, before its action."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each drive, for models that do not answer the same twice."""
     see: Annotated[tuple[Annotated[str, OneOf(tuple(See), "way to see the screen")], ...], MinLen(1)] = ("both",)
@@ -90,7 +90,7 @@ class WatchPlan:
         """Checks every name before anything runs.
 
         Raises:
-            UserError: a family, scenario, agent or model does not exist, one cannot drive on and on there, or an
+            UserError: a family, scenario, agent or model does not exist, its roads allow no endless drive, or an
                 agent needs a person.
         """
         for scenario in self.scenarios:
@@ -222,7 +222,7 @@ def make_watch_plan(values: Mapping[str, Any]) -> WatchPlan:
     """
     plan = checked(WatchPlan, values, lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:
-        raise UserError("the plan names no agent; give --agents asurada, or --agents rule-perfect")
+        raise UserError("the plan has no agent; give --agents asurada, or --agents rule-perfect")
     given = {entry.name: getattr(plan, entry.name) for entry in fields(plan)}
     once: dict[str, Any] = {name: tuple(dict.fromkeys(of)) for name, of in given.items() if isinstance(of, tuple)}
     return replace(plan, **once)

@@ -17,18 +17,18 @@ NAMELESS = {
     "unclassified": "a minor road",
     **{f"{road}_link": "a slip road" for road in ("motorway", "trunk", "primary", "secondary", "tertiary")},
 }
-"""What a road without a name is called whose class, a word of OpenStreetMap, is not what people say."""
+"""Names of unnamed roads, by class, where OpenStreetMap's word for the class is not what people say."""
 
 
 def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
-    """Describes an action, as a sentence without subject.
+    """Describes an action, as a sentence without a subject.
 
     Args:
         action: None for an answer that could not be read.
         elements: the list the agent saw when it acted.
     """
     if action is None:
-        return "gives an answer that cannot be read"
+        return "gives an unreadable answer"
     on = _target(action, elements)
     match action.action_type:
         case ActionType.CLICK:
@@ -78,7 +78,7 @@ def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
 def road_in_words(road: RoadHere) -> str:
     """A road by its name, else by its class."""
     if road.name or not road.road_class:
-        return road.name or "a road without a name"
+        return road.name or "an unnamed road"
     if road.road_class in NAMELESS:
         return NAMELESS[road.road_class]
     words = _plain(road.road_class)

@@ -136,7 +136,7 @@ def save_picture(scenario: Scenario, path: Path) -> tuple[str, ...]:
         draft.replace(path)
     except OSError as error:
         raise UserError(
-            f"cannot write {path} ({error.strerror}); give --out a folder that you may write to"
+            f"cannot write {path} ({error.strerror}); give --out a folder that you can write to"
         ) from error
     return unwritten
 

@@ -142,7 +142,13 @@ def test_the_page_tells_all_sites_and_times(made: tuple[Path, Calibration]) -> N
     assert found.times[1].simulated_s is None
     assert (target / "plots/map.svg").is_file()
     told = "\n".join(findings(found))
-    for word in ("held out, before the fit", "teleports", "travel times", "leave the demand open", "with seed 1"):
+    for word in (
+        "held out, before the fit",
+        "teleports",
+        "travel times",
+        "do not determine the demand",
+        "with seed 1",
+    ):
         assert word in told
 
 

@@ -75,7 +75,7 @@ def test_an_agent_that_fails_is_judged_and_told(cli, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [
-        ((), "names no agent"),
+        ((), "has no agent"),
         (("--agents", "t4a"), "did you mean"),
         (("--agents", "t3a", "--seeds", "3-1"), "--seeds"),
         (("--agents", "t3a", "--tasks", "nothing_*"), "no task"),

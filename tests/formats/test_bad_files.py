@@ -179,7 +179,7 @@ def test_a_broken_file_is_refused(formats: dict[str, Format], name: str, content
 @pytest.mark.parametrize("name", TOML)
 def test_an_empty_file_lacks_what_must_be_there(formats: dict[str, Format], name: str) -> None:
     (problem,) = _refused(formats[name], formats[name].written(""))
-    assert "lacks" in problem or "names no agent" in problem
+    assert "lacks" in problem or "has no agent" in problem
 
 
 @pytest.mark.parametrize("path", ["nowhere.toml", ".", "/dev/zero"])

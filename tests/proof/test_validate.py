@@ -131,7 +131,7 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, whole, tm
     shutil.copytree(folder, tmp_path / "f")
     other = validate("own_one,own_two", "--seeds", "1", "--out", "f")
     assert other.returncode == 2
-    assert "begun with other plan: seeds was [0, 1] and is [0]" in other.stderr
+    assert "started with a different plan: seeds was [0, 1] and is [0]" in other.stderr
     (tmp_path / "tasks" / "own.py").write_text(OWN.replace("Split it.", "Part it."))
     changed = validate("own_one,own_two", "--seeds", "2", "--out", "f")
     assert (changed.returncode, changed.stderr.count("\n")) == (2, 1)

@@ -149,7 +149,7 @@ def test_held_out_phrasings_stand_apart(folder):
     assert rows["t3a"] == ["12/20, 2 errors", "0/6", "10/16", "0/6"]
     lines = standings(found)
     assert "asurada, rules stand-in: 36 of 36 episodes, 12 of 12 pairs" in lines[0]
-    assert lines[0].endswith("; of these in held-out phrasings 18 of 18 episodes, 6 of 6 pairs")
+    assert lines[0].endswith("; in held-out phrasings: 18 of 18 episodes, 6 of 6 pairs")
 
 
 def test_a_slower_agent_is_a_contestant_of_its_own():

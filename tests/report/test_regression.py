@@ -89,7 +89,7 @@ def test_junit_counts_what_it_lists(tmp_path):
 
 
 def test_runs_that_share_nothing_are_refused(tmp_path):
-    with pytest.raises(UserError, match="share no agent"):
+    with pytest.raises(UserError, match="have no contestant in common"):
         changes(write(tmp_path / "a"), write(tmp_path / "b", agent="t3a"))
 
 

@@ -244,7 +244,7 @@ def test_stored_episodes_are_judged_again_by_the_present_checks(tmp_path, monkey
     assert [(change.part, change.now) for change in oracle.changes] == [("in_time", False)]
     wider = replace(task, first=replace(task.first, may_write=frozenset({"horn"})))
     monkeypatch.setitem(CATALOGUE._tasks, task.id, wider)
-    assert all(each.now is None and "allows other commands" in each.problem for each in regrade(tmp_path / "e"))
+    assert all(each.now is None and "have changed; rerun" in each.problem for each in regrade(tmp_path / "e"))
     others = {task_id: each for task_id, each in CATALOGUE.items() if task_id != task.id}
     monkeypatch.setattr(CATALOGUE, "_tasks", others)
     assert all(each.now is None and "no task" in each.problem for each in regrade(tmp_path / "e"))

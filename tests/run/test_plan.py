@@ -209,7 +209,7 @@ def test_ids_stay_as_they_were_when_there_were_modes():
 @pytest.mark.parametrize(
     ("values", "said"),
     [
-        ({"agents": []}, "names no agent"),
+        ({"agents": []}, "has no agent"),
         ({"agents": "oracle"}, "agents is 'oracle'; it must be a list of texts"),
         ({"seeds": ["0"]}, "it must be a whole number"),
         ({"seeds": [-1]}, "it must be a whole number from 0 to 2147483647"),
@@ -283,5 +283,5 @@ def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
 def test_a_language_that_is_not_there_is_refused():
     with pytest.raises(UserError, match=r"language.*'es'"):
         plan(language=["es"])
-    with pytest.raises(UserError, match="has phrasings in German and Japanese; the hard suite has"):
+    with pytest.raises(UserError, match="has phrasings in German and Japanese; those of the hard suite do"):
         plan(tasks=["hvac"], language=["de", "ja"]).check()

@@ -75,7 +75,7 @@ def test_another_plan_version_or_format_is_refused_and_nothing_lost(tmp_path):
     manifest = read_manifest(folder)
     manifest["starts"][0]["versions"]["libsumo"] = "0.0.1"
     path.write_text(json.dumps(manifest))
-    with pytest.raises(UserError, match="other versions: libsumo"), opened(folder, PLAN, JobRow):
+    with pytest.raises(UserError, match="started with a different version: libsumo"), opened(folder, PLAN, JobRow):
         pass
     path.write_text(json.dumps(manifest | {"format": 0}))
     with pytest.raises(UserError, match="format 0"), opened(folder, PLAN, JobRow):

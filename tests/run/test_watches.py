@@ -287,7 +287,7 @@ def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None
     rows = read_rows(tmp_path / "e", WatchRow).values()
     scores = {each.latency_s: mine[0].value for each, mine in grouped(rows).items()}
     assert scores[10.0] < scores[0.0]  # type: ignore[operator]
-    assert "10 s later" in write_drives(tmp_path / "e").read_text("utf-8")
+    assert "latency 10 s" in write_drives(tmp_path / "e").read_text("utf-8")
 
 
 @pytest.mark.slow

@@ -83,7 +83,7 @@ def _road(**changes: object) -> RoadHere:
         ("", "cycle_street", "a cycle street"),
         ("", "living_street", "a living street"),
         ("", "motorway_link", "a slip road"),
-        ("", "", "a road without a name"),
+        ("", "", "an unnamed road"),
     ],
 )
 def test_a_road_is_called_as_people_say(name: str, road_class: str, words: str):

@@ -160,7 +160,7 @@ def test_what_is_done_is_not_run_again(plan: StudyPlan, folder: Path, tmp_path: 
     assert run_study(plan, again).ran == 3
     assert steady(again) == steady(folder)
     assert run_study(plan, again).ran == 0
-    with pytest.raises(UserError, match="begun with other plan"):
+    with pytest.raises(UserError, match="started with a different plan"):
         run_study(replace(plan, compliance=(0.5,)), again)
 
 

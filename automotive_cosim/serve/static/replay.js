@@ -110,7 +110,7 @@ export async function replayPage(query, id, episode) {
       const others = second.seen.size - ([...second.seen.keys()].some((number) => road.vehicles.get(number)?.id === "ego") ? 1 : 0);
       const limit = second.limit_kmh === null ? "no limit known" : `limit ${speedInWords(second.limit_kmh, second.speed_unit).split(" ")[0]}`;
       about.replaceChildren(h("b", { class: second.limit_kmh !== null && second.speed_kmh > second.limit_kmh + 1 ? "over" : "" }, speedInWords(second.speed_kmh, second.speed_unit)),
-        ` ${limit} · ${second.road || "a road without a name"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""}${sky(second)} · `,
+        ` ${limit} · ${second.road || "an unnamed road"}${second.local_time ? ` · ${second.local_time.slice(11, 16)}` : ""}${sky(second)} · `,
         road.alone ? "other vehicles were not recorded" : `${counted(others, "other vehicle")} in sight`,
         view.ghost ? h("span", { class: "ghost" }, "Dashed: the same drive with nobody at the cockpit") : "");
       canvas.setAttribute("aria-label", `The road from above. ${about.textContent}`);
