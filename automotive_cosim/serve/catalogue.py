@@ -22,7 +22,7 @@ def tasks() -> Json:
 
 
 def task(name: str) -> Json:
-    """One task with both halves in words, and the law that it rests on.
+    """One task with both halves in words, and the law on which it is based.
 
     Raises:
         UnknownNameError: there is none.

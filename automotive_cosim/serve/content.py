@@ -170,7 +170,7 @@ class Content:
         return decisions(self._study(name))
 
     def watched_study(self, name: str) -> Json:
-        """The drives of a study that are under way, which it tells of for as long as somebody asks.
+        """The drives of a study that are running, which it reports while somebody asks for them.
 
         Raises:
             UserError: it is not here.
@@ -181,7 +181,7 @@ class Content:
         return drives_under_way(folder)
 
     def decision_map(self, name: str, decision: str) -> Json:
-        """The ways of a decision on one road.
+        """The routes of a decision's futures on one map.
 
         Raises:
             UserError: it is not here, or cannot be read.
@@ -229,7 +229,7 @@ class Content:
             return None
 
     def _solved(self, entry: ShelfEntry, task: str) -> Json:
-        """Half and id of each episode of a record in which the oracle solves a task and pictures were kept."""
+        """Half and id of each episode of a record in which the oracle solves a task and that has pictures."""
         solved: list[tuple[str, str | None]] = []
         if entry.is_evaluation:
             plan = read_manifest(entry.folder)["plan"]
@@ -275,7 +275,7 @@ class Content:
         }
 
     def _drive_in(self, entry: ShelfEntry, episode: str | None) -> tuple[str, ...] | None:
-        """Where in a record the drive is; None if this is none."""
+        """Where in a record the drive is; None if it is not a drive."""
         if entry.is_drive:
             return ()
         for kept in () if episode is None else (("pictures", episode), (LIVE, episode)):
@@ -344,25 +344,25 @@ class Content:
             return False
 
     def _unfinished(self, entry: ShelfEntry, episode: str | None) -> Json:
-        """What is known of an episode that runs or was killed."""
+        """What is known about an episode that is running or was killed."""
         try:
             begun = next(iter(read_road(self._road(entry, episode))), {})
         except NotHereError:
             begun = {}
         return {name: begun.get(name) for name in HEAD} | {
             "task": begun.get("task") or episode or entry.folder.name,
-            "end": "running" if self._is_running(entry, episode) else "stopped before its end",
+            "end": "running" if self._is_running(entry, episode) else "stopped before the end",
         }
 
 
 def _kind(plan: Json) -> str:
-    """What a folder with rows is, by its plan."""
+    """The kind of a folder with rows, by its plan."""
     marks = {"study": "study", "drives": "drives", "agents": "evaluation"}
     return next((kind for mark, kind in marks.items() if mark in plan), "other")
 
 
 def _span(event: Json) -> Json:
-    """An event of a drive from when it can be known to its deadline, or to its end."""
+    """An event of a drive, from when it becomes observable to its deadline or its end."""
     told = {name: event[name] for name in ("kind", "words", "bait", "outcome", "obliged_s", "deadline_s")}
     return {**told, "from_s": event["observable_s"], "to_s": event["deadline_s"] or event["ends_s"]}
 
@@ -418,7 +418,7 @@ def _object(path: Path) -> Json:
 
 
 def _safely(entry: ShelfEntry, describe: Any) -> Json:
-    """A line for a record that cannot be read, too."""
+    """A line for a record, even if it cannot be read."""
     try:
         made: Json = describe(entry)
     except (UserError, OSError, ValueError, LookupError, TypeError, AttributeError) as error:
@@ -476,7 +476,7 @@ def _has_picture(shelf: Shelf, entry: ShelfEntry, episode: str | None, step: int
 
 
 def _alone(result: Json) -> Iterable[Json]:
-    """A road on which nobody looked: the car alone, on the line that it drove."""
+    """A road without recorded surroundings: the car alone, on the line that it drove."""
     path = result.get("path") or []
     yield {"format": FORMAT, "radius_m": 0.0, "left_hand": False, "has_place": True, "alone": True}
     line = [part for sample in path for part in (sample["x_m"], sample["y_m"])]

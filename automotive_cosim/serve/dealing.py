@@ -1,9 +1,9 @@
-"""Deals a study's episodes to people: what each of them plays, and in what order.
+"""Deals a study's episodes to people: who plays what, and in what order.
 
 Everybody plays every half of every task with every seed, in two rounds; a pair has one half in each. In a round,
-the order is a row of a Williams design: over n people for n tasks (2n, if n is odd) every task stands at every
-place equally often, and follows every other equally often. ``order_seed`` shuffles which task is which, and which
-half of the people meets the first half of a pair first. Nobody gets both halves of a pair in a row.
+the order is a row of a Williams design: over n people for n tasks (2n if n is odd), every task takes every position
+equally often, and follows every other task equally often. ``order_seed`` shuffles the tasks, and the people
+who meet the first half of a pair first. Nobody gets both halves of a pair in a row.
 """
 
 from __future__ import annotations
@@ -36,16 +36,16 @@ class PeoplePlan:
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
     """Seeds; everybody plays every task with each."""
     order_seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
-    """Draws the orders."""
+    """Seed of the orders."""
     scenario: str | None = None
-    """Instead of the tasks' own."""
+    """Scenario to use instead of the tasks' own."""
 
     @property
     def plan(self) -> Plan:
         """The same as an evaluation of the agent ``human``.
 
         Raises:
-            UserError: a code name is unfit or given twice, there is no such task, or too little to deal.
+            UserError: a code name is invalid or given twice, there is no such task, or there is too little to deal.
         """
         for name in self.people:
             check_code_name(name)
@@ -56,9 +56,9 @@ class PeoplePlan:
         plan = people_plan(choose(self.tasks), self.people, sorted(set(self.seeds)), scenario=self.scenario)
         units = {_unit(job) for job in plan.jobs()}
         if len(units) < 2 and any(job.task.second for job in plan.jobs()):
-            raise UserError("one pair alone would be dealt both halves in a row; give another task or seed")
+            raise UserError("a single pair would be dealt with both halves in a row; add another task or seed")
         if not units:
-            raise UserError(f"none of these tasks runs in {self.scenario}")
+            raise UserError(f"none of these tasks runs in {self.scenario}; choose other tasks or another scenario")
         return plan
 
 
@@ -74,7 +74,7 @@ def read_study(path: Path) -> PeoplePlan:
 def deal(
     jobs: Sequence[EpisodeJob], people: Sequence[str], order_seed: int
 ) -> Mapping[str, tuple[EpisodeJob, ...]]:
-    """What everybody plays, in order.
+    """What each person plays, in order.
 
     Args:
         jobs: of a plan for these people.
@@ -129,7 +129,7 @@ def _parted(
 
 
 def _half_of_them(people: int, order_seed: int, unit: int) -> list[int]:
-    """0 or 1 for each person: as many of one as of the other, or one more."""
+    """0 or 1 for each person, in equal numbers or differing by one."""
     drawn = [number % 2 for number in range(people)]
     np.random.default_rng([order_seed, unit]).shuffle(drawn)
     return drawn

@@ -22,9 +22,9 @@ from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.traffic.network import Network
 
 AROUND_M = 400.0
-"""Roads that are drawn beyond the ways."""
+"""How far beyond the routes roads are drawn."""
 EVERY_S = 1.0
-"""Between two places of a car."""
+"""Between two positions of a car."""
 
 
 def decisions(folder: Path) -> Json:
@@ -56,16 +56,16 @@ def drives_under_way(folder: Path) -> Json:
 
 
 def decision_map(folder: Path, name: str) -> Json:
-    """The roads around a decision and the ways of its futures; x to the east and y to the north, in metres.
+    """The roads around a decision and the routes of its futures; x to the east and y to the north, in metres.
 
     Raises:
-        NotHereError: there is no such decision, or its row does not say the ways.
+        NotHereError: there is no such decision, or its row does not hold the routes.
         UserError: the study or its scenario cannot be read.
     """
     study = read_study(folder)
     point = next((each for each in all_decisions(study.rows) if each.id == name), None)
     if point is None or not point.decision.ways:
-        raise NotHereError(f"there are no ways of a decision {name!r}; older studies did not keep them")
+        raise NotHereError(f"there are no routes of a decision {name!r}; older studies did not keep them")
     edges = _network(study.plan.scenario).edges
     ways = [
         [place for edge in way if edge in edges for place in edges[edge].shape_m] for way in point.decision.ways
@@ -126,7 +126,7 @@ def _decision(study: Study, point: DecisionPoint) -> Json:
 
 
 def _future(branch: Branch, number: int, gain_s: float) -> Json:
-    """What a way saves over keeping the route; of the ego as the mean over the draws."""
+    """What a route saves compared with keeping the route, for the ego as the mean over the draws."""
     return {
         "number": number,
         "gain_s": round(gain_s, 1),

@@ -1,4 +1,4 @@
-"""The person who plays, as the agent of an episode, and what the person's hands do at once."""
+"""The person who plays, as the agent of an episode, and the immediate preview of the person's acts."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ class PersonLeftError(KeyboardInterrupt):
 
 
 class Person:
-    """The agent: whoever gives actions."""
+    """The agent: the person who gives the actions."""
 
     name = HUMAN
     channels = ALL
@@ -38,11 +38,11 @@ class Person:
     def __init__(
         self, model: str = NO_MODEL, *, counts: bool = False, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        """Nobody is there yet.
+        """Starts without a person.
 
         Args:
-            model: the code name, which stands where agents have their model.
-            counts: whether leaving counts, as the failure of an agent.
+            model: the code name, which replaces the model.
+            counts: whether leaving counts as a failure of the agent.
             clock: wall seconds.
         """
         self.model = model
@@ -62,7 +62,7 @@ class Person:
         """Hands in an action.
 
         Raises:
-            UserError: too many wait already, or the clock stands.
+            UserError: too many are already waiting, or the clock is stopped.
         """
         if not self._goes.is_set():
             raise UserError("the clock is stopped; resume it first")
@@ -76,7 +76,7 @@ class Person:
         return not self._given.empty()
 
     def pace(self, speed: float, *, paused: bool) -> None:
-        """Sets how many simulated seconds pass in a second; while paused, none after the present one."""
+        """Sets how many simulated seconds pass in a second; while paused, none after the current one."""
         self._tick_s = TICK_S / speed
         (self._goes.clear if paused else self._goes.set)()
 
@@ -87,7 +87,7 @@ class Person:
         self._given.put(None)
 
     def listen(self, told: Callable[[Observation], None]) -> None:
-        """Sets who hears what the person is told, and starts the clock."""
+        """Sets the recipient of what the person is told, and starts the clock."""
         self._told = told
         self._due_s = self._clock() + self._tick_s
 
@@ -95,7 +95,7 @@ class Person:
         """Does nothing: the page shows the driver's words."""
 
     def act(self, observation: Observation) -> Action:
-        """The action given within the present second, else to wait.
+        """The action given within the current second, else a wait.
 
         Raises:
             AgentError: the person has left an episode that counts.
@@ -105,7 +105,7 @@ class Person:
             self._told(observation)
         tick_s = self._tick_s
         ahead_s = self._due_s - self._clock() - tick_s
-        if ahead_s > 0:  # time has run ahead of the clock by an act
+        if ahead_s > 0:  # an act has moved simulated time ahead of the clock
             time.sleep(ahead_s)
         self._goes.wait()
         now_s = self._clock()
@@ -121,18 +121,18 @@ class Person:
 
 
 class Preview:
-    """The screen as the acts that wait will leave it, drawn before the road has taken their seconds.
+    """The screen as the waiting acts will leave it, drawn before their seconds have passed on the road.
 
-    Acts are performed on a copy of the cockpit, which nothing else ever sees.
+    Acts are performed on a copy of the cockpit that nothing else uses.
     """
 
     def __init__(self) -> None:
         """Nothing to show yet."""
         self._cockpit: Cockpit | None = None
-        """A copy of the true one, and further only by the acts that wait."""
+        """A copy of the real one, ahead of it only by the waiting acts."""
 
     def follow(self, cockpit: Cockpit) -> None:
-        """Goes on from the true cockpit."""
+        """Starts again from the real cockpit."""
         self._cockpit = cockpit.copy()
 
     def after(self, action: Action) -> npt.NDArray[np.uint8]:

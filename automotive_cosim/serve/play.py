@@ -3,7 +3,7 @@
 The episode is one of ``eval``, or in practice one of ``run``: found, recorded and judged by the same code. Only its
 agent is a person, whose acts come from a page. An act takes a simulated second, as any agent's does; in a second
 without an act, the car drives on. If the person acts faster than that, the next act waits; if the simulation is
-slower than real time, the clock slips. Who leaves an episode that counts has not succeeded in it.
+slower than real time, the clock slips. Leaving an episode that counts is a failure.
 """
 
 from __future__ import annotations
@@ -60,15 +60,15 @@ PICTURES = "pictures"
 
 
 class PlayState(StrEnum):
-    """What is going on."""
+    """The state of play."""
 
     IDLE = "idle"
     WARMING = "warming"
     DRIVING = "driving"
-    """The car is on its way to the situation."""
+    """The car is driving to the situation."""
     ACTING = "acting"
     ENDING = "ending"
-    """The road is watched a little longer, and the record is written."""
+    """The aftermath is simulated, and the record is written."""
     OVER = "over"
     FAILED = "failed"
 
@@ -90,7 +90,7 @@ class PlayScene:
     screen: bytes = b""
     """The cockpit as a JPEG."""
     look: int = 0
-    """Another number for another screen."""
+    """Changes when the screen changes."""
     error: str = ""
     folder: Path | None = None
     """The record, or the evaluation that it is in, once the episode is over."""
@@ -127,16 +127,16 @@ class Game(Watcher, WatchWatcher):
         self._preview = Preview()
         self._shown = ShownScreen()
         self._hand = threading.Lock()
-        """Held while an act or a step changes what is shown, so that none overtakes another."""
+        """Held while an act or a step changes what is shown, so that they stay in order."""
         self._cockpit: Cockpit | None = None
-        """The true one, of the episode under way."""
+        """The real cockpit of the running episode."""
 
     def start(self, task: str, half: str, seed: int, name: str, *, practice: bool) -> None:
         """Begins an episode.
 
         Args:
             task: id of the task.
-            half: ``first``, ``second``, or empty to be dealt one by the seed.
+            half: ``first``, ``second``, or empty to let the seed choose.
             seed: seed of the episode.
             name: code name of the person.
             practice: it may be paused and slowed, and gives no row.
@@ -166,7 +166,7 @@ class Game(Watcher, WatchWatcher):
             family: of the drive.
             seed: of the drive.
             name: code name of the person.
-            practice: it may be paused and slowed; no other drive of this name counts it.
+            practice: it may be paused and slowed, and does not count.
 
         Raises:
             UserError: an episode is running, there is no such family, or the name is no code name.
@@ -229,21 +229,21 @@ class Game(Watcher, WatchWatcher):
         given = parse(action)
         with self._hand:
             if self._scene.state is not PlayState.ACTING:
-                raise UserError("nobody can act now")
+                raise UserError("no action is possible now; wait until the episode has started")
             self._person.give(given)
             self._shown.show(self._preview.after(given))
-            with self._news:  # the page has it from here: nobody else needs to hear of it
+            with self._news:  # the page gets it from here, so nobody else needs to be notified
                 self._scene = replace(self._scene, screen=self._shown.jpeg, look=self._shown.look)
             return self._shown.jpeg
 
     def leave(self) -> None:
-        """Ends the episode, if one is running, soon."""
+        """Ends the episode soon, if one is running."""
         self._person.stop()
         if self._scene.state is PlayState.ACTING:
             self._tell(state=PlayState.ENDING)
 
     def close(self) -> None:
-        """Breaks off what is going on, which leaves no row, and waits until it has ended."""
+        """Aborts what is running, without a row, and waits until it has ended."""
         self._person.counts = False
         self.leave()
         if self._thread is not None:
@@ -258,7 +258,7 @@ class Game(Watcher, WatchWatcher):
 
         Args:
             seen: version that is known already.
-            wait_s: how long to wait for another.
+            wait_s: how long to wait for a newer one.
         """
         with self._news:
             self._news.wait_for(lambda: self._scene.version != seen, wait_s)
@@ -267,12 +267,12 @@ class Game(Watcher, WatchWatcher):
     # --- the episode ------------------------------------------------------------------------------------------
 
     def warming(self, scenario: str, done_s: float, total_s: float) -> None:
-        """Tells how far the warm-up is."""
+        """Reports the progress of the warm-up."""
         self._check_stays()
         self._tell(state=PlayState.WARMING, progress=done_s / total_s if total_s else 1.0)
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Tells that the car is on its way."""
+        """Reports that the car is driving to the situation."""
         if self._scene.state is PlayState.WARMING:
             self._tell(state=PlayState.DRIVING)
         if self._scene.state in (PlayState.WARMING, PlayState.DRIVING):
@@ -303,7 +303,7 @@ class Game(Watcher, WatchWatcher):
         self._follow(watch.screenshot(), is_over=watch.end is not None)
 
     def _follow(self, screenshot: npt.NDArray[np.uint8], *, is_over: bool) -> None:
-        """Shows the true screen, unless an act that waits has changed what the person sees."""
+        """Shows the real screen, unless a waiting act has changed what the person sees."""
         with self._hand:
             if not self._person.has_acts:
                 assert self._cockpit is not None
@@ -314,7 +314,7 @@ class Game(Watcher, WatchWatcher):
                 self._tell(state=PlayState.ENDING)
 
     def _check_stays(self) -> None:
-        """Before the hand-over, there is nothing to record of an episode that is left."""
+        """Stops an episode that is left before the hand-over, as there is nothing to record."""
         if self._person.has_left:
             raise StoppedError
 
@@ -329,7 +329,7 @@ class Game(Watcher, WatchWatcher):
     def _begin(self, person: Person, play: Callable[[], None]) -> None:
         with self._news:
             if self.is_running:
-                raise UserError("an episode is running already; finish or leave it first")
+                raise UserError("an episode is already running; finish or leave it first")
             self._person = person
             state = PlayState.WARMING
             self._scene = PlayScene(self._scene.version + 1, state, is_practice=not person.counts)
@@ -392,7 +392,7 @@ class Game(Watcher, WatchWatcher):
 
 
 def _told(seen: Observation) -> Json:
-    """What the person is told: the same as an agent."""
+    """What the person is told: the same as an agent is told."""
     return {
         "goal": seen.goal,
         "said": list(seen.said),
@@ -416,7 +416,7 @@ def _told(seen: Observation) -> Json:
 
 
 def _readings(seen: Observation) -> Json:
-    """The car's sensors and receivers by name, without those that it lacks."""
+    """The readings of the car's sensors and receivers by name, without missing ones."""
     parts = {"": seen.vehicle, "link ": seen.connectivity, "gps ": seen.gps}
     named = {
         prefix + each.name: getattr(part, each.name)

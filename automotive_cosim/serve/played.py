@@ -1,7 +1,7 @@
 """What people play for the record: an evaluation of the agent ``human``, which every report reads.
 
-The model of a row is the person's code name. Somebody who plays an instance again gets a further repeat, so that a
-first try is never replaced.
+The model of a row is the person's code name. If a person plays an instance again, it is a new repeat, so that the
+first attempt is never replaced.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ def people_plan(
     repeats: int = 1,
     scenario: str | None = None,
 ) -> Plan:
-    """The plan in which everybody plays every task with every seed. A person's seconds pass on the road."""
+    """The plan in which everyone plays every task with every seed. A person's seconds pass on the road."""
     return Plan(
         agents=(HUMAN,),
         models=tuple(people),
@@ -55,10 +55,10 @@ def people_plan(
 
 
 def check_code_name(name: str) -> None:
-    """Refuses what cannot stand for a person in reports and file names.
+    """Refuses names that cannot be used for a person in reports and file names.
 
     Raises:
-        UserError: it is empty, too long, or has other signs than letters, digits, spaces, - and _.
+        UserError: it is empty, too long, or has characters other than letters, digits, spaces, - and _.
     """
     is_plain = all(letter.isalnum() or letter in " -_" for letter in name)
     if not name.strip() or len(name) > LONGEST_NAME or not is_plain:
@@ -86,7 +86,7 @@ class PlayedRows(ABC, Generic[R]):
 
     @abstractmethod
     def plan_of(self, rows: Sequence[R]) -> Json:
-        """The smallest plan that has these rows, which are all of it that was meant to be run."""
+        """The smallest plan that has these rows, which are all that were meant to be run."""
 
     def close(self) -> None:
         """Lets another process write."""

@@ -1,8 +1,8 @@
-"""The web server: a fixed table of routes; all of them only read, but for those of playing.
+"""The web server: a fixed table of routes, which only read, except for playing.
 
-Whoever has the address with its token gets in; the token is then swapped for a cookie that other sites cannot use.
-The standard library's server suffices: a page asks for a second of road or a picture at a time, and every answer is
-made in a few milliseconds.
+The address with its token gives access; the token is then swapped for a cookie that other sites cannot use.
+The standard library's server suffices: a page asks for a second of road or a picture at a time, and every answer
+takes a few milliseconds.
 """
 
 from __future__ import annotations
@@ -58,7 +58,7 @@ class WebAnswer:
     body: bytes
     kind: str = "application/json"
     keep_s: int = 0
-    """How long the browser may use it again without asking."""
+    """How long the browser may reuse it without asking."""
 
 
 class RefusedRequestError(Exception):
@@ -78,20 +78,20 @@ class Visitor(StrEnum):
     """Who asks, by the token."""
 
     OWNER = "owner"
-    """Whoever started the server: sees everything."""
+    """The person who started the server: sees everything."""
     PERSON = "person"
-    """Who takes part in a study: sees no task, no record and nobody's verdicts."""
+    """A participant of a study: sees no task, no record and nobody's verdicts."""
 
 
 class Site:
-    """The routes, and what is behind them."""
+    """The routes and their data."""
 
     def __init__(self, folders: list[Path], game: Game | None = None, study: PeopleStudy | None = None) -> None:
         """Reads the static files.
 
         Args:
             folders: what to show.
-            game: lets a person play; None if nobody may.
+            game: lets a person play; None if playing is off.
             study: deals episodes to several people; None if there is none.
 
         Raises:
@@ -173,19 +173,19 @@ class Site:
         raise RefusedRequestError(HTTPStatus.NOT_FOUND, "there is no such page")
 
     def change(self, path: str, query: Mapping[str, str], body: bytes, visitor: Visitor) -> WebAnswer:
-        """Lets somebody who plays do something.
+        """Carries out a player's request.
 
         Raises:
-            RefusedRequestError: there is no such thing to do, or it cannot be done now.
+            RefusedRequestError: there is no such action, or it is not possible now.
         """
         is_study = path.startswith("/api/study/") and self._study is not None
         is_play = path.startswith("/api/play/") and self._game is not None and visitor is Visitor.OWNER
         if not is_study and not is_play:
-            raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "these pages only read")
+            raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "these pages are read-only")
         try:
             asked = parse_json(body or b"{}")
             if not isinstance(asked, dict):
-                raise UserError("give a JSON object")
+                raise UserError("the request body is not a JSON object; send one")
             what = path.rpartition("/")[2]
             if is_study and path.count("/") == 3:
                 return _json(self._take_part(what, query, asked))
@@ -194,7 +194,7 @@ class Site:
             raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, str(error)) from error
 
     def _play(self, what: str, game: Game, asked: Json, *, is_free: bool) -> WebAnswer:
-        """One episode: nobody in a study chooses it, or stops its clock."""
+        """One episode; people in a study can neither choose it nor stop its clock."""
         match what:
             case "act":
                 return WebAnswer(game.act(asked), "image/jpeg")
@@ -239,11 +239,11 @@ class Site:
         return self._study
 
     def _game_of(self, query: Mapping[str, str]) -> Game:
-        """The game of whoever sits in a seat of the study; without a seat, the one that anybody plays."""
+        """The game of a seat of the study; without a seat, that of `--play`."""
         if "seat" in query:
             return self._studied.seat(query["seat"]).game
         if self._game is None:
-            raise NotHereError("nobody can play here; start `automotive-cosim serve --play`")
+            raise NotHereError("playing is off here; start `automotive-cosim serve --play`")
         return self._game
 
     def _rows(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
@@ -252,7 +252,7 @@ class Site:
         return WebAnswer(self._studied.as_csv().encode(), "text/csv")
 
     def _scene(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
-        """The newest scene, or after a while the same if nothing happens."""
+        """The newest scene, or after a while the same one if nothing happens."""
         game = self._game_of(query)
         scene = game.scene(_number(query), WAIT_S) if "seen" in query else game.scene()
         shown = {"version": scene.version, "state": scene.state, "progress": scene.progress, "error": scene.error}
@@ -281,7 +281,7 @@ class Site:
 
 
 class WebServer(ThreadingHTTPServer):
-    """Serves a site to whoever has its token."""
+    """Serves a site to anyone with its token."""
 
     daemon_threads = True
 
@@ -297,7 +297,7 @@ class WebServer(ThreadingHTTPServer):
 
         Args:
             folders: what to show.
-            game: lets a person play; None if nobody may. The server closes it.
+            game: lets a person play; None if playing is off. The server closes it.
             study: deals episodes to several people. The server closes it.
             host: address to listen on.
             port: port to listen on; 0 takes a free one.
@@ -320,12 +320,12 @@ class WebServer(ThreadingHTTPServer):
 
     @property
     def address(self) -> str:
-        """What to open in a browser, token included."""
+        """The address to open in a browser, including the token."""
         return self._address(self.token, "")
 
     @property
     def people_address(self) -> str:
-        """What people who take part in the study open."""
+        """The address for the participants of the study."""
         return self._address(self.people_token, "#/study")
 
     def _address(self, token: str, page: str) -> str:
@@ -338,7 +338,7 @@ class WebServer(ThreadingHTTPServer):
         self.site.close()
 
     def handle_error(self, request: object, client_address: object) -> None:
-        """Says nothing: a browser that goes away is not an error."""
+        """Prints nothing: a browser that disconnects is not an error."""
 
 
 class RequestHandler(BaseHTTPRequestHandler):
@@ -351,7 +351,7 @@ class RequestHandler(BaseHTTPRequestHandler):
     """A body does not wait until the browser has acknowledged the headers."""
 
     def do_GET(self) -> None:
-        """Answers, or says why not."""
+        """Answers, or sends the reason for refusing."""
         try:
             path, query, visitor = self._request()
             if query.get("token"):
@@ -378,7 +378,7 @@ class RequestHandler(BaseHTTPRequestHandler):
                 raise RefusedRequestError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"give at most {MOST_BYTES} bytes")
             self._send(HTTPStatus.OK, self._web.site.change(path, query, self.rfile.read(int(length)), visitor))
         except RefusedRequestError as refusal:
-            self.close_connection = True  # what it sent has perhaps not been read
+            self.close_connection = True  # the body may not have been read
             self._send(refusal.status, _json({"error": str(refusal)}))
 
     def log_message(self, format: str, *args: object) -> None:  # noqa: A002 (its name in the base class)
@@ -390,7 +390,7 @@ class RequestHandler(BaseHTTPRequestHandler):
         return self.server
 
     def _request(self) -> tuple[str, dict[str, str], Visitor]:
-        """The path, the query and who asks, of a request that may be answered.
+        """The path, the query and the visitor of a request that may be answered.
 
         Raises:
             RefusedRequestError: it comes from elsewhere, or without the token.
@@ -398,11 +398,11 @@ class RequestHandler(BaseHTTPRequestHandler):
         host = self.headers.get("Host", "")
         if not self._is_own(host):
             raise RefusedRequestError(
-                HTTPStatus.BAD_REQUEST, "this server has another name; open the address it printed"
+                HTTPStatus.BAD_REQUEST, "this server has another name; open the address that it printed"
             )
         origin = self.headers.get("Origin")
         if origin is not None and origin != f"http://{host}":
-            raise RefusedRequestError(HTTPStatus.FORBIDDEN, "another site may not read this")
+            raise RefusedRequestError(HTTPStatus.FORBIDDEN, "other sites may not read this")
         parts = urlsplit(self.path)
         query = {name: values[-1] for name, values in parse_qs(parts.query).items()}
         given = query.get("token") or self._cookie()
@@ -481,7 +481,7 @@ def _is_address(name: str) -> bool:
 
 
 def _start(game: Game, asked: Json) -> None:
-    """Begins what is asked for: a drive if one is named, else a task."""
+    """Begins what is requested: a drive if one is given, else a task."""
     given = {name: asked.get(name, "") for name in ("task", "half", "drive", "name")}
     seed, practice = asked.get("seed", 0), bool(asked.get("practice"))
     if not all(isinstance(value, str) for value in given.values()) or type(seed) is not int:

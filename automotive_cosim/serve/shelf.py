@@ -16,9 +16,9 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.run.drive_recorder import SHOWN
 
 DEPTH = 3
-"""How deep records are sought below a folder given."""
+"""How deep records are searched for below a given folder."""
 MOST = 2000
-"""Records that are listed at most."""
+"""Maximum number of listed records."""
 PICTURES = {"png": "image/png", "jpg": "image/jpeg"}
 
 
@@ -54,7 +54,7 @@ class Shelf:
         self._known: dict[str, ShelfEntry] = {}
 
     def entries(self) -> list[ShelfEntry]:
-        """All records there are now, the newest first."""
+        """All current records, the newest first."""
         found = {entry.id: entry for folder in self._folders for entry in _seek(folder, DEPTH)}
         self._known = found
         return sorted(found.values(), key=lambda entry: _changed_s(entry.folder), reverse=True)[:MOST]
@@ -69,7 +69,7 @@ class Shelf:
             self.entries()
         found = self._known.get(name)
         if found is None or not found.folder.is_dir():
-            raise NotHereError(f"there is no record {name!r} in the folders given")
+            raise NotHereError(f"there is no record {name!r} in the given folders")
         return found
 
     def of(self, folder: Path) -> ShelfEntry:
@@ -91,7 +91,7 @@ class Shelf:
             NotHereError: there is no such file, or it lies outside the folders given.
         """
         if any(part in ("", ".", "..") or "/" in part or "\\" in part or "\0" in part for part in parts):
-            raise NotHereError("no such file")
+            raise NotHereError("there is no such file")
         path = entry.folder.joinpath(*parts)
         real = path.resolve()
         if not path.is_file() or not any(real.is_relative_to(folder) for folder in self._folders):

@@ -1,4 +1,4 @@
-"""Tells running programs that somebody watches them, by a mark that the system drops with this process."""
+"""Tells running programs that somebody watches them, by a lock that the system releases with this process."""
 
 from __future__ import annotations
 
@@ -10,11 +10,11 @@ from typing import IO
 from automotive_cosim.run.road_recorder import mark_as_written
 
 PATIENCE_S = 10.0
-"""Who has not asked for so long has gone."""
+"""A spectator that has not asked for this long has left."""
 
 
 class Spectators:
-    """Marks the files of those who are watched; nothing is written into them."""
+    """Locks the files of what is watched; nothing is written into them."""
 
     def __init__(self, patience_s: float = PATIENCE_S) -> None:
         """Starts without spectators."""
@@ -23,7 +23,7 @@ class Spectators:
         self._lock = threading.Lock()
 
     def watch(self, path: Path) -> None:
-        """Marks a file for some seconds; if another program has, nothing more is needed.
+        """Locks a file for some seconds, unless another program has already locked it.
 
         Raises:
             OSError: it cannot be read.
@@ -40,7 +40,7 @@ class Spectators:
             self._marked[path] = file, timer
 
     def close(self) -> None:
-        """Drops all marks."""
+        """Releases all locks."""
         for path in list(self._marked):
             self._leave(path)
 

@@ -1,11 +1,11 @@
 """A study with people: dealt by ``dealing``, played by several at once, with three questions after each episode.
 
-The folder is an evaluation of the agent ``human``, which every report reads, with one file more:
+The folder is an evaluation of the agent ``human``, which every report reads, with one more file:
 
-    log.jsonl    a line whenever an episode is begun or has ended, or the questions after it are answered
+    log.jsonl    a line whenever an episode begins or ends, or the questions after it are answered
 
-Both are on the disk before anything goes on, so that a server that was killed continues where it was; the episode
-under way is begun again, and the export says so.
+Both are on disk before the study continues, so that a killed server resumes where it was; the running episode
+starts again, and the export says so.
 """
 
 from __future__ import annotations
@@ -39,16 +39,16 @@ QUESTIONS: Mapping[str, str] = {
     "sure": "I am sure that I ended it the right way.",
     "hard": "It was hard to do.",
 }
-SCALE = ("not at all", "a little", "half and half", "mostly", "entirely")
+SCALE = ("not at all", "a little", "partly", "mostly", "entirely")
 """Answers 1 to 5."""
 LOG = "log.jsonl"
 AWAY_S = 20.0
-"""After that time without a sign, somebody else may sit down under a code name."""
+"""After this time without a request, another browser may take over a code name."""
 
 
 @dataclass(slots=True)
 class StudySeat:
-    """A browser in which somebody plays under a code name."""
+    """A browser in which a person plays under a code name."""
 
     person: str
     game: Game
@@ -59,11 +59,11 @@ class PeopleStudy:
     """A study under way. Any method may be called from any thread."""
 
     def __init__(self, plan: PeoplePlan, folder: Path, simulations: Simulations | None = None) -> None:
-        """Begins it, or goes on with it.
+        """Starts or resumes it.
 
         Args:
-            plan: what is dealt.
-            folder: of the study, new or begun with the same plan.
+            plan: the plan to deal.
+            folder: of the study, new or started with the same plan.
             simulations: warm simulations to use, which the caller closes; by default its own.
 
         Raises:
@@ -84,7 +84,7 @@ class PeopleStudy:
         self._lock = threading.RLock()
 
     def overview(self) -> Json:
-        """Who takes part, and how far everybody is; no verdicts."""
+        """The participants and their progress; no verdicts."""
         with self._lock:
             return {
                 "name": self.name,
@@ -97,34 +97,34 @@ class PeopleStudy:
             }
 
     def join(self, person: str, seat: str = "") -> str:
-        """Sits down under a code name, and returns the secret of the seat.
+        """Takes the seat of a code name, and returns its secret.
 
         Args:
             person: the code name.
-            seat: a secret from before, which keeps its seat.
+            seat: an earlier secret, which keeps its seat.
 
         Raises:
-            UserError: there is no such person, or somebody else sits there.
+            UserError: there is no such person, or the seat is taken.
         """
         with self._lock:
             if person not in self._orders:
-                raise UserError(f"nobody in this study is called {person[:40]!r}")
+                raise UserError(f"this study has no code name {person[:40]!r}; choose one from the list")
             taken = next((each for each, its in self._seats.items() if its.person == person), None)
             if taken is not None and taken == seat:
                 return taken
             now_s = time.monotonic()
             if taken is not None and now_s - self._seats[taken].heard_s < AWAY_S:
-                raise UserError(f"somebody plays as {person} in another window; close it and wait {AWAY_S:.0f} s")
+                raise UserError(f"{person} is already playing in another window; close it and wait {AWAY_S:.0f} s")
             game = self._seats.pop(taken).game if taken else Game(self.folder, simulations=self._simulations)
             made = secrets.token_urlsafe(16)
             self._seats[made] = StudySeat(person, game, now_s)
             return made
 
     def seat(self, secret: str) -> StudySeat:
-        """Who sits there.
+        """The person in a seat.
 
         Raises:
-            UserError: nobody does, e.g. since the server was started again.
+            UserError: the seat is empty, e.g. because the server was restarted.
         """
         with self._lock:
             if secret not in self._seats:
@@ -133,7 +133,7 @@ class PeopleStudy:
             return self._seats[secret]
 
     def turn(self, secret: str) -> Json:
-        """What a person has to do now; the verdicts once everything is done.
+        """A person's next task; the verdicts once everything is done.
 
         Raises:
             UserError: nobody sits there.
@@ -172,7 +172,7 @@ class PeopleStudy:
             if self._asked(seat.person) or job is None:
                 raise UserError("answer the questions first" if job else "everything has been played")
             if seat.game.is_running:
-                raise UserError("an episode is running already")
+                raise UserError("an episode is already running")
             self._note("begun", job)
             seat.game.begin(job, self.folder, lambda row: self._keep(job, row))
 
@@ -180,7 +180,7 @@ class PeopleStudy:
         """Takes the answers to the questions, each 1 to 5.
 
         Raises:
-            UserError: nobody sits there, nothing is asked, or an answer is missing or none.
+            UserError: nobody sits there, nothing is asked, or an answer is missing or invalid.
         """
         person = self.seat(secret).person
         for name in QUESTIONS:
@@ -193,7 +193,7 @@ class PeopleStudy:
             self._note("answered", job, {name: answers[name] for name in QUESTIONS})
 
     def export(self) -> list[Json]:
-        """A line for each planned episode, in everybody's order: row, answers and times."""
+        """A line for each planned episode, in each person's order: row, answers and times."""
         with self._lock:
             return [self._line(job, place) for order in self._orders.values() for place, job in enumerate(order, 1)]
 
@@ -207,7 +207,7 @@ class PeopleStudy:
         return text.getvalue()
 
     def close(self) -> None:
-        """Ends the episodes under way, which will be begun again."""
+        """Ends the running episodes, which will start again."""
         for seat in list(self._seats.values()):
             seat.game.close()
         if self._own is not None:

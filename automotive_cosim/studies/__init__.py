@@ -3,14 +3,14 @@
 plan       what a study runs: scenario, departures, seeds, shares, news, policies
 drive      one drive with its decision points, and the branches forked there
 futures    drives what follows from a decision, several futures at the same time
-looks      drives on to the next decision
+looks      drives to the next decision
 whole      whole drives under a policy
-together   many cars take the other way at once
+together   many cars take the other route at once
 points     the futures of one decision
 compare    compares two futures of one instant
 traffic    whether the traffic still flows, or is excluded as gridlocked
 driver     lets an agent at the cockpit decide
-policies   who decides, and the result
+policies   the deciding rules, and their results
 batch      drives in parallel, resumed, until the interval is narrow enough
 results    reads stored results, as data frames
 intervals  means with bootstrap intervals over seeds

@@ -1,4 +1,4 @@
-"""Runs the drives of a study, in parallel and resumable, until all are done or enough is known."""
+"""Runs the drives of a study, in parallel and resumable, until all are done or the interval is narrow enough."""
 
 from __future__ import annotations
 
@@ -107,11 +107,11 @@ class _Warm:
         self._pulses: list[Pulse] = []
 
     def run(self, job: DriveJob, folder: Path) -> DriveRow:
-        """Runs a drive; an error becomes a row too. Kept besides are tracks, if wanted, and what is watched."""
+        """Runs a drive; an error becomes a row too. Tracks, if wanted, and what is watched are also kept."""
         try:
             return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None, folder)
         except CosimError as error:
-            self.close()  # whatever the error was, the next drive begins with fresh traffic
+            self.close()  # after any error, the next drive begins with fresh traffic
             return failed(job, type(error).__name__, str(error))
         except Exception as error:
             # A fault in an agent or in this package must not end the study; it is counted and listed.

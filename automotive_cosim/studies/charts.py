@@ -41,7 +41,7 @@ def charts(study: Study) -> dict[str, tuple[str, str, str]]:
     made = {
         "policies": ("Time saved by each policy", _policies(study)),
         "everyone": ("Who gains and who loses", _everyone(study)),
-        "many": ("When many take the other way at once", _many(study)),
+        "many": ("When many cars take the other route", _many(study)),
         "promised": ("Predicted and actual savings", _promised(study)),
         "congestion": ("Time saved by congestion at the decision", _congestion(study)),
         "ages": ("Time saved by the age of the news", _ages(study)),
@@ -149,7 +149,7 @@ def _promised(study: Study) -> Drawing | None:
         axes.plot(ends, ends, color=INK, alpha=0.4, linewidth=1, label="as predicted")
         floor_s = study.noise().time_s
         axes.axhspan(-floor_s, floor_s, color=INK, alpha=0.12, linewidth=0, label="noise floor")
-        axes.scatter(promised, saved, s=22, alpha=0.6, color=PALETTE[0], linewidths=0, label="a decision")
+        axes.scatter(promised, saved, s=22, alpha=0.6, color=PALETTE[0], linewidths=0, label="one decision")
         axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
         axes.set_xlabel("predicted saving, s")
         axes.set_ylabel("seconds saved")
@@ -159,13 +159,13 @@ def _promised(study: Study) -> Drawing | None:
 
 
 def _many(study: Study) -> Drawing | None:
-    """What the ego, those who went along, and all the rest save, against the share sent along."""
+    """What the ego, the cars that were rerouted with it, and the rest save, by the share of cars rerouted."""
     found = {share: here for (rerouting, share), here in together_by_share(study).items()}
     if len(found) < 2 or len({row.share for row in study.rows}) > 1:
         return None
     series: dict[str, Callable[[Together], float]] = {
         "the ego": lambda each: each.ego_gain_s,
-        "those who went along": lambda each: each.took_gain_s,
+        "the cars rerouted with it": lambda each: each.took_gain_s,
         "the rest": lambda each: each.rest_gain_s,
     }
 
@@ -188,7 +188,7 @@ def _many(study: Study) -> Drawing | None:
                 elinewidth=1.6,
                 label=name,
             )
-        axes.set_xlabel("% of the cars that could are sent along")
+        axes.set_xlabel("% of the eligible cars rerouted with the ego")
         axes.set_ylabel("seconds saved, sum")
         legend(axes)
 
@@ -196,7 +196,7 @@ def _many(study: Study) -> Drawing | None:
 
 
 def _everyone(study: Study) -> Drawing | None:
-    """What single vehicles save where a policy reroutes: median, half and nine tenths of them."""
+    """What single vehicles save where a policy reroutes: median, central 50 % and central 90 %."""
     first = f"{study.plan.ages_s[0]:g}"
     found = [(heads, rows) for heads, rows in rerouted(study) if heads[2] in (first, NONE)]
     if not found:

@@ -1,4 +1,4 @@
-"""Compares two futures of one instant. A gain is what the second one saves: positive is better."""
+"""Compares two futures of one instant. A gain is what the second one saves; positive is better."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ class Future:
         return self.last.end is EgoEnd.ARRIVED
 
     def totals(self) -> Totals:
-        """Figures of the ego's drive; the rest of the route that the last step covered counts as driven."""
+        """Figures of the ego's drive; the rest of the route covered in the last step counts as driven."""
         ego = self.settled.ego
         return Totals(
             time_s=round(self.last.time_s - ego.departed_s, 3),
@@ -48,7 +48,7 @@ def gains(stay: Future, other: Future) -> Totals:
 
 
 def others(stay: Future, other: Future, group: Sequence[str]) -> OthersTotals:
-    """The savings of all other vehicles that were there at the fork, in total time since then.
+    """The savings of all other vehicles present at the fork, in total time since then.
 
     Both futures are compared up to the same instant, the earlier of their ends. A vehicle that has not arrived by
     then counts up to it and as unfinished, so none drops out of the sum, even if it is late in only one of the two.
@@ -73,9 +73,9 @@ def others(stay: Future, other: Future, group: Sequence[str]) -> OthersTotals:
 
 
 def fleet(stay: Future, other: Future, group: Sequence[str]) -> tuple[FleetClass, ...]:
-    """What everyone emits and consumes less, by emission class, the ego by itself.
+    """How much less everyone emits and consumes, by emission class, with the ego as a class of its own.
 
-    Only vehicles that have arrived in both futures count, whole trips of each, so what was before the fork cancels.
+    Only vehicles that have arrived in both futures count, with their whole trips; the time before the fork cancels.
     """
     before, after = stay.settled.consumptions, other.settled.consumptions
     home = [each for each in group if each in stay.settled.arrivals_s and each in other.settled.arrivals_s]

@@ -1,4 +1,4 @@
-"""Tables of what surrounds the figures: the traffic, how warm it was, and what the exclusions could hide."""
+"""Tables of the context of the figures: the traffic, its warm-up, and the possible effect of the exclusions."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def context(study: Study) -> list[Table]:
 
 
 def bounds(study: Study) -> Table:
-    """The mean gain with the excluded decisions put in."""
+    """The mean gain with the excluded decisions included."""
     left_out = [point for point in all_decisions(study.rows) if point.decision.excluded]
     rows: list[TableRow] = []
     for share, policy, age_s, counted in groups(study) if left_out else ():
@@ -72,11 +72,11 @@ def bounds(study: Study) -> Table:
         "At best, s",
     )
     note = (
-        "Exclusion looks at the outcome, so it could favour a policy. Decisions that are excluded although "
-        "the ego arrived in every future are put in as measured; those in which it did not arrive get the greatest "
-        "loss and the greatest gain of all others. Measured in a gridlock, they say little by themselves."
+        "Exclusion depends on the outcome, so it could favour a policy. Decisions that are excluded although "
+        "the ego arrived in every future are included as measured; those in which it did not arrive get the worst "
+        "loss and the best gain of all others. Figures measured in a gridlock say little by themselves."
     )
-    return Table("bounds", "With the excluded decisions put in", columns, tuple(rows), note, heads=3)
+    return Table("bounds", "With the excluded decisions included", columns, tuple(rows), note, heads=3)
 
 
 def traffic(study: Study) -> Table:
@@ -102,16 +102,18 @@ def traffic(study: Study) -> Table:
         "Decisions",
         "Vehicles on the road",
         "Standing",
-        "Most waiting for 300 s",
-        "Most without room to enter",
-        "Most teleports",
+        "Max. waiting for 300 s",
+        "Max. without room to enter",
+        "Max. teleports",
     )
-    note = "At all decisions, excluded ones too. Vehicles without room to enter wait outside and are no gridlock."
+    note = (
+        "At all decisions, excluded ones included. Vehicles without room to enter wait outside and are no gridlock."
+    )
     return Table("traffic", "The traffic at the decisions", columns, tuple(rows), note)
 
 
 def by_departure(study: Study) -> Table:
-    """The gains by how long the traffic had run when the ego departed."""
+    """The gains by how long the traffic had been running when the ego departed."""
     first_s = study.plan.ages_s[0]
     chosen = [each for each in study.choices if each.age_s == first_s and each.policy not in STAYING]
     named = list(dict.fromkeys(each.policy for each in chosen))

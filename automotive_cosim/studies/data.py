@@ -36,7 +36,7 @@ from automotive_cosim.studies.rows import (
 
 TYPES = {bool: "boolean", int: "integer", float: "number", str: "string"}
 DTYPES = {"integer": "Int64", "number": "Float64", "boolean": "boolean", "string": "string"}
-"""What pandas calls the types of columns that may have empty cells."""
+"""pandas' names of the types of columns that may have empty cells."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -59,7 +59,7 @@ class FutureRow:
     draw: int
     """0 with the random numbers of the drive itself."""
     draw_seed: int | None
-    """Seed of the fresh random numbers; None for draw 0 and, as their draw tells it, for placebos."""
+    """Seed of the fresh random numbers; None for draw 0 and for placebos, whose draw identifies them."""
     branch: int | None
     """Number of the branch; None for keeping the route."""
     is_placebo: bool
@@ -92,7 +92,7 @@ class WholeRow:
 
 
 def futures(study: Study) -> Iterator[FutureRow]:
-    """Every future of every decision, also of those that do not count."""
+    """Every future of every decision, including decisions that do not count."""
     for point in all_decisions(study.rows):
         decision = point.decision
         assert point.drive.stay is not None, "it has a decision"
@@ -236,7 +236,7 @@ def _write_parquet(path: Path, rows: Sequence[object]) -> Path:
 
     draft = path.with_name(f".{path.name}.part")
     made = [columns(row) for row in rows]
-    # The types of the rows, not those that these values would fit in: files of several studies then go together.
+    # The declared types, not the narrowest that fit these values, so that files of several studies match.
     dtypes = {name: DTYPES.get(_type(row[name] for row in made), "object") for name in made[0]}
     frame = pd.DataFrame({name: pd.Series([row[name] for row in made], dtype=dtypes[name]) for name in dtypes})
     frame.to_parquet(draft, index=False)
@@ -260,7 +260,7 @@ def _resource(path: Path, rows: Sequence[object]) -> Json:
 
 
 def _type(values: Iterator[Any]) -> str:
-    """The type of a column: that of all values that are there."""
+    """The type of a column: the common type of its values."""
     kinds = {type(value) for value in values if value is not None}
     if kinds == {int, float}:
         return "number"

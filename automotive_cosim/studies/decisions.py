@@ -1,4 +1,4 @@
-"""``decisions.html``: every decision of a study, with what the news said, who chose what, and what came of it."""
+"""``decisions.html``: every decision of a study, with the traffic news, the policies' choices and the results."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ Way = Sequence[tuple[float, float]]
 
 @dataclass(frozen=True, slots=True)
 class ExplainedFuture:
-    """One way on, as means over the draws that count."""
+    """One future, as means over the draws that count."""
 
     name: str
     policies: str
-    """Those that chose it by the newest news, without ``best``."""
+    """Policies that chose it by the newest news, without ``best``."""
     time_s: float
     """From departure to destination."""
     saved_s: float | None
@@ -51,7 +51,7 @@ class ExplainedDecision:
     """What the news of each age said, and what followed, in words."""
     futures: tuple[ExplainedFuture, ...]
     ways: tuple[tuple[str, str], ...]
-    """Name of each way and its points on a map, as SVG has them; empty without tracks."""
+    """Name of each route and its points on a map, in SVG's form; empty without tracks."""
 
 
 def write_decisions(study: Study) -> Path:
@@ -67,7 +67,7 @@ def write_decisions(study: Study) -> Path:
 
 
 def explained(study: Study) -> Iterator[ExplainedDecision]:
-    """Every decision, also those that are in no average."""
+    """Every decision, including those that are in no average."""
     for point in all_decisions(study.rows):
         ways = _ways(study.folder / TRACKS / f"{point.drive.id}.csv.gz", point.id)
         yield ExplainedDecision(point, tuple(told(point.decision)), tuple(_futures(study, point)), _fitted(ways))
@@ -78,13 +78,13 @@ def told(decision: Decision) -> Iterator[str]:
     for news in decision.news:
         age = f"News {news.age_s:g} s old" if news.age_s else "The news"
         if news.stay_s is None:
-            yield f"{age} knew no time."
+            yield f"{age} had no travel time."
         elif news.offered_s is None:
-            yield f"{age} expected {news.stay_s:.0f} s on the route and knew no other."
+            yield f"{age} expected {news.stay_s:.0f} s on the route and offered no other."
         else:
             yield (
                 f"{age} expected {news.stay_s:.0f} s on the route, {news.delay_s:.0f} s of them lost, and "
-                f"{news.offered_s:.0f} s on the other way."
+                f"{news.offered_s:.0f} s on the other route."
             )
     for agent in decision.agents:
         yield f"{agent} {'rerouted' if agent in decision.agents_rerouted else 'kept the route'}."
@@ -125,7 +125,7 @@ def _ways(path: Path, decision: str) -> Mapping[str, Way]:
 
 
 def _fitted(ways: Mapping[str, Way]) -> tuple[tuple[str, str], ...]:
-    """The ways on a map that holds them all, north up."""
+    """The routes on a map that shows all of them, north up."""
     points = [point for way in ways.values() for point in way]
     if not points:
         return ()

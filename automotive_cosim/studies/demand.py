@@ -16,7 +16,7 @@ from automotive_cosim.studies.plan import StudyPlan
 
 FILE = "demand.json"
 LEAST_S, MOST_S = 900.0, 3_600.0
-"""Departures of the others are observed as long as the ego's go on, but at least and at most so long."""
+"""Departures of the others are observed while the ego's continue, for at least and at most this long."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class DemandGap:
 
 
 def measure_demand(plan: StudyPlan, folder: Path) -> tuple[DemandGap, ...]:
-    """Drives the traffic of every share once without the ego; what was measured before is read."""
+    """Drives the traffic of every share once without the ego; earlier measurements are read instead."""
     known = read_demand(folder)
     if known:
         return known
@@ -49,14 +49,14 @@ def measure_demand(plan: StudyPlan, folder: Path) -> tuple[DemandGap, ...]:
 
 
 def read_demand(folder: Path) -> tuple[DemandGap, ...]:
-    """What was measured before; nothing if it was not."""
+    """Earlier measurements; empty without any."""
     path = folder / FILE
     if not path.is_file():
         return ()
     try:
         return tuple(from_json(DemandGap, each) for each in json.loads(path.read_text(encoding="utf-8")))
     except (ValueError, TypeError):
-        return ()  # cut short or of another version: it is measured again
+        return ()  # incomplete or of another version: it is measured again
 
 
 def demand_table(found: Sequence[DemandGap]) -> Table:

@@ -1,9 +1,9 @@
 """One drive of a study, and the branches forked from it at each decision point.
 
 The drive itself is the future in which the ego keeps its route. All its decisions share it, so a drive with five
-decisions takes one future and five branches, not ten futures. A branch is a fork of the running simulation: the
-same traffic to the bit, and the same random numbers from there on. A replicate drives all futures of a decision
-once more, with random numbers of its own from the decision on.
+decisions takes one future and five branches, not ten futures. A branch is a fork of the running simulation: bit
+for bit the same traffic, and the same random numbers from there on. A replicate drives all futures of a decision
+once more, with fresh random numbers from the decision on.
 """
 
 from __future__ import annotations
@@ -42,11 +42,11 @@ NO_ALTERNATIVE = "no alternative"
 """Reasons to exclude a drive from the averages."""
 
 AT_ONCE = os.cpu_count() or 1
-"""Decisions whose branches are driven while the drive goes on; each takes some 50 MB per branch."""
+"""Decisions whose branches may run while the drive continues; each takes some 50 MB per branch."""
 
 
 def planned(job: DriveJob) -> DriveRow:
-    """What is known of a drive before it runs."""
+    """What is known about a drive before it runs."""
     return DriveRow(
         id=job.id,
         scenario=job.plan.scenario,
@@ -71,7 +71,7 @@ def run_drive(
         simulation: its traffic at the ego's departure, watched.
         history: measurements of the traffic so far, ``traffic.PULSE_S`` apart.
         tracks: folder for the ego's tracks in a simulation that keeps them; None leaves them out.
-        study: the study's folder, in which it can be watched; None if nobody can.
+        study: the study's folder, in which it can be watched; None if it cannot.
 
     Raises:
         TrafficError: the simulation failed.
@@ -151,7 +151,7 @@ class _Drive:
         self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive, self._live.advance)
 
     def wait(self, but: int = 0) -> None:
-        """Waits for the branches of all decisions, or of all but so many."""
+        """Waits for the branches of all decisions, or of all but the given number."""
         while len(self._running) > but:
             point, branches = self._running[0]
             point.branches = [None if branch is None else ended(branch) for branch in branches]
@@ -190,7 +190,7 @@ class _Drive:
             for edges in ways:
                 branch = traffic.branch()
                 stack.callback(branch.close)
-                if branch.request(Reroute(edges=edges)).accepted:  # else it is too late to take it
+                if branch.request(Reroute(edges=edges)).accepted:  # otherwise it is too late to take it
                     numbers[edges] = len(begun)
                     begun.append(branch)
                     taken.append(edges)
@@ -222,7 +222,7 @@ class _Drive:
                 shut = futures.shut(other, offered, ways_apart[0], seeds, group)
             for other in begun:
                 futures.begin(other, group)
-            stack.pop_all()  # they are driven while the drive goes on
+            stack.pop_all()  # they are driven while the drive continues
         decision = Decision(
             at_s=now.time_s,
             edge=now.road.edge_id,
@@ -248,7 +248,7 @@ class _Drive:
         return True
 
     def _told(self, age_s: float, options: Sequence[RouteOption], numbers: dict[tuple[str, ...], int]) -> News:
-        """What news of that age says about the present route and the quickest other one."""
+        """What news of that age says about the current route and the quickest alternative."""
         offered = options[1] if len(options) > 1 else None
         return News(
             age_s=age_s,

@@ -24,7 +24,7 @@ GOAL = "There's a lot of traffic ahead. Can we get there faster?"
 def decided(agent: str, job: DriveJob, traffic: Traffic) -> None:
     """Lets an agent act in a branch until it declares an end, has no actions left, or the ego arrives.
 
-    The map takes some seconds to find other routes; the ego keeps driving meanwhile and while the agent acts.
+    The map takes some seconds to find other routes; meanwhile, and while the agent acts, the ego drives on.
 
     Args:
         agent: the agent for ``make_agent``, as ``NAME`` or ``NAME/MODEL``.

@@ -109,7 +109,7 @@ def together_by_share(study: Study) -> dict[tuple[float, float], list[tuple[int,
 
 
 def many(study: Study) -> Table:
-    """What it costs when many take the other way at once."""
+    """The cost when many cars take the other route at once."""
     left_out = sum(any(each.excluded for each in point.decision.together) for point in study.decisions)
     rows: list[TableRow] = []
     for (rerouting, share), here in together_by_share(study).items():
@@ -128,35 +128,35 @@ def many(study: Study) -> Table:
         )
     columns = (
         "Share rerouting",
-        "Sent along",
+        "Rerouted with ego",
         "Decisions",
-        "Could go",
+        "Eligible",
         "Went",
         "Ego saves, s",
-        "Those save, s",
+        "Rerouted save, s",
         "The rest save, s",
         "All save, s",
     )
     note = (
         "At the first decision of each drive with another route, whatever the news predicts: the ego takes it, and "
-        "with it that share of the cars whose routes pass both ends of the section in which the two ways differ. "
-        "The same cars, traffic and random numbers at every share, so the rows differ by the share alone. "
+        "so does that share of the cars whose routes pass both ends of the section in which the two routes differ. "
+        "Cars, traffic and random numbers are the same at every share, so the rows differ only by the share. "
     )
     if left_out:
-        note += f"{counted(left_out, 'decision')} left out because some share did not arrive or clear in time."
-    return Table("many", "When many take the other way at once", columns, tuple(rows), note, heads=2)
+        note += f"{counted(left_out, 'decision')} left out that did not arrive or clear in time at every share."
+    return Table("many", "When many cars take the other route", columns, tuple(rows), note, heads=2)
 
 
 def closed(study: Study) -> Table:
-    """What it costs when a road is closed at the fork."""
+    """The cost of closing a road at the fork."""
     columns = (
         "Share rerouting",
         "Decisions",
         "Excluded",
         "Ego loses, s",
-        "On the other way, s",
-        "Other way saves, open, s",
-        "Other way saves, closed, s",
+        "On the other route, s",
+        "Other route saves, open, s",
+        "Other route saves, closed, s",
         "Others lose, s",
         "Others later",
     )
@@ -176,8 +176,8 @@ def closed(study: Study) -> Table:
             rows.append((f"{share:.0%}", str(len(kept)), str(len(points) - len(kept)), *cells))
     note = (
         "At the first decision of each drive with another route, a road is closed in both futures (--close), and "
-        "each is compared with itself while the road is open. Who has that road on the route goes round it. "
-        "Others: if the ego keeps its route; later by 1 s or more."
+        "each is compared with the same future with it open. Cars with that road on their route make a detour. "
+        "Others: if the ego keeps its route; later: by 1 s or more."
     )
     return Table("closed", "When a road is closed at the fork", columns, tuple(rows), note)
 
@@ -193,7 +193,7 @@ _CLOSED: tuple[Callable[[Closed], float], ...] = (
 
 
 def everyone(study: Study) -> Table:
-    """How gains and losses are spread over everyone."""
+    """How gains and losses are distributed over everyone."""
     rows: list[TableRow] = []
     for heads, found in rerouted(study):
         spreads = [spread for _, spread in found]
@@ -231,8 +231,8 @@ def everyone(study: Study) -> Table:
         "Gini changes by",
     )
     note = (
-        "Over the decisions in which the policy reroutes: what single vehicles save, the ego and everybody who was "
-        "there, each as the mean over the draws; quantiles are means over decisions. Earlier and later: share of "
+        "Over the decisions where the policy reroutes: what single vehicles save, the ego and all others that were "
+        "there, each as its mean over the draws; quantiles are means over decisions. Earlier and later: share of "
         f"the vehicles that arrive at least {NOTICED_S:g} s earlier or later, chance included. Gini: of the times "
         "from the decision to the arrival if the ego keeps its route."
     )
@@ -240,7 +240,7 @@ def everyone(study: Study) -> Table:
 
 
 def by_trip(study: Study) -> Table:
-    """The same by how long the trip still takes."""
+    """The same by the time left on the trip."""
     rows: list[TableRow] = []
     for heads, found in rerouted(study):
         for from_s, to_s in pairwise((*CLASSES_S, float("inf"))):
@@ -271,18 +271,18 @@ def horizons(study: Study) -> Table:
         "Policy",
         "News age, s",
         "Reroutings",
-        *(f"{share:.0%} home" for share in HORIZONS),
+        *(f"{share:.0%} arrived" for share in HORIZONS),
     )
     note = (
-        "Seconds that all others together save until the given share of them had arrived in the first of the two "
-        f"futures, over the decisions in which the policy reroutes. The futures end at {study.plan.arrived:.0%} "
+        "Seconds that all others together save up to the instant at which the given share has arrived in the "
+        f"faster future, over the decisions where the policy reroutes. The futures end at {study.plan.arrived:.0%} "
         "(--arrived)."
     )
     return Table("horizons", "The others, by horizon", columns, tuple(rows), note, heads=3)
 
 
 def fleet(study: Study) -> Table:
-    """What everyone emits and consumes less, by emission class."""
+    """How much less everyone emits and consumes, by emission class."""
     decisions = {point.id: point.decision for point in study.decisions}
     rows: list[TableRow] = []
     for heads, found in rerouted(study):

@@ -1,4 +1,4 @@
-"""How the effect of a choice is spread over everyone who was there at the fork, the ego included."""
+"""How the effect of a choice is distributed over everyone present at the fork, including the ego."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from automotive_cosim.studies.rows import Horizon, Spread, TripClass
 Numbers = NDArray[np.float64]
 
 NOTICED_S = 1.0
-"""A vehicle counts as earlier or later from this difference of its mean arrival on."""
+"""A vehicle counts as earlier or later if its mean arrival differs by at least this."""
 
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 CLASSES_S = (0.0, 120.0, 300.0, 600.0)
@@ -68,7 +68,7 @@ def gini(values: Numbers) -> float:
 def _times_left(pair: tuple[Future, Future], group: Sequence[str], at_s: float) -> tuple[Numbers, Numbers]:
     """Seconds from the fork to the arrival of the ego and of each other vehicle, in both futures.
 
-    Whoever has not arrived when the earlier future ends counts up to then, as in ``compare.others``.
+    A vehicle that has not arrived when the earlier future ends counts up to then, as in ``compare.others``.
     """
     until_s = min(future.settled.time_s for future in pair)
     stay_s, other_s = (
@@ -88,7 +88,7 @@ def _class(from_s: float, gains_s: Numbers) -> TripClass:
 
 
 def _horizon(pairs: Sequence[tuple[Future, Future]], group: Sequence[str], share: float) -> Horizon:
-    """What the others save up to the instant at which the first of the two futures has that share of them home."""
+    """What the others save up to the instant at which that share of them has arrived in the faster future."""
     sums_s: list[float] = []
     for pair in pairs:
         until_s = min(_time_home(future, group, share) for future in pair)
@@ -102,7 +102,7 @@ def _horizon(pairs: Sequence[tuple[Future, Future]], group: Sequence[str], share
 
 
 def _time_home(future: Future, group: Sequence[str], share: float) -> float:
-    """When that share of the vehicles had arrived; infinite if it had not by the end."""
+    """When that share of the vehicles had arrived; infinite if not by the end."""
     needed = int(np.ceil(share * len(group) - 1e-9))
     arrivals_s = sorted(future.settled.arrivals_s.get(each, np.inf) for each in group)
     return arrivals_s[needed - 1] if needed else 0.0

@@ -16,19 +16,19 @@ from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 
 class Futures:
-    """What can follow from a drive at the decision at hand; nothing here changes the drive itself."""
+    """The possible futures of a drive at the current decision; nothing here changes the drive itself."""
 
     def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked) -> None:
         self._job = job
         self._traffic = traffic
         self._simulation = simulation
         self.decisions = 0
-        """How many decisions came before."""
+        """Number of earlier decisions."""
         self.fresh: Fresh | None = None
-        """How futures got fresh random numbers, once one did."""
+        """How futures got fresh random numbers, as soon as one did."""
 
     def replicates(self, begun: Sequence[RemoteTraffic | None], group: Sequence[str]) -> list[Drawn]:
-        """Further draws of keeping the route and of every branch, which are as after their choice; none if nobody
+        """Further draws of keeping the route and of every branch, in their state after the choice; none if nobody
         left the route, since all futures of a draw are then the same."""
         drawn: list[Drawn] = []
         fewest, most = self._job.plan.draws.start, self._job.plan.draws.stop
@@ -44,7 +44,7 @@ class Futures:
     def diverted(
         self, begun: RemoteTraffic, ways: tuple[Edges, Edges], seeds: Sequence[int], group: Sequence[str]
     ) -> list[Diverted]:
-        """The futures in which others take the way that the ego has begun, in the scored draws."""
+        """The futures in which others also take the ego's new route, in the scored draws."""
         found: list[Diverted] = []
         old, new = ways
         for share in self._job.plan.together if old else ():
@@ -60,9 +60,9 @@ class Futures:
     def shut(
         self, begun: RemoteTraffic, offered: int, own: Edges, seeds: Sequence[int], group: Sequence[str]
     ) -> list[Shut]:
-        """The futures of the two ways with a road closed now, in the scored draws."""
+        """The futures of the two routes with a road closed now, in the scored draws."""
         edge = self._job.plan.close
-        if edge == AHEAD:  # in the middle of the part of its route that the other way does not have
+        if edge == AHEAD:  # in the middle of the section that the other route avoids
             edge = own[len(own) // 2] if len(own) > 2 else ""
         found: list[Shut] = []
         for draw, seed in enumerate(seeds if edge else ()):
@@ -87,12 +87,12 @@ class Futures:
             return [ended(copy) for copy in copies]
 
     def seed(self, draw: int) -> int:
-        """The seed of a draw of the decision at hand."""
+        """The seed of a draw of the current decision."""
         entropy = (*self._job.entropy, 4, self.decisions, draw)
         return int(np.random.default_rng(entropy).integers(SEED_RANGE))
 
     def begin(self, branch: RemoteTraffic | None, group: Sequence[str]) -> None:
-        """Begins to drive it to its end."""
+        """Starts driving it to its end."""
         if branch is not None:
             branch.begin_settling([group], self._job.plan.arrived, self._job.plan.limit_s)
 
@@ -104,6 +104,6 @@ def ended(traffic: RemoteTraffic) -> Future:
 
 
 def close_all(branches: Iterable[RemoteTraffic | None]) -> None:
-    """Ends them, whatever they are doing."""
+    """Ends them at once, even while they run."""
     for branch in filter(None, branches):
         branch.close()

@@ -1,8 +1,8 @@
-"""What can be watched of a running study: each drive up to its last decision, what is decided, and what came of it.
+"""What can be watched of a running study: each drive up to its last decision, the decisions and their results.
 
 ``live/DRIVE/`` in the study's folder holds ``road.jsonl.gz`` (see ``run.road``) and ``shown.jsonl``, one line per
-step as a page shows it. They are written only while somebody watches, who marks the file ``live/watched`` as a
-writer marks what it writes; the system drops the mark however a watcher ends. What is simulated does not change.
+step as a page shows it. They are written only while somebody watches: the watcher locks the file
+``live/watched``, and the system releases the lock however the watcher ends. The simulation does not change.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ from automotive_cosim.traffic.fork import RemoteTraffic
 LIVE = "live"
 WATCHED = "watched"
 KEPT = 20
-"""Drives of which the record is kept when another is begun."""
+"""Number of drives whose records are kept when another one begins."""
 KEEPS = "keeps its route"
 
 
 class LiveDrive:
-    """Tells whoever watches what one drive does."""
+    """Shows one drive to those who watch it."""
 
     def __init__(self, job: DriveJob, traffic: RemoteTraffic, folder: Path | None) -> None:
         """Writes nothing yet.
@@ -51,14 +51,14 @@ class LiveDrive:
         self._begun_s = traffic.state.time_s
         self._scenario = job.plan.scene(job.share)
         self._told: list[Json] = []
-        """Steps so far, also those that nobody has watched."""
+        """Steps so far, including those that nobody has watched."""
         self._road: RoadWriter | None = None
         self._lines: IO[str] | None = None
         self._decisions = self._driven = 0
         self._tell("departure")
 
     def advance(self, duration_s: float) -> None:
-        """Drives on, second by second if somebody watches: the same road, in shorter pieces."""
+        """Drives on, second by second if somebody watches: the same drive in shorter pieces."""
         if not self._is_watched():
             self._traffic.advance(duration_s)
             return
@@ -75,7 +75,7 @@ class LiveDrive:
                 self._look()
 
     def decided(self, decision: Decision) -> None:
-        """A decision is made; its futures are being driven."""
+        """Shows a decision whose futures are now being driven."""
         self._decisions += 1
         chosen = choosers(self._job.plan, decision)
         lines = [f"{_way(number)}: {policies}" for number, policies in chosen.items()]
@@ -86,15 +86,15 @@ class LiveDrive:
         )
 
     def driven(self, branches: Sequence[Future | None]) -> None:
-        """The branches of the next decision are at their ends; None is the drive itself."""
+        """The branches of the next decision have ended; None is the drive itself."""
         self._driven += 1
         for number, future in enumerate(branches):
             if future is not None:
                 time_s = future.totals().time_s
-                self._tell(f"decision {self._driven}, {_way(number)}: there {time_s:.0f} s after the departure")
+                self._tell(f"decision {self._driven}, {_way(number)}: arrives {time_s:.0f} s after the departure")
 
     def over(self, decisions: Sequence[Decision]) -> None:
-        """The drive itself is at its end, and what each way saves is known."""
+        """The drive itself has ended, and the savings of each route are known."""
         for count, decision in enumerate(decisions, 1):
             for number, branch in enumerate(decision.branches):
                 gain_s, others_s = decision.gains(number).time_s, branch.others.gain_s
@@ -115,7 +115,7 @@ class LiveDrive:
 
     @contextmanager
     def _spared(self) -> Iterator[None]:
-        """A disk that is full ends the watching, not the study."""
+        """A full disk ends the watching, not the study."""
         try:
             yield
         except OSError:
@@ -177,4 +177,4 @@ class LiveDrive:
 
 
 def _way(number: int | None) -> str:
-    return KEEPS if number is None else f"way {number + 1}"
+    return KEEPS if number is None else f"alternative {number + 1}"

@@ -1,4 +1,4 @@
-"""Drives on, and asks at every instant at which a decision is due."""
+"""Drives on, and calls back at every instant at which a decision is due."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.traffic.base import Traffic
 
 LOOK_S = 10.0
-"""Time between two checks whether a decision is due; the traffic's speeds are sampled as often."""
+"""Time between two checks for a due decision, and between two samples of the traffic's speeds."""
 
 
 def drive_on(
@@ -25,11 +25,11 @@ def drive_on(
         traffic: the drive.
         plan: which delay makes a decision due, and how often.
         decide: called while one is due; true if there was something to decide, so the next is due later.
-        most: the drive ends after so many; None drives to the destination.
-        advance: drives on by so many seconds; None takes the traffic's own.
+        most: the drive ends after this many decisions; None drives to the destination.
+        advance: drives on by that many seconds; None uses the traffic's own.
 
     Returns:
-        The greatest delay that was expected ahead at any check.
+        The greatest expected delay at any check.
     """
     advance = advance or traffic.advance
     begun_s = traffic.state.time_s

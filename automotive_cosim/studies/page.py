@@ -82,10 +82,10 @@ def warnings(study: Study) -> list[str]:
     elif len(seeds) < PUBLISHED_SEEDS:
         found.append(f"{len(seeds)} seeds with a decision: run {PUBLISHED_SEEDS} before publishing.")
     if study.decisions and not study.noise().placebos:
-        found.append("There is no placebo, so the noise floor is unknown: any difference counts.")
+        found.append("There is no placebo, so the noise floor is unknown and any difference counts.")
     if any(row.fresh is Fresh.JITTER for row in study.rows):
         found.append(
-            "SUMO could not be seeded anew here: the futures differ by a small change of every other car's speed, "
+            "SUMO could not be reseeded here: the futures differ by a small change of every other car's speed, "
             "which understates chance."
         )
     if any(name in PROFILES and model == "rules" for name, model in map(named, study.plan.agents)):

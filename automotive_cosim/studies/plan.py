@@ -27,15 +27,15 @@ KIND = "reroute"
 """Kind of study in the manifest, so that a report knows what it reads."""
 
 EQUILIBRIUM_GAP = 0.01
-"""Relative gap under which a dynamic user assignment counts as converged."""
+"""Relative gap below which a dynamic user assignment counts as converged."""
 
 AHEAD = "ahead"
 """Closes a road on the ego's route."""
 
 AUTO_DRAWS = range(4, 14)
-"""With ``auto``, each future is driven at least and at most so often after the first."""
+"""With ``auto``, each future is driven at least and at most this often after the first time."""
 AUTO_ERRORS = 2.0
-"""... and no more once the mean gain of every branch is this many standard errors from zero."""
+"""Driving stops early once the mean gain of every branch is this many standard errors from zero."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +61,7 @@ class StudyPlan:
     driver: str = ""
     """Name of a driver profile; empty takes the scenario's."""
     compliance: Annotated[tuple[Annotated[float, Ge(0), Le(1)], ...], MinLen(1)] = (1.0,)
-    """Probabilities that the driver follows the advice, at the same decisions; most tables are of the first."""
+    """Probabilities that the driver follows the advice, at the same decisions; most tables use only the first."""
     policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
     least_delay_s: Annotated[float, Ge(0), Le(3_600)] = 30.0
     """A decision is due while the expected delay ahead is at least this."""
@@ -72,7 +72,7 @@ class StudyPlan:
     placebo_every: Annotated[int, Ge(0), Le(1_000_000)] = 1
     """One placebo in this many drives with a decision; 0 for none. Replicates contain it."""
     replicates: Annotated[int, Ge(1), Le(100)] | Literal["auto"] = 1
-    """How often each future is driven; ``auto`` drives more where the mean gain does not show its sign."""
+    """How often each future is driven; ``auto`` drives more where the sign of the mean gain is still unclear."""
     arrived: Annotated[float, Ge(0.5), Le(1)] = 0.95
     """Share of the vehicles there at the decision that must arrive before a future ends."""
     limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
@@ -90,12 +90,12 @@ class StudyPlan:
     whole_drives: bool = False
     """Whether every policy also drives from the departure to the destination."""
     together: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
-    """Shares of the cars that could take the quickest other way, which take it with the ego."""
+    """Shares of the eligible cars that take the quickest other route with the ego."""
     close: str = ""
-    """An edge that is closed at the first decision of a drive, whichever way the ego goes; ``ahead`` is one on its
-    route where the two ways differ. Empty closes none."""
+    """An edge that is closed at the first decision of a drive, whichever route the ego takes; ``ahead`` is one
+    on its route where the two routes differ. Empty closes none."""
     redraw: bool = False
-    """Whether every seed is another day of the demand, see ``redraws_trips`` of a scenario."""
+    """Whether every seed is a different day of the demand; see ``redraws_trips`` of a scenario."""
     emissions: bool = False
     """Whether to measure what every vehicle emits and consumes."""
     ego_class: str = ""
@@ -120,17 +120,19 @@ class StudyPlan:
         for name in ("departures_s", "seeds", "shares", "ages_s", "compliance", "policies", "trips", "together"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
-                raise UserError(f"{_option(name)} names something twice: {', '.join(map(str, values))}")
+                raise UserError(f"{_option(name)} has duplicates: {', '.join(map(str, values))}")
         if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
             raise UserError(
-                f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium under "
-                f"{EQUILIBRIUM_GAP:g}: run duaIterate further, or omit the option"
+                f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium below "
+                f"{EQUILIBRIUM_GAP:g}; run duaIterate longer, or omit the option"
             )
         for text in self.policies:
             parse_policy(text)
         for agent in self.agents:
             if agent == "human":
-                raise UserError("policy 'agent:human' needs a person; a study runs by itself")
+                raise UserError(
+                    "policy 'agent:human' needs a person, but a study runs unattended; choose another agent"
+                )
             make_agent(*named(agent))
         if self.driver:
             profile(self.driver)
@@ -175,11 +177,11 @@ class StudyPlan:
         if self.equilibrium_gap is not None:
             return f"routes from duaIterate, relative gap {self.equilibrium_gap:.2%}"
         told = sorted({job.share for job in self.jobs()})
-        drawn = "; every seed draws the trips anew" if self.scene(0.0).sumo.redraws_trips else ""
+        drawn = "; every seed redraws the trips" if self.scene(0.0).sumo.redraws_trips else ""
         if told == [0.0]:
-            return f"one-shot: routes by free flow at departure, kept to the end{drawn}"
+            return f"one-shot: free-flow routes at departure, kept to the end{drawn}"
         shares = " / ".join(f"{share:.0%}" for share in told)
-        return f"rerouting: {shares} of the cars reroute by current times{drawn}"
+        return f"rerouting: {shares} of the cars reroute by current travel times{drawn}"
 
     @property
     def opened(self) -> Scenario:
@@ -223,7 +225,7 @@ class DriveJob:
 
     @property
     def situation(self) -> str:
-        """A drive waits for no situation, so no other shares its fate."""
+        """A drive waits for no situation, so no other drive depends on it."""
         return self.id
 
     @property
@@ -265,9 +267,9 @@ def make_study(values: Mapping[str, Any]) -> StudyPlan:
     """
     plan = dict(values)
     if plan.pop("study", None) == KIND:
-        with suppress(UserError):  # whose message would name options that nobody has given
+        with suppress(UserError):  # its message would mention options that the user has not given
             return _check(plan)
-    raise UserError("the folder has no rerouting study of this version; read it with the version that wrote it")
+    raise UserError("the folder has no rerouting study of this version; use the version that wrote it")
 
 
 def _check(values: Mapping[str, Any]) -> StudyPlan:

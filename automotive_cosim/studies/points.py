@@ -1,4 +1,4 @@
-"""The futures of one decision: what they must show to count, and what they come to."""
+"""The futures of one decision: the conditions under which they count, and their results."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from automotive_cosim.traffic.accounts import Pulse
 GRIDLOCK = "gridlock"
 NOT_ARRIVED = "ego did not arrive"
 NOT_CLEARED = "traffic did not clear"
-"""Reasons to exclude a decision from the averages; a gridlock is followed by the rule that saw it."""
+"""Reasons to exclude a decision from the averages; a gridlock is followed by the rule that detected it."""
 
 
 @dataclass(slots=True)
@@ -28,7 +28,7 @@ class Point:
     decision: Decision
     """The decision without the results of its branches."""
     group: tuple[str, ...]
-    """The other vehicles that were there."""
+    """The other vehicles that were present."""
     pulse: Pulse
     branches: list[Future | None] = field(default_factory=list)
     """The future of each branch; None if nothing in it differs from the drive itself."""
@@ -40,19 +40,19 @@ class Point:
 
 @dataclass(slots=True)
 class Shut:
-    """The futures of the two ways with a road closed."""
+    """The futures of the two routes with a road closed."""
 
     edge: str
     draw: int
     branch: int
-    """Number of the other way."""
+    """Number of the other route."""
     stay: Future
     other: Future
 
 
 @dataclass(slots=True)
 class Diverted:
-    """A future in which others take the ego's other way too."""
+    """A future in which others take the ego's other route too."""
 
     share: float
     draw: int
@@ -115,7 +115,7 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
 
 
 def _closed(shut: Shut, open_: Drawn, point: Point, pulses: Sequence[Pulse]) -> Closed:
-    """What a closure costs, unless one of its futures does not count; the decision itself does."""
+    """The cost of a closure, unless one of its futures does not count; the decision itself still counts."""
     other = open_.branches[shut.branch]
     times_s = [future.totals().time_s for future in (open_.stay, other, shut.stay, shut.other)]
     stay_s, other_s, stay_closed_s, other_closed_s = times_s
@@ -139,7 +139,7 @@ def _closed(shut: Shut, open_: Drawn, point: Point, pulses: Sequence[Pulse]) -> 
 
 
 def _together(diverted: Diverted, stay: Future, point: Point, pulses: Sequence[Pulse]) -> Together:
-    """What many cars gain, unless that very future does not count; the decision itself does."""
+    """What many cars gain, unless that future does not count; the decision itself still counts."""
     pair = stay, diverted.future
     excluded, _ = exclusion([pair], pulses)
     return together(diverted.share, diverted.draw, pair, point.group, diverted.took, diverted.could, excluded)
@@ -161,7 +161,7 @@ def exclusion(pairs: Sequence[tuple[Future, Future]], pulses: Sequence[Pulse]) -
         if jam is not None:
             return f"{GRIDLOCK}: {jam.rule}", jam.why
     if not all(future.settled.is_complete for future in futures):
-        return NOT_CLEARED, "too few of the vehicles that were there had arrived in time"
+        return NOT_CLEARED, "too few of the vehicles present at the decision had arrived in time"
     return "", ""
 
 

@@ -1,4 +1,4 @@
-"""Who decides whether to reroute, and the result, judged on futures that have all been driven."""
+"""The policies that decide whether to reroute, and their results, judged on futures that have all been driven."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ class PolicyRule(StrEnum):
     SUMO = "sumo"
     """Takes the route of SUMO's rerouting device."""
     BEST = "best"
-    """Knows how every future ends: the best possible with the same choices."""
+    """Knows how every future ends: the best possible result with the same choices."""
     AGENT = "agent"
     """An agent of the benchmark at the cockpit."""
 
@@ -103,10 +103,10 @@ def drawn_choices(
 
 
 def hindsight(decision: Decision) -> tuple[int | None, ...]:
-    """The best choice for each draw, made by all the others, those included that no mean is taken over.
+    """The best choice for each draw, made by all other draws, including those that are in no mean.
 
-    Chosen and scored by the same draw, the best of several equal futures would gain by luck. A single draw has no
-    others, so it is chosen by itself.
+    If the same draw chose and scored, the best of several equal futures would gain by luck. A single draw has no
+    others, so it chooses for itself.
     """
     if decision.draws == 1:
         return (best(decision),)
@@ -118,7 +118,7 @@ def best(decision: Decision, without: int | None = None) -> int | None:
 
     Args:
         decision: a decision of a drive.
-        without: a draw that is not looked at.
+        without: a draw to ignore.
     """
     draws = [draw for draw in range(decision.draws) if draw != without]
     times = {

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     import pandas as pd
 
 NOISE = 0.95
-"""The noise floor is this quantile of the differences by chance alone."""
+"""The noise floor is this quantile of the differences caused by chance alone."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class Study:
         return tuple(each for level in self.plan.compliance for each in self.at_compliance(level))
 
     def at_compliance(self, compliance: float) -> tuple[PolicyChoice, ...]:
-        """The same if the driver follows advice with that probability."""
+        """The same if the driver follows the advice with that probability."""
         return tuple(choices(self.rows, self.plan.policies, compliance))
 
     def noise(self) -> Noise:
@@ -90,7 +90,7 @@ class Noise:
 
 
 def read_study(folder: Path) -> Study:
-    """Reads a study's folder, a running one too.
+    """Reads a study's folder, even of a running study.
 
     Raises:
         UserError: it is not a study's folder, or is damaged.
@@ -194,7 +194,7 @@ def _sign(decision: Decision, draw: int, number: int | None) -> int:
 
 
 def _is_same(decision: Decision, one: int | None, other: int | None) -> bool:
-    """Whether two choices come to the same future, as an agent's that leaves the route as it is."""
+    """Whether two choices lead to the same future, such as that of an agent that keeps the route."""
     draws = range(decision.draws)
     return one == other or all(decision.gain(draw, one) == decision.gain(draw, other) for draw in draws)
 

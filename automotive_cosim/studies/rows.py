@@ -23,11 +23,11 @@ class Totals:
     co2_g: float
     fuel_g: float
     energy_wh: float = 0.0
-    """From the battery, of an electric ego."""
+    """Taken from the battery of an electric ego."""
 
     @classmethod
     def mean(cls, drives: Sequence[Totals]) -> Totals:
-        """The mean over the drives; a single one is its own."""
+        """The mean over the drives; that of a single one is itself."""
         if len(drives) == 1:
             return drives[0]
         return cls(
@@ -41,7 +41,7 @@ NOTHING = Totals(time_s=0.0, distance_m=0.0, stops=0, standing_s=0.0, co2_g=0.0,
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class OthersTotals:
-    """All vehicles there at the fork, in one future compared with that in which the ego keeps its route."""
+    """All vehicles present at the fork, in one future compared with that in which the ego keeps its route."""
 
     count: int
     gain_s: float
@@ -60,10 +60,10 @@ NOBODY = OthersTotals(count=0, gain_s=0.0, changed=0, unfinished_stay=0, unfinis
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class FleetClass:
-    """What the vehicles of one emission class save that were there and arrived in both futures."""
+    """What the vehicles of one emission class save that were present and arrived in both futures."""
 
     emission_class: str
-    """SUMO's name of it; the ego is a class of its own, ``ego: `` and its name."""
+    """SUMO's name of the class; the ego is a class of its own, ``ego: `` and its name."""
     count: int
     co2_g: float
     nox_g: float
@@ -75,10 +75,10 @@ class FleetClass:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TripClass:
-    """Vehicles whose trips still take about as long from the fork."""
+    """Vehicles with about the same time left on their trips at the fork."""
 
     from_s: float
-    """Least time left if the ego keeps its route; the next class has the greatest."""
+    """Lower bound of the time left if the ego keeps its route; the next class has the upper bound."""
     count: int
     gain_s: float
     """Their total savings."""
@@ -130,7 +130,7 @@ class Branch:
     totals: Totals
     others: OthersTotals
     fleet: tuple[FleetClass, ...] = ()
-    """What everyone emits and consumes less, if the plan asks for it."""
+    """How much less everyone emits and consumes, if the plan asks for it."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -147,35 +147,35 @@ class Replicate:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Together:
-    """A future in which other cars take the other way with the ego, compared with that in which nobody does."""
+    """A future in which other cars take the other route with the ego, compared with that in which nobody does."""
 
     share: float
     """Share of the cars that could take it; with 0 the ego is alone."""
     draw: int
     could: int
-    """Number of cars whose routes pass both ends of the section in which the two ways differ."""
+    """Number of cars whose routes pass both ends of the section in which the two routes differ."""
     took: int
     ego_gain_s: float
     took_gain_s: float
     """Total savings of the cars that took it too."""
     rest_gain_s: float
-    """Total savings of all others that were there."""
+    """Total savings of all others that were present."""
     excluded: str = ""
     """Why it is excluded from the averages; empty if it counts."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Closed:
-    """The two ways with a road closed at the decision, compared with the same ways while it is open."""
+    """The two routes with a road closed at the decision, compared with the same routes with it open."""
 
     edge: str
     draw: int
     stay_loss_s: float
-    """What the closure costs the ego that keeps its route, and goes round when it gets there."""
+    """What the closure costs the ego if it keeps its route and takes a detour at the closure."""
     other_loss_s: float
-    """What it costs the ego that takes the other way."""
+    """What it costs the ego if it takes the other route."""
     gain_s: float
-    """What the other way saves with the road closed."""
+    """What the other route saves with the road closed."""
     open_gain_s: float
     """The same with it open."""
     others_loss_s: float
@@ -192,9 +192,9 @@ class News:
 
     age_s: float
     stay_s: float | None
-    """Expected travel time on the present route; None if unknown to the news."""
+    """Expected travel time on the current route; None if the news does not have it."""
     delay_s: float
-    """Expected delay on the present route."""
+    """Expected delay on the current route."""
     offered_s: float | None
     """Expected travel time on the quickest other route; None without one."""
     branch: int | None
@@ -235,22 +235,22 @@ class Decision:
     why: str = ""
     branches: tuple[Branch, ...] = ()
     placebo: Branch | None = None
-    """The route kept once more, with fresh random numbers; None if not drawn. Replicates contain it."""
+    """The kept route driven once more, with fresh random numbers; None if not drawn. Replicates contain it."""
     replicates: tuple[Replicate, ...] = ()
     """Further draws of all futures; the drive itself and ``branches`` are draw 0."""
     planned_draws: int = 0
-    """Number of draws that did not depend on what they showed; 0 for all."""
+    """Number of draws that did not depend on the results so far; 0 for all."""
     spreads: tuple[Spread, ...] = ()
     """How each branch affects everyone."""
     traffic: Pulse | None = None
     """The traffic as a whole at the decision."""
     together: tuple[Together, ...] = ()
-    """Futures in which others take the quickest other way too, at the first decision of a drive."""
+    """Futures in which others take the quickest other route too, at the first decision of a drive."""
     closed: tuple[Closed, ...] = ()
     """Futures in which a road is closed, at the first decision of a drive."""
 
     def complies(self, compliance: float) -> bool:
-        """Whether a driver follows the advice who does so with that probability."""
+        """Whether a driver with that compliance follows the advice here."""
         return self.complies_above < compliance
 
     @property
@@ -265,10 +265,10 @@ class Decision:
 
     @property
     def scored(self) -> range:
-        """The draws that means are taken over.
+        """The draws over which means are taken.
 
-        Draws that were added until the gain showed its sign choose and tell the sign, but are in no mean: stopping
-        there would move it away from zero.
+        Draws that were added until the sign of the gain was clear choose and tell the sign, but are in no mean:
+        stopping there would bias it away from zero.
         """
         return range(self.planned_draws or self.draws)
 
@@ -303,7 +303,7 @@ class WholeDrive:
     draw: int
     """0 with the random numbers of the drive itself, then with fresh ones."""
     reroutings: int
-    """How often the policy left its route; 0 makes the two drives the same."""
+    """How often the policy left its route; with 0 the two drives are the same."""
     branch: Branch
     excluded: str = ""
     """Why it is excluded from the averages; empty if it counts."""
@@ -326,7 +326,7 @@ class DriveRow(JobRow):
     looks: int = 0
     """Number of instants with congestion ahead but no alternative route."""
     fresh: Fresh | None = None
-    """How futures got random numbers of their own; None if none did."""
+    """How futures got fresh random numbers; None if none did."""
     stay: Totals | None = None
     """The drive itself; None without a decision."""
     decisions: tuple[Decision, ...] = ()
@@ -382,12 +382,12 @@ class PolicyChoice:
     unfinished_stay: float
     unfinished: float
     draws: int
-    """How often each future was driven; ``gain`` and what is said of the others are means over them."""
+    """How often each future was driven; ``gain`` and the figures of the others are means over them."""
     gain_error_s: float | None
-    """Standard error of the mean time gained at this very decision; None with a single draw."""
+    """Standard error of the mean time gained at this decision; None with a single draw."""
     won: float | None
     """Share of the draws that gained time where the mean of the others did too; None with a single draw."""
     lost: float | None
     """The same for time lost."""
     chose_best: float | None
-    """Share of the draws whose others call this choice the best; None with a single draw."""
+    """Share of the draws for which this choice is the best by the other draws; None with a single draw."""

@@ -59,18 +59,18 @@ def networks(studies: Sequence[Study]) -> Table:
         "Warm-up, s",
         "Share rerouting",
         "Edges",
-        "Vehicles at once",
+        "Vehicles on the road",
         "Decisions",
         "Always saves, s",
         "Best saves, s",
         "Others save, s",
         "Later",
         "Noise floor, s",
-        "Demand's gap",
+        "Demand gap",
         "s per decision",
     )
     note = (
-        "Always and best: seconds saved per decision that counts, with 95 % intervals where there are enough "
+        "Always and best: seconds saved per decision that counts, with 95 % intervals if there are enough "
         "seeds. Others save and later (share of the vehicles that arrive at least 1 s later): when the ego always "
         "reroutes. Seconds per decision: wall time of one worker."
     )

@@ -86,7 +86,7 @@ def policies(study: Study) -> Table:
     )
     note = (
         "Over all decisions that count; where the policy keeps the route, the gain is 0. In brackets: 95 % t "
-        f"intervals with an error over seeds, with {LEAST_SEEDS} seeds or more; resampled: from resampling "
+        f"intervals with a standard error over seeds, from {LEAST_SEEDS} seeds; resampled: from resampling "
         f"whole seeds. {_how_judged(study, floor)}"
     )
     return Table("policies", "What each policy saved the ego", columns, tuple(rows), note, heads=3)
@@ -106,7 +106,7 @@ def _how_judged(study: Study, floor: Noise) -> str:
     added = f" Means are over the first {fixed}." if study.plan.replicates == "auto" else ""
     return (
         f"Each future was driven {times} times.{added} Best, better and "
-        "regret are cross-fitted: the other draws choose and each draw scores, so a regret may be negative. A draw "
+        "regret are cross-fitted: the other draws choose and each draw scores, so regret may be negative. A draw "
         "is won or lost if the mean of the others has the same sign; the counts are sums of such shares."
     )
 
@@ -152,7 +152,7 @@ def costs(study: Study) -> Table:
 
 
 def by_congestion(study: Study) -> Table:
-    """Time saved by how congested the way ahead was."""
+    """Time saved by how congested the road ahead was."""
     first_s = study.plan.ages_s[0]
     chosen = [each for each in study.choices if each.age_s == first_s and each.policy not in STAYING]
     named = list(dict.fromkeys(each.policy for each in chosen))
@@ -183,7 +183,7 @@ def by_age(study: Study) -> Table:
         columns: tuple[str, ...] = ("News age, s", *named)
     else:
         columns = ("News age, s",)
-    note = "Seconds saved at the very same decisions when the alternative route is selected by news of that age."
+    note = "Seconds saved at the same decisions when the alternative route is selected by news of that age."
     return Table("by_age", "Time saved by the age of the news", columns, tuple(rows), note)
 
 
@@ -198,8 +198,8 @@ def by_compliance(study: Study) -> Table:
         cells = [mean_cell((each for each in here if each.policy == name), time_saved_s) for name in named]
         rows.append((f"{compliance:.0%}", followed, *cells))
     note = (
-        "Seconds saved at the very same decisions by a driver who follows the advice with that probability. Who "
-        "follows it at one probability does so at every greater one, so the rows differ by the compliance alone."
+        "Seconds saved at the same decisions by a driver who follows the advice with that probability. A driver "
+        "who follows it at one probability does so at every greater one, so the rows differ only by the compliance."
     )
     columns = ("Compliance", "Followed", *named)
     return Table("by_compliance", "Time saved by the driver's compliance", columns, tuple(rows), note)
@@ -239,7 +239,7 @@ def by_share(study: Study) -> Table:
 
 
 def stops_helping(study: Study) -> str:
-    """The share of rerouting cars from which one more gains nothing, in words."""
+    """The share of rerouting cars from which rerouting no longer helps, in words."""
     helps: dict[float, bool] = {}
     for share in sorted({each.share for each in study.choices}):
         mean = seed_mean(
@@ -266,7 +266,7 @@ def noise_floor(study: Study) -> Table:
     if floor.placebos:
         rows = ((_what_is_fresh(study), str(floor.placebos), f"{floor.time_s:.1f}", f"{floor.others_s:.1f}"),)
     note = (
-        f"{NOISE:.0%} of the futures in which the ego keeps its route too, with other random numbers, differ from "
+        f"{NOISE:.0%} of the futures in which the ego also keeps its route, with fresh random numbers, differ from "
         "the drive itself by no more than this. Where each future was driven once, a smaller difference of the "
         "ego's time is a tie."
     )
@@ -278,8 +278,8 @@ def _what_is_fresh(study: Study) -> str:
     """How the placebos and replicates differ from the drive itself."""
     said = {
         None: "One other car 0.1 % faster",  # of studies before there were fresh random numbers
-        Fresh.SEED: "All random numbers seeded anew",
-        Fresh.SEED_UNSEEN: "All random numbers seeded anew, without a visible effect at the start",
+        Fresh.SEED: "All random numbers reseeded",
+        Fresh.SEED_UNSEEN: "All random numbers reseeded, without a visible effect at the start",
         Fresh.JITTER: f"All other cars' speeds changed by {JITTER:.1%} at random",
     }
     found = dict.fromkeys(row.fresh for row in study.rows if any(each.unchanged for each in row.decisions))
@@ -297,7 +297,7 @@ def excluded(study: Study) -> Table:
         (f"{reason} ({what})", str(count), examples[what, reason])
         for (what, reason), count in sorted(study.excluded.items())
     )
-    note = "These are counted here and in no average; gridlocked traffic says nothing about rerouting."
+    note = "These are counted here but not in any average; gridlocked traffic says nothing about rerouting."
     return Table("excluded", "Excluded from the averages", ("Reason", "Count", "For example"), rows, note, heads=3)
 
 
@@ -305,7 +305,7 @@ def errors(study: Study) -> Table:
     """Drives that ended in an infrastructure error."""
     rows = tuple((row.id, row.error_kind or "", row.error or "") for row in study.errors)
     note = "Rerun the command to retry them."
-    return Table("errors", "Infrastructure errors", ("Drive", "Kind", "What"), rows, note, heads=3)
+    return Table("errors", "Infrastructure errors", ("Drive", "Kind", "Message"), rows, note, heads=3)
 
 
 def outcomes(chosen: Sequence[PolicyChoice], floor: Noise) -> tuple[float, float, float]:

@@ -1,4 +1,4 @@
-"""What it costs when many cars take the other way at the same fork."""
+"""The cost when many cars take the other route at the same fork."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ def together(
     could: int,
     excluded: str,
 ) -> Together:
-    """Savings of the ego, of the cars that went with it, and of all the rest.
+    """Savings of the ego, of the cars rerouted with it, and of all the rest.
 
     Args:
-        share: share of the cars that were sent along.
+        share: share of the eligible cars that were rerouted with the ego.
         draw: number of the draw.
         pair: the future in which everybody keeps their route, and the one in which they do not.
-        group: the other vehicles that were there.
-        took: those that went along.
-        could: how many could have.
+        group: the other vehicles that were present.
+        took: those that were rerouted with the ego.
+        could: how many were eligible.
         excluded: why the future does not count.
     """
     stay, other = pair

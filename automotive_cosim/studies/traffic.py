@@ -1,7 +1,7 @@
 """Whether the traffic still flows; measurements in a gridlock say nothing about rerouting.
 
-A gridlock is judged by what stands still on the road. Vehicles that find no room to enter are no sign of it: at a
-full edge of the network they wait for a gap, while everybody else drives. They are counted and reported.
+A gridlock is judged by the vehicles that stand still on the road. Vehicles that find no room to enter are no sign
+of it: at a full edge of the network they wait for a gap while everyone else drives. They are counted and reported.
 """
 
 from __future__ import annotations
@@ -16,14 +16,14 @@ PULSE_S = 300.0
 
 STUCK_SHARE = 0.05
 TELEPORTED_SHARE = 0.01
-"""Gridlock if more than these shares of the vehicles on the road wait, or of the departed were teleported."""
+"""Gridlock if more than these shares of the vehicles on the road wait, or of those departed were teleported."""
 
 STANDING_SHARE = 0.5
 STANDING = 2
-"""Gridlock too if more than this share stands in this many measurements in a row."""
+"""Also a gridlock if more than this share stands still in this many measurements in a row."""
 
 FEW = 40
-"""Shares are taken of at least so many vehicles, as two or three at a red light are no gridlock."""
+"""Shares are taken of at least this many vehicles, as two or three at a red light are no gridlock."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,7 +31,7 @@ class Gridlock:
     """Why the traffic counts as gridlocked."""
 
     rule: str
-    """Which rule says so, in two or three words."""
+    """The rule that detected it, in two or three words."""
     why: str
     """The figures behind it."""
 

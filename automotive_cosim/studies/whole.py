@@ -1,4 +1,4 @@
-"""Whole drives under a policy: what following it is worth, not what one deviation is.
+"""Whole drives under a policy: the value of following it, not of a single deviation.
 
 Every policy drives a copy of the traffic at the departure to its destination and reroutes wherever it wants to. It
 is compared with the copy that keeps its route. With replicates, all of them are driven again with the same fresh
@@ -26,7 +26,7 @@ from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
 from automotive_cosim.traffic.fork import RemoteTraffic
 
 SAME = Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)
-"""A drive that never left the route is the other drive, so it is not run to its end."""
+"""A drive that never left the route equals the other drive, so it is not run to its end."""
 
 
 def whole_drives(

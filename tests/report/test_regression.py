@@ -98,7 +98,7 @@ def test_people_are_compared_with_themselves_and_beside_an_agent_it_is_said_wher
     later = write(tmp_path / "later", lost={2}, agent="human", model="heron", clock=Clock.MODEL)
     (episodes, _) = changes(people, later)
     assert (episodes.contestant.label, episodes.count("lost")) == ("human, heron, model's clock", 1)
-    named = r"people \(human, heron, model's clock\) and \S+ \(asurada.*\) share .* serve"
+    named = r"people \(human, heron, model's clock\) and \S+ \(asurada.*\) have no .* serve"
     with pytest.raises(UserError, match=named):
         changes(people, write(tmp_path / "agent"))
 

@@ -210,8 +210,9 @@ def write_live_drive(study: Path, drive: str, seconds: range = range(1, 8)) -> P
     folder.mkdir(parents=True)
     (study / LIVE / WATCHED).touch()
     rest = {"action": None, "target": None, "feedback": {"code": "", "text": ""}, "context": "", "thought": HOSTILE}
-    words = ("departure", "decision 1: 70 s of delay ahead", "decision 1, way 1: saves +30 s, all others -4 s")
-    stages = [{"name": "who chooses what", "text": "way 1: always"}]
+    saved = "decision 1, alternative 1: saves +30 s, all others -4 s"
+    words = ("departure", "decision 1: 70 s of delay ahead", saved)
+    stages = [{"name": "who chooses what", "text": "alternative 1: always"}]
     shown = [
         {**rest, "number": number, "at_s": 2.0 * number, "words": told, "stages": stages}
         for number, told in enumerate(words)

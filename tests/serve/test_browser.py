@@ -173,12 +173,12 @@ def test_results_are_filtered_down_to_a_step(serving: Serving, opened: Callable[
     page = opened(serving(write_evaluation(tmp_path / "mine")))
     page.get_by_role("link", name="mine").click()
     expect(page.locator("tbody tr")).to_have_count(2)
-    page.get_by_label("Part not held").select_option("goal")
+    page.get_by_label("Failed part").select_option("goal")
     expect(page.locator("tbody tr")).to_have_count(1)
     expect(page).to_have_url(re.compile("missing=goal"))
     page.reload()
     expect(page.locator("tbody tr")).to_have_count(1)
-    page.get_by_label("Part not held").select_option("")
+    page.get_by_label("Failed part").select_option("")
     page.locator("tbody a").first.click()
     expect(page.locator(".about")).to_contain_text("other vehicles were not recorded")
     page.locator(".steps button").nth(1).click()
@@ -256,7 +256,7 @@ def perform(page: Any, action: Action, game: Overseen) -> int:
         case ActionType.INPUT_TEXT:
             page.mouse.click(*at(action.x or 0, action.y or 0))
             page.get_by_label("Type into").fill(action.text)
-            page.get_by_role("button", name="Type it").click()
+            page.get_by_role("button", name="Enter text").click()
         case ActionType.SWIPE:
             across, down = {"left": (-1, 0), "right": (1, 0), "up": (0, -1), "down": (0, 1)}[str(action.direction)]
             far, (x, y) = action.distance_px or 300, (action.x or 0, action.y or 0)
@@ -321,8 +321,8 @@ def test_a_person_practises_by_keyboard_alone(
     expect(page.locator(".said")).to_be_visible(timeout=60_000)
     page.get_by_role("button", name="Pause").focus()
     page.keyboard.press("Enter")
-    expect(page.locator(".playing [role=status]")).to_contain_text("the clock stands")
-    page.get_by_role("button", name="Go on").focus()
+    expect(page.locator(".playing [role=status]")).to_contain_text("clock stopped")
+    page.get_by_role("button", name="Resume").focus()
     page.keyboard.press("Enter")
     page.context.set_offline(True)
     expect(page.get_by_role("alert")).to_contain_text("does not answer")
@@ -360,7 +360,7 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
     def answer(page: Any) -> None:
         for box in page.locator("fieldset").all():
             box.get_by_label("mostly").check()
-        page.get_by_role("button", name="Go on").click()
+        page.get_by_role("button", name="Continue").click()
 
     first = PeopleStudy(plan, folder, simulations)
     browser = serving(tmp_path, study=first)
@@ -375,7 +375,7 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
         expect(page.get_by_text("About what you just did")).to_be_visible(timeout=60_000)
         expect(page.get_by_text(re.compile("success|not solved"))).to_have_count(0)
     answer(pages[0])
-    expect(pages[0].get_by_text("1 of 2 episodes are done.")).to_be_visible()
+    expect(pages[0].get_by_text("1 of 2 episodes done.")).to_be_visible()
     pages[0].get_by_role("button", name="Begin the next episode").click()
     expect(pages[0].locator(".said")).to_be_visible(timeout=60_000)
     first.close()  # as the server ends, in the middle of an episode
@@ -385,7 +385,7 @@ def test_two_people_take_part_in_a_study_at_once_and_a_new_server_goes_on(
     pages = [sit_down(browser, name) for name in plan.people]
     answer(pages[1])
     for page in pages:
-        expect(page.get_by_text("1 of 2 episodes are done.")).to_be_visible()
+        expect(page.get_by_text("1 of 2 episodes done.")).to_be_visible()
     page = pages[0]
     page.get_by_role("button", name="Begin the next episode").click()
     expect(page.locator(".said")).to_be_visible(timeout=60_000)
@@ -436,13 +436,13 @@ def test_the_ways_of_a_decision_are_on_one_road(
     expect(page.locator(".way")).to_have_count(2)
     assert page.locator(".street").count() > 20
     page.get_by_label("Seconds since the decision").fill("12")
-    expect(page.get_by_role("status")).to_have_text("+12 s · way 1: there after 10 s")
+    expect(page.get_by_role("status")).to_have_text("+12 s · alternative 1: arrives after 10 s")
     expect(page.locator(".car")).to_have_count(2)
-    expect(page.locator("tbody tr").nth(1)).to_contain_text("way 1+30 s")
+    expect(page.locator("tbody tr").nth(1)).to_contain_text("alternative 1+30 s")
     expect(page.locator("tbody tr").nth(1)).to_contain_text("−4 s1always")
     page.go_back()
     page.locator("tbody a").first.click()
-    expect(page.get_by_text("older than the record of the ways")).to_be_visible()
+    expect(page.get_by_text("before routes were recorded")).to_be_visible()
 
 
 def test_a_running_study_is_watched_drive_after_drive(
@@ -458,7 +458,7 @@ def test_a_running_study_is_watched_drive_after_drive(
         expect(page.get_by_role("heading", level=1)).to_have_text("avenue")
         expect(page.locator(".about")).to_contain_text("1 other vehicle in sight")
         page.get_by_role("button", name="decision 1: 70 s of delay ahead").click()
-        expect(page.get_by_text("way 1: always")).to_be_visible()
+        expect(page.get_by_text("alternative 1: always")).to_be_visible()
         expect(page.locator(".thought")).to_have_text(HOSTILE)
         assert is_being_written(study / "live" / "watched")
         page.get_by_label("Time in the drive").press("End")
@@ -468,7 +468,7 @@ def test_a_running_study_is_watched_drive_after_drive(
             with (write_live_drive(study, "second") / "road.jsonl.gz").open("ab") as second:
                 mark_as_written(second)
                 expect(page.get_by_text("This is drive second.")).to_be_visible()
-    expect(page.get_by_text("The study does not run.")).to_be_visible()
+    expect(page.get_by_text("The study is not running.")).to_be_visible()
     page.get_by_role("link", name="See its decisions").click()
     expect(page.locator("tbody tr")).to_have_count(2)
 

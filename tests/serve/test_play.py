@@ -121,7 +121,7 @@ def test_only_the_pages_themselves_may_act(serving: Serving, tmp_path: Path) -> 
         ("start", {"task": "hvac_fan_max", "name": " "}, "code name"),
         ("pace", {"paused": True}, "only practice"),
         ("pace", {"speed": "x"}, "a number"),
-        ("act", {"action_type": "click", "x": 1, "y": 1}, "nobody can act"),
+        ("act", {"action_type": "click", "x": 1, "y": 1}, "no action is possible now"),
         ("act", [], "object"),
     ],
 )

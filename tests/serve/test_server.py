@@ -168,7 +168,7 @@ def test_a_damaged_record_is_named_and_hides_no_other(serving: Serving, tmp_path
     browser = serving(tmp_path)
     records = {record["name"]: record for record in browser("/api/runs").json["records"]}
     assert {name for name, record in records.items() if record["kind"] == "unreadable"} == {"a", "b", "c", "d"}
-    assert records["killed"]["end"] == "stopped before its end"
+    assert records["killed"]["end"] == "stopped before the end"
     assert records["killed"]["running"] is False
     for name in "abcd":
         answer = browser(f"/api/runs/{records[name]['id']}")

@@ -135,7 +135,7 @@ def test_watching_shows_every_drive_and_changes_nothing(plan: StudyPlan, folder:
         assert shown == sorted(shown, key=lambda line: line["at_s"])
         assert "always" in shown[1]["stages"][0]["text"]
         gain_s = row.decisions[0].gains(0).time_s
-        assert any(f"decision 1, way 1: saves {gain_s:+.0f} s" in line["words"] for line in shown)
+        assert any(f"decision 1, alternative 1: saves {gain_s:+.0f} s" in line["words"] for line in shown)
 
 
 def test_a_full_disk_ends_the_watching_and_not_the_study(

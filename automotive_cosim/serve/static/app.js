@@ -62,7 +62,7 @@ function mark(path) {
   }
 }
 
-// Who takes part in a study sees nothing else.
+// A participant in a study sees nothing else.
 async function greet() {
   const { study, visitor } = await ask("/api/about");
   for (const link of document.querySelectorAll("nav a")) {

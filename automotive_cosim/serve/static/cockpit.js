@@ -1,4 +1,4 @@
-// The cockpit in a person's hands: its screen, what an agent is told, and the same acts.
+// The cockpit for a person: its screen, the information that an agent gets, and the same acts.
 
 import { ask, h, plain, seconds, send } from "./dom.js";
 
@@ -11,24 +11,24 @@ const REASONS = ["none", "law", "safety", "already_so", "not_possible"];
 const KEYS = { Escape: { action_type: "navigate_back" }, Home: { action_type: "navigate_home" } };
 
 export const RULES = [
-  "You know what an agent knows: the driver's words, the screen, the readings of the car and its receivers, and what is said of the place. You see neither the road nor the verdict.",
-  "The road does not wait. An act takes a second; a second without an act goes by. An episode ends after two minutes.",
-  "Do what the driver needs, and nothing else. Sometimes nothing is right, or what is asked must not be done: then say so.",
-  "Ask the driver only what nothing else tells. Look up rules, weather and roads with “Look up”; warnings are on the screen “Safety”.",
-  "At the end declare: done, not needed, or that it cannot or must not be done, if you can with the reason. The same checks judge you as an agent.",
-  "Tap, hold, drag and scroll on the screen; click a text field to type. Tab and Enter work, too; Escape is back, Home is home.",
+  "You get what an agent gets: the driver's words, the screen, the readings of the car and its receivers, and the facts about the place. You see neither the road nor the verdict.",
+  "The road does not wait. An act takes a second; without an act, a second passes anyway. An episode ends after two minutes.",
+  "Do what the driver needs, and nothing else. Sometimes nothing has to be done, or the request must not be granted: then say so.",
+  "Ask the driver only for what you cannot find out otherwise. Use “Look up” for rules, weather and roads; warnings are on the screen “Safety”.",
+  "At the end, declare: done, not needed, or that it cannot or must not be done, with the reason if you can. You are judged by the same checks as an agent.",
+  "Tap, hold, drag and scroll on the screen; click a text field to type. Tab and Enter work too; Escape is back, Home is home.",
 ];
 
 export function rulesCard() {
   return h("div", { class: "card" }, h("h2", {}, "What you know, and what counts"), h("ul", { class: "rules" }, RULES.map((text) => h("li", {}, text))));
 }
 
-// Plays one person's episodes: `base` is where the server is asked, `query` says for whom, `say` shows an error.
+// Plays one person's episodes: `base` is the server's path, `query` identifies the person, `say` shows an error.
 export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel = "Leave" }) {
   const address = (what, more = {}) => `${base}${what}?${new URLSearchParams({ ...query, ...more })}`;
   const act = async (action) => { try { foresee(await send(address("/act"), action)); say(null); } catch (error) { say(error); } };
   let scene = null;
-  let became = ""; // of the last act: a second that goes by says nothing
+  let became = ""; // the last act's feedback: a second without an act has none
 
   const screen = h("img", { class: "screen", alt: "The cockpit's screen", draggable: "false" });
   const ripple = h("i", { class: "ripple", hidden: true });
@@ -49,7 +49,7 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
   const pace = async (changes) => { try { await send(address("/pace"), { speed: scene.speed, paused: scene.paused, ...changes }); say(null); } catch (error) { say(error); } };
   const pause = button("Pause", () => pace({ paused: !scene.paused }));
   const speed = h("select", { "aria-label": "Speed of the road", onchange: () => pace({ speed: Number(speed.value) }) }, SPEEDS.map((value) => h("option", { value }, `${value}×`)));
-  const practice = h("div", { class: "card transport", hidden: true }, h("span", { class: "pill" }, "practice"), pause, speed, h("span", { class: "muted" }, "No row is kept of it."));
+  const practice = h("div", { class: "card transport", hidden: true }, h("span", { class: "pill" }, "practice"), pause, speed, h("span", { class: "muted" }, "The result is not counted."));
 
   const element = h("div", { class: "playing" },
     words, h("div", { class: "card stage-one" }, frame), typed,
@@ -59,10 +59,10 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
     h("div", { class: "card transport" },
       button("Done", () => declare("complete"), "main"), button("Not needed", () => declare("not_needed")), button("Cannot or must not", () => declare("infeasible")), reason,
       button(leaveLabel, async () => { try { await send(address("/leave"), {}); } catch (error) { say(error); } })),
-    practice, told, h("details", { class: "card", open: true }, h("summary", {}, "What is known of the place"), context),
+    practice, told, h("details", { class: "card", open: true }, h("summary", {}, "What is known about the place"), context),
     h("details", { class: "card" }, h("summary", {}, "Readings of the car and its receivers"), readings));
 
-  // The screen as an act will leave it comes with the answer to the act; the road follows within its second.
+  // The answer to an act holds the screen as the act will leave it; the road follows within a second.
   let look = -1;
   const picture = (address) => {
     if (screen.src.startsWith("blob:")) URL.revokeObjectURL(screen.src);
@@ -104,7 +104,7 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
 
   function type(field) {
     const input = h("input", { type: "text", "aria-label": `Type into ${field.text}`, placeholder: field.text });
-    typed.replaceChildren(input, h("button", { type: "submit", class: "main" }, "Type it"), h("button", { type: "button", onclick: () => { typed.hidden = true; } }, "Never mind"));
+    typed.replaceChildren(input, h("button", { type: "submit", class: "main" }, "Enter text"), h("button", { type: "button", onclick: () => { typed.hidden = true; } }, "Cancel"));
     typed.onsubmit = (event) => {
       event.preventDefault();
       typed.hidden = true;
@@ -121,11 +121,11 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
     if (look !== scene.look) picture(address("/screen", { seen: scene.look }));
     look = scene.look;
     if (seen.feedback[1] || seen.feedback[0] !== "ok") became = `${plain(seen.feedback[0])}${seen.feedback[1] ? `: ${seen.feedback[1]}` : ""}`;
-    told.textContent = `${scene.paused ? "the clock stands · " : ""}${seconds(seen.time_s)} · ${became}`;
+    told.textContent = `${scene.paused ? "clock stopped · " : ""}${seconds(seen.time_s)} · ${became}`;
     context.textContent = seen.context;
     readings.replaceChildren(...Object.entries(seen.readings).flatMap(([name, value]) => [h("dt", {}, plain(name)), h("dd", {}, String(value))]));
     practice.hidden = !scene.practice;
-    pause.textContent = scene.paused ? "Go on" : "Pause";
+    pause.textContent = scene.paused ? "Resume" : "Pause";
     speed.value = scene.speed;
     place(seen.elements);
   }
@@ -139,7 +139,7 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
     buttons.replaceChildren(...elements.map((element) => {
       const { box } = element;
       const made = h("button", { type: "button", "aria-label": element.text, "aria-pressed": element.checked ? "true" : undefined, onclick: (event) => {
-        if (event.detail) return; // a pointer's, which the frame has seen
+        if (event.detail) return; // from a pointer, which the frame has handled
         if (element.editable) type(element);
         else act({ action_type: "click", x: Math.round((box[0] + box[2]) / 2), y: Math.round((box[1] + box[3]) / 2) });
       } });
@@ -164,7 +164,7 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
   };
 }
 
-// Hears of every change of a person's scene until it is told to stop.
+// Receives every change of a person's scene until it is stopped.
 export function listen({ base = "/api/play", query = {}, say, changed }) {
   let [gone, timer, version, lost] = [false, 0, -1, false];
   (async () => {
@@ -187,8 +187,8 @@ export function listen({ base = "/api/play", query = {}, say, changed }) {
 
 export function waiting(scene) {
   const texts = {
-    idle: "", warming: `The traffic warms up: ${Math.round(scene.progress * 100)} %`, driving: "The car drives to where the situation arises …",
-    ending: "The road is watched a little longer, and the episode is judged and recorded …", over: "The episode is over.", failed: `There is no verdict: ${scene.error}`,
+    idle: "", warming: `The traffic is warming up: ${Math.round(scene.progress * 100)} %`, driving: "The car is driving to where the situation arises …",
+    ending: "The drive continues for a few seconds, then the episode is judged and recorded …", over: "The episode is over.", failed: `There is no verdict: ${scene.error}`,
   };
   const bar = scene.state === "warming" ? h("progress", { max: 1, value: scene.progress, "aria-label": "Warm-up" }) : null;
   return [texts[scene.state] ?? scene.state, bar];

@@ -128,7 +128,7 @@ function side(run, steps, base, jump) {
         screen.src = `${base}/pictures/${now.number}`;
         screen.alt = `The cockpit's screen after step ${now.number}: ${now.words}`;
       }
-      said.textContent = now ? [now.thought, now.feedback.text].filter(Boolean).join(" · ") || " " : "Before the hand-over: nobody acts yet.";
+      said.textContent = now ? [now.thought, now.feedback.text].filter(Boolean).join(" · ") || " " : "Before the hand-over: no agent acts yet.";
     },
   };
 }

@@ -1,10 +1,10 @@
-// A study's decisions, and the ways of the futures of one of them on one road.
+// A study's decisions, and the routes of the futures of one of them on a map.
 
 import { ask, counted, h, svg } from "./dom.js";
 
 const MOST = 400;
 const EVERY_MS = 3000;
-const WAYS = ["keeps its route", ...Array.from({ length: 20 }, (_, index) => `way ${index + 1}`)];
+const WAYS = ["keeps its route", ...Array.from({ length: 20 }, (_, index) => `alternative ${index + 1}`)];
 const signed = (value, unit) => `${value > 0 ? "+" : value < 0 ? "−" : ""}${Math.abs(value)} ${unit}`;
 const wayOf = (branch) => WAYS[branch === null ? 0 : branch + 1];
 
@@ -12,7 +12,7 @@ export async function decisionsPage(query, id) {
   let study = await ask(`/api/studies/${id}`);
   const trips = [...new Set(study.decisions.map(({ trip }) => trip))].sort();
   const trip = h("select", { "aria-label": "Trip" }, h("option", { value: "" }, "Trip: all"), trips.map((name) => h("option", { value: name, selected: name === query.get("trip") }, name)));
-  const which = h("select", { "aria-label": "Which decisions" }, [["", "all decisions"], ["better", "another way saves time"], ["worse", "no way saves time"], ["excluded", "excluded ones"]].map(([value, words]) => h("option", { value, selected: value === query.get("show") }, words)));
+  const which = h("select", { "aria-label": "Which decisions" }, [["", "all decisions"], ["better", "another route saves time"], ["worse", "no other route saves time"], ["excluded", "excluded ones"]].map(([value, words]) => h("option", { value, selected: value === query.get("show") }, words)));
   const count = h("p", { class: "muted", role: "status" });
   const body = h("tbody");
   const best = (each) => each.futures.reduce((most, future) => (!most || future.gain_s > most.gain_s ? future : most), null);
@@ -40,9 +40,9 @@ export async function decisionsPage(query, id) {
   const timer = setInterval(() => again().catch(() => {}), EVERY_MS);
   return {
     title: study.name,
-    content: [h("h1", {}, study.name), h("p", { class: "muted" }, `A study in ${study.scenario}: at each decision the drive is copied, and every way is driven to its end.`), live, h("div", { class: "filters" }, trip, which), count,
+    content: [h("h1", {}, study.name), h("p", { class: "muted" }, `A study in ${study.scenario}: at each decision the drive is copied, and every route is driven to its end.`), live, h("div", { class: "filters" }, trip, which), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Decisions" }, h("table", {},
-        h("thead", {}, h("tr", {}, ["Trip", "Seed", "At", "Delay ahead", "Best way saves", "All others save", "Excluded"].map((name) => h("th", { scope: "col" }, name)))), body))],
+        h("thead", {}, h("tr", {}, ["Trip", "Seed", "At", "Delay ahead", "Best route saves", "All others save", "Excluded"].map((name) => h("th", { scope: "col" }, name)))), body))],
     ready: fill,
     leave: () => clearInterval(timer),
   };
@@ -63,9 +63,9 @@ export async function decisionPage(query, id, name) {
       h("p", { class: "muted" }, h("a", { href: `#/decisions/${id}` }, study.name), ` · seed ${found.seed} · ${Math.round(found.delay_s)} s of delay ahead, ${Math.round(found.eta_s)} s to the destination · ${counted(found.draws, "draw")}${found.complies ? "" : " · the driver would not comply"}`),
       found.told.length > 0 && h("p", {}, found.told.join(" ")),
       found.excluded && h("p", { class: "warning" }, `Excluded: ${found.excluded}. ${found.why}`),
-      map ? h("figure", { class: "card ways" }, picture, moving?.element, h("figcaption", {}, h("span", {}, h("i", { class: "key here" }), "decides here"), map.ways.map((_, index) => h("span", {}, h("i", { class: `key way-${index}` }), WAYS[index])))) : h("p", { class: "card" }, "This study is older than the record of the ways."),
+      map ? h("figure", { class: "card ways" }, picture, moving?.element, h("figcaption", {}, h("span", {}, h("i", { class: "key here" }), "decides here"), map.ways.map((_, index) => h("span", {}, h("i", { class: `key way-${index}` }), WAYS[index])))) : h("p", { class: "card" }, "This study was made before routes were recorded."),
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Futures" }, h("table", {},
-        h("thead", {}, h("tr", {}, ["Future", "Saves", "Stops saved", "Distance saved", "CO₂ saved", "All others save", "Others who notice", "Chosen by"].map((each) => h("th", { scope: "col" }, each)))),
+        h("thead", {}, h("tr", {}, ["Future", "Saves", "Stops saved", "Distance saved", "CO₂ saved", "All others save", "Others affected", "Chosen by"].map((each) => h("th", { scope: "col" }, each)))),
         h("tbody", {}, rows.map((each) => h("tr", {}, h("td", {}, wayOf(each.number)), h("td", {}, signed(each.gain_s, "s")), h("td", {}, signed(each.stops, "")), h("td", {}, signed(each.distance_m, "m")), h("td", {}, signed(each.co2_g, "g")), h("td", {}, signed(each.others_s, "s")), h("td", {}, String(each.changed)), h("td", {}, chosen(each.number))))))),
     ].filter(Boolean),
     leave: () => moving?.stop(),
@@ -76,7 +76,7 @@ export async function decisionPage(query, id, name) {
 function cursor(picture, { box: [left, , , top], tracks }) {
   const end = Math.max(...tracks.map((track) => track.at(-1)?.[0] ?? 0));
   const size = picture.viewBox.baseVal.width / 90;
-  // where cars are together, each shows around the next
+  // where cars overlap, each is visible around the next
   const cars = tracks.map((_, index) => svg("circle", { r: size * Math.max(0.6, 1.4 - 0.35 * index), class: `car way-${index}` }));
   picture.append(...cars);
   const slider = h("input", { type: "range", min: 0, max: end, step: 1, value: 0, "aria-label": "Seconds since the decision" });
@@ -90,7 +90,7 @@ function cursor(picture, { box: [left, , , top], tracks }) {
       cars[index].style.visibility = place ? "visible" : "hidden";
       if (place) { cars[index].setAttribute("cx", place[1] - left); cars[index].setAttribute("cy", top - place[2]); }
     });
-    told.textContent = [`+${at} s`, ...tracks.flatMap((track, index) => (track.length && track.at(-1)[0] <= at ? [`${WAYS[index]}: there after ${Math.round(track.at(-1)[0])} s`] : []))].join(" · ");
+    told.textContent = [`+${at} s`, ...tracks.flatMap((track, index) => (track.length && track.at(-1)[0] <= at ? [`${WAYS[index]}: arrives after ${Math.round(track.at(-1)[0])} s`] : []))].join(" · ");
   };
   const stop = () => { clearInterval(timer); timer = 0; run.textContent = "Play"; };
   run.addEventListener("click", () => {
@@ -104,11 +104,11 @@ function cursor(picture, { box: [left, , , top], tracks }) {
   return { element: h("div", { class: "transport" }, run, h("div", { class: "time-line" }, slider), told), stop };
 }
 
-// The roads around, each way in its own colour and thinner than the one before, so that both show where they are the same, and a dot where the drive is when it decides.
+// The surrounding roads, each route in its own colour and thinner than the one before, so that both show where they coincide, and a dot at the decision.
 function drawn({ box: [left, bottom, right, top], roads, ways }) {
   const points = (flat) => Array.from({ length: flat.length / 2 }, (_, index) => `${flat[2 * index] - left},${top - flat[2 * index + 1]}`).join(" ");
   const size = Math.max(right - left, top - bottom);
-  const root = svg("svg", { viewBox: `0 0 ${right - left} ${top - bottom}`, role: "img", "aria-label": `The present route and ${ways.length - 1} other ways from the same place`, preserveAspectRatio: "xMidYMid meet" });
+  const root = svg("svg", { viewBox: `0 0 ${right - left} ${top - bottom}`, role: "img", "aria-label": `The current route and ${ways.length - 1} other routes from the same place`, preserveAspectRatio: "xMidYMid meet" });
   root.append(...roads.map((road) => svg("polyline", { points: points(road), class: "street", "stroke-width": size / 400 })));
   root.append(...ways.map((way, index) => svg("polyline", { points: points(way), class: `way way-${index}`, "stroke-width": size / (80 * 1.5 ** Math.min(index, 3)) })));
   if (ways[0].length) root.append(svg("circle", { cx: ways[0][0] - left, cy: top - ways[0][1], r: size / 70, class: "here" }));

@@ -1,4 +1,4 @@
-// Builds elements. Whatever a record holds is only ever set as text, never as markup.
+// Builds elements. The contents of records are only set as text, never as markup.
 
 export function h(tag, properties = {}, ...children) {
   const element = document.createElement(tag);
@@ -58,7 +58,7 @@ async function answered(path, request) {
   try {
     answer = await fetch(path, request);
   } catch {
-    throw new Error("The server does not answer. Start `automotive-cosim serve` again.");
+    throw new Error("The server does not answer. Restart `automotive-cosim serve`.");
   }
   let body;
   try {
@@ -67,6 +67,6 @@ async function answered(path, request) {
   } catch {
     throw new Error(`The server's answer cannot be read (${answer.status}).`);
   }
-  if (!answer.ok) throw new Error(body.error || `The server refuses (${answer.status}).`);
+  if (!answer.ok) throw new Error(body.error || `The server refused the request (${answer.status}).`);
   return body;
 }

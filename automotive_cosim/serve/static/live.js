@@ -1,4 +1,4 @@
-// A running study: one of its drives after the other, each as it was simulated, only slower.
+// A running study: its drives one after another, each as it was simulated, only slower.
 
 import { ask, h } from "./dom.js";
 import { replayPage } from "./replay.js";
@@ -21,8 +21,8 @@ export async function livePage(query, id) {
       const next = drives.find((each) => each !== drive);
       if (next && (!shown || shown.isOver())) await show(next);
       if (gone) return;
-      if (!running) status.replaceChildren("The study does not run. ", h("a", { href: `#/decisions/${id}` }, "See its decisions"));
-      else status.textContent = shown?.isOver() ?? true ? "Waiting for the next drive: traffic warms up, or futures are driven to their ends." : `This is drive ${drive}. The next one follows at its end.`;
+      if (!running) status.replaceChildren("The study is not running. ", h("a", { href: `#/decisions/${id}` }, "See its decisions"));
+      else status.textContent = shown?.isOver() ?? true ? "Waiting for the next drive: the traffic is warming up, or futures are being driven to their ends." : `This is drive ${drive}. The next one follows when it ends.`;
     } catch (error) {
       status.textContent = `${error.message} Trying again.`;
     }

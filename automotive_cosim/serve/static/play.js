@@ -1,4 +1,4 @@
-// A person at the cockpit: which task, the cockpit in real time, and where the verdict is.
+// A person at the cockpit: the choice of a task, the cockpit in real time, and the link to the verdict.
 
 import { ask, h, send } from "./dom.js";
 import { cockpitPanel, listen, rulesCard, waiting } from "./cockpit.js";
@@ -6,7 +6,7 @@ import { cockpitPanel, listen, rulesCard, waiting } from "./cockpit.js";
 export async function playPage(query) {
   const { plays } = await ask("/api/about");
   if (!plays) {
-    return { title: "Play", content: [h("h1", {}, "Play"), h("p", { class: "card" }, "Start `automotive-cosim serve --play` to work the cockpit yourself.")] };
+    return { title: "Play", content: [h("h1", {}, "Play"), h("p", { class: "card" }, "Start `automotive-cosim serve --play` to operate the cockpit yourself.")] };
   }
   const [{ tasks }, { drives }] = await Promise.all([ask("/api/tasks"), ask("/api/drives")]);
   const main = h("div");
@@ -15,8 +15,8 @@ export async function playPage(query) {
   const say = (error) => { note.textContent = error?.message ?? ""; note.hidden = !error; };
   const cockpit = cockpitPanel({ say });
 
-  const task = h("select", {}, h("option", { value: "" }, "Deal me one"),
-    h("optgroup", { label: "Tasks, two minutes at most" }, tasks.map(({ id }) => h("option", { value: id, selected: id === query.get("task") }, id))),
+  const task = h("select", {}, h("option", { value: "" }, "Random task"),
+    h("optgroup", { label: "Tasks, up to two minutes" }, tasks.map(({ id }) => h("option", { value: id, selected: id === query.get("task") }, id))),
     h("optgroup", { label: "Drives, ten to thirty minutes" }, drives.map(({ id }) => h("option", { value: `drive ${id}` }, id))));
   const name = h("input", { type: "text", maxlength: 40 });
   const seed = h("input", { type: "number", min: 0, max: 2147483647, value: Math.floor(Math.random() * 1000) });
@@ -28,7 +28,7 @@ export async function playPage(query) {
     const [what, id] = chosen.startsWith("drive ") ? ["drive", chosen.slice(6)] : ["task", chosen];
     try { await send("/api/play/start", { [what]: id, half: "", seed: Number(seed.value), name: name.value, practice: practice.checked }); say(null); } catch (error) { say(error); }
   } }, h("label", {}, "Task or drive", task), h("label", {}, "Your code name", name), h("label", {}, "Seed", seed), begin,
-  h("label", { class: "check" }, practice, "Practice: the clock can be stopped or slowed, and no row is kept"));
+  h("label", { class: "check" }, practice, "Practice: the clock can be stopped or slowed, and the result is not counted"));
 
   const rules = rulesCard();
 
@@ -44,7 +44,7 @@ export async function playPage(query) {
     status.textContent = text;
     begin.disabled = ["warming", "driving", "ending"].includes(scene.state);
     const episode = scene.episode ? `/${encodeURIComponent(scene.episode)}` : "";
-    const link = scene.record ? h("p", { class: "card" }, h("a", { href: `#/run/${scene.record}${episode}` }, "See the verdict, and the road with everybody on it")) : null;
+    const link = scene.record ? h("p", { class: "card" }, h("a", { href: `#/run/${scene.record}${episode}` }, "See the verdict, and the road with all vehicles")) : null;
     main.replaceChildren(...[bar, link, form, rules].filter(Boolean));
   }
 

@@ -65,7 +65,7 @@ export async function replayPage(query, id, episode) {
     const told = [run.of_study && h("a", { href: `#/decisions/${id}` }, run.name), run.half && `${run.half} half`, run.scenario, run.agent, run.model !== "none" && run.model, run.seed !== null && `seed ${run.seed}`];
     heading.replaceChildren(
       h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).flatMap((each, index) => (index ? [" · ", each] : [each])))),
-      run.of_study ? h("span", { class: running ? "pill live" : "pill quiet" }, running ? "Running" : "Over")
+      run.of_study ? h("span", { class: running ? "pill live" : "pill quiet" }, running ? "Running" : "Ended")
         : run.kind === "drive" && !running ? h("span", { class: "pill" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.bait && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
     live.hidden = !running;
     const parts = Object.entries(run.verdict?.parts ?? {});
@@ -147,7 +147,7 @@ export async function replayPage(query, id, episode) {
     const pictured = now?.has_picture ? now : null;
     screen.hidden = !pictured;
     noScreen.hidden = Boolean(pictured);
-    noScreen.textContent = index < 0 ? "Before the hand-over: nobody acts yet." : "No picture of this screen was kept.";
+    noScreen.textContent = index < 0 ? "Before the hand-over: no agent acts yet." : "No picture of this screen was kept.";
     if (pictured) {
       screen.src = `${base}/pictures/${pictured.picture ?? pictured.number}`;
       screen.alt = `The cockpit's screen after step ${pictured.number}: ${pictured.words}`;
@@ -160,7 +160,7 @@ export async function replayPage(query, id, episode) {
       const share = (part, whole) => `${100 * part / whole}%`;
       Object.assign(target.style, { left: share(left, wide), top: share(top, high), width: share(right - left, wide), height: share(bottom - top, high) });
     }
-    detail.replaceChildren(...(now ? told(now) : [h("h3", {}, "The drive up to the hand-over"), h("p", { class: "muted" }, "Nobody acts yet.")]));
+    detail.replaceChildren(...(now ? told(now) : [h("h3", {}, "The drive up to the hand-over"), h("p", { class: "muted" }, "No agent acts yet.")]));
   }
 
   function told(now) {
@@ -171,7 +171,7 @@ export async function replayPage(query, id, episode) {
       now.action && h("p", {}, h("code", {}, JSON.stringify(now.action))),
       now.stages.map((stage) => h("details", { open: stage.text.length < 600 },
         h("summary", {}, plain(stage.name), stage.tokens_in ? ` · ${stage.tokens_in} + ${stage.tokens_out} tokens${stage.seconds ? `, ${stage.seconds.toFixed(1)} s` : ""}` : ""), h("pre", {}, stage.text))),
-      now.context && h("details", {}, h("summary", {}, "context of the place"), h("pre", {}, now.context)),
+      now.context && h("details", {}, h("summary", {}, "geo-context"), h("pre", {}, now.context)),
     ].flat().filter(Boolean);
   }
 
@@ -239,7 +239,7 @@ export async function replayPage(query, id, episode) {
       const had = `${steps.length} ${run.scenario}`;
       running = await poll();
       note.hidden = true;
-      if (!running || !run.scenario) run = await ask(base); // at its very beginning nothing is known of it
+      if (!running || !run.scenario) run = await ask(base); // at the very beginning nothing is known about it
       if (!running || `${steps.length} ${run.scenario}` !== had) head();
       lists();
       show();
@@ -254,7 +254,7 @@ export async function replayPage(query, id, episode) {
   const copy = button("Copy the link", async () => {
     history.replaceState(null, "", link());
     try { await navigator.clipboard.writeText(location.href); copied.textContent = "copied"; }
-    catch { copied.textContent = "it is in the address bar"; }
+    catch { copied.textContent = "the link is in the address bar"; }
   }, "A link to this instant");
 
   head();
@@ -265,14 +265,14 @@ export async function replayPage(query, id, episode) {
       h("div", { class: run.of_study ? "stage wide" : "stage" },
         run.of_study ? null : h("figure", { class: "cockpit card" }, box),
         h("figure", { class: "card map" }, canvas,
-          h("div", { class: "tools" }, button("+", () => view.zoom(1.4), "Closer (+)"), button("−", () => view.zoom(1 / 1.4), "Further away (−)"), ego, turn, button("All roads", () => view.whole(), "All recorded roads (0)")),
+          h("div", { class: "tools" }, button("+", () => view.zoom(1.4), "Zoom in (+)"), button("−", () => view.zoom(1 / 1.4), "Zoom out (−)"), ego, turn, button("All roads", () => view.whole(), "All recorded roads (0)")),
           h("figcaption", {}, about, vehicle))),
       h("div", { class: "card transport" },
-        play, button("‹ Step", () => hop(-1), "Step before (,)"), button("Step ›", () => hop(1), "Next step (.)"), live,
+        play, button("‹ Step", () => hop(-1), "Previous step (,)"), button("Step ›", () => hop(1), "Next step (.)"), live,
         h("div", { class: "time-line" }, slider, marks), clock, speed, copy, copied),
       h("div", { class: "columns" },
-        h("section", {}, h("h2", {}, run.of_study ? "What is decided" : "Steps"), h("div", { class: "card" }, list)),
-        h("section", {}, h("h2", {}, run.of_study ? "In detail" : "This step"), detail)),
+        h("section", {}, h("h2", {}, run.of_study ? "Decisions" : "Steps"), h("div", { class: "card" }, list)),
+        h("section", {}, h("h2", {}, run.of_study ? "Details" : "This step"), detail)),
       verdict,
       h("div", { class: "columns even" },
         run.of_study ? null : h("section", {}, h("h2", {}, "Events"), h("div", { class: "card" }, events)),

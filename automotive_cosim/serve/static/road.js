@@ -1,4 +1,4 @@
-// The road on a canvas: the ground around it, lanes, junctions, lights and every vehicle, between the recorded seconds too.
+// The road on a canvas: the ground, lanes, junctions, lights and every vehicle, interpolated between the recorded seconds.
 
 const TELEPORT_M = 50;
 const GAP_M = 0.25;
@@ -89,7 +89,7 @@ export class RoadRecord {
 
   second(at) { return this.seconds[this.index(at)]; }
 
-  // The car of the baseline run at an instant, if it is elsewhere than the car itself.
+  // The car in the baseline run at an instant, if it is not where the car itself is.
   ghost(at, ego) {
     const index = this.baseline.findLastIndex(([at_s]) => at_s <= at + 1e-6);
     const [now, next] = [this.baseline[index], this.baseline[index + 1]];
@@ -227,7 +227,7 @@ export class RoadView {
     return [this.canvas.clientWidth / 2 + scale * (dx * Math.cos(angle) - dy * Math.sin(angle)), this.canvas.clientHeight * this.down - scale * (dx * Math.sin(angle) + dy * Math.cos(angle))];
   }
 
-  // --- hands ---
+  // --- input ---
 
   press(event) {
     this.canvas.setPointerCapture(event.pointerId);
@@ -327,7 +327,7 @@ export class RoadView {
     return x > left && x < right && y > bottom && y < top;
   }
 
-  // The streets around, with a dot for each vehicle, the same way up.
+  // The surrounding streets with a dot for each vehicle, turned the same way.
   inset(context, colours, ratio) {
     const { canvas, camera } = this;
     const [side, margin] = [INSET.side * ratio, INSET.margin * ratio];
@@ -368,7 +368,7 @@ export class RoadView {
     context.restore();
   }
 
-  // A picture of the roads around, north up, kept until the camera has left its middle.
+  // A picture of the surrounding roads, north up, kept until the camera has left its middle.
   surroundings(colours, scale) {
     const metres = 2 * INSET.metres;
     const { x, y } = this.camera;
@@ -447,7 +447,7 @@ export class RoadView {
     context.stroke();
   }
 
-  // The outline of the car as it would drive with nobody at the cockpit.
+  // The outline of the car in the baseline run.
   shadow(context, { x, y, heading, length, width }) {
     const angle = heading * Math.PI / 180;
     const [east, north] = [Math.sin(angle), Math.cos(angle)];

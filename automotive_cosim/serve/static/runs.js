@@ -42,7 +42,7 @@ function line(record) {
 
 const when = (text) => (text ? text.slice(0, 16).replace("T", " ") : "");
 
-const FILTERS = [["agent", "Agent"], ["scenario", "Scenario"], ["module", "Module"], ["half", "Half"], ["missing", "Part not held"], ["outcome", "Outcome"]];
+const FILTERS = [["agent", "Agent"], ["scenario", "Scenario"], ["module", "Module"], ["half", "Half"], ["missing", "Failed part"], ["outcome", "Outcome"]];
 const MOST = 400;
 
 export async function resultsPage(query, id) {
@@ -74,7 +74,7 @@ export async function resultsPage(query, id) {
     count.textContent = `${counted(kept.length, "episode")}, ${won} of ${judged.length} judged succeeded`
       + (kept.length > MOST ? `; the first ${MOST} are listed` : "");
     table.replaceChildren(...kept.slice(0, MOST).map((row) => episode(id, row)));
-    heading.textContent = results.planned ? `${results.rows.length} of ${results.planned} episodes are done` : counted(results.rows.length, "episode");
+    heading.textContent = results.planned ? `${results.rows.length} of ${results.planned} episodes done` : counted(results.rows.length, "episode");
     now.replaceChildren(...(results.running.length ? ["Running now: ", ...results.running.flatMap((one) => [h("a", { href: `#/run/${id}/${encodeURIComponent(one)}` }, one), " "])] : []));
     const parameters = new URLSearchParams();
     FILTERS.forEach(([name], index) => choices[index].value && parameters.set(name, choices[index].value));
@@ -96,7 +96,7 @@ export async function resultsPage(query, id) {
   const others = records.filter((record) => record.kind === "evaluation");
   const beside = h("select", { "aria-label": "Compare with", onchange: () => { if (beside.value) location.hash = `#/compare/${id}/${beside.value}`; } },
     h("option", { value: "" }, "Compare with …"), others.map((record) => h("option", { value: record.id }, record.id === id ? "itself: two of its agents" : record.name)));
-  const head = ["Task", "Half", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Not held"].map((name) => h("th", { scope: "col" }, name));
+  const head = ["Task", "Half", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Failed parts"].map((name) => h("th", { scope: "col" }, name));
   return {
     title: results.name,
     content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices, beside), count,

@@ -1,4 +1,4 @@
-// A study: a person sits down under a code name, plays what is dealt, and answers after each episode.
+// A study: a person takes a seat under a code name, plays the dealt episodes, and answers questions after each.
 
 import { ask, h, plain, send } from "./dom.js";
 import { cockpitPanel, listen, rulesCard, waiting } from "./cockpit.js";
@@ -30,7 +30,7 @@ export async function studyPage() {
   }
 
   function owners(people) {
-    return h("section", {}, h("h2", {}, "How far everybody is"), h("div", { class: "card" },
+    return h("section", {}, h("h2", {}, "Everyone's progress"), h("div", { class: "card" },
       h("ul", {}, people.map((each) => h("li", {}, `${each.name}: ${each.done} of ${each.planned}`))),
       h("p", { class: "muted" }, "Rows, answers and times: ", h("a", { href: "/api/study/rows.csv", download: "study.csv" }, "CSV"), " · ", h("a", { href: "/api/study/rows.json", download: "study.json" }, "JSON"))));
   }
@@ -62,9 +62,9 @@ export async function studyPage() {
     }
     turn = await ask(at("seat"));
     if (gone) return;
-    status.textContent = `${turn.done} of ${turn.planned} episodes are done.${scene.state === "failed" ? " The last one could not be judged, through no fault of yours." : ""}`;
+    status.textContent = `${turn.done} of ${turn.planned} episodes done.${scene.state === "failed" ? " The last one could not be judged, through no fault of yours." : ""}`;
     if (turn.phase === "ask") main.replaceChildren(questions(scene));
-    else if (turn.phase === "play") main.replaceChildren(h("form", { class: "card filters", onsubmit: trying(() => send(at("begin"), {})) }, h("p", {}, "When you begin, the car drives to where the driver says something. From then on, time does not wait."), h("button", { type: "submit", class: "main" }, "Begin the next episode")), rulesCard());
+    else if (turn.phase === "play") main.replaceChildren(h("form", { class: "card filters", onsubmit: trying(() => send(at("begin"), {})) }, h("p", {}, "When you begin, the car drives to the place where the driver says something. From then on, the clock runs."), h("button", { type: "submit", class: "main" }, "Begin the next episode")), rulesCard());
     else main.replaceChildren(...verdicts());
   }
 
@@ -75,12 +75,12 @@ export async function studyPage() {
       await show(scene);
     }) }, h("h2", {}, "About what you just did"), study.questions.map(({ name, text }) => h("fieldset", {}, h("legend", {}, text),
       h("div", { class: "scale" }, study.scale.map((words, index) => h("label", {}, h("input", { type: "radio", name, value: index + 1, required: true }), words))))),
-    h("button", { type: "submit", class: "main" }, "Go on"));
+    h("button", { type: "submit", class: "main" }, "Continue"));
   }
 
   function verdicts() {
     const said = (each) => (each.success ? "✓ success" : each.success === false ? `✗ not solved: ${each.missing.map(plain).join(", ")}` : "no verdict");
-    return [h("p", { class: "card said" }, "That was all. Thank you!"), h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Your verdicts" }, h("table", {},
+    return [h("p", { class: "card said" }, "That was the last one. Thank you!"), h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Your verdicts" }, h("table", {},
       h("thead", {}, h("tr", {}, ["Task", "Half", "Verdict"].map((name) => h("th", { scope: "col" }, name)))),
       h("tbody", {}, turn.verdicts.map((each) => h("tr", {}, h("td", {}, each.task), h("td", {}, each.half), h("td", {}, said(each)))))))];
   }
