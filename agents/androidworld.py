@@ -175,7 +175,7 @@ class _Environment:
 
         Raises:
             ActionError: there is no such action here.
-            ValueError: it lacks its target.
+            ValueError: it has no target.
         """
         self.controller.flush()
         known = translated(action, self.elements(), self.controller.last, self.logical_screen_size)
@@ -322,7 +322,7 @@ def translated(
 
     Raises:
         ActionError: there is no such action here.
-        ValueError: a touch lacks its target.
+        ValueError: a touch has no target.
     """
     names = {field.name for field in fields(Action)} - {"action_type"}
     given = {name: value for name in names if (value := getattr(action, name, None)) is not None}

@@ -126,11 +126,11 @@ def read_counts(path: Path, zone: ZoneInfo, sites: Path | None = None) -> Counts
             hour, name, column = _hour(path, number, row), row["site"].strip(), "vehicles_per_hour"
         flow = _figure(path, number, column, row[column], MOST)
         if not name:
-            raise CountsError(f"{path} line {number} names no site; give each row its site")
+            raise CountsError(f"{path} line {number} has no site; give each row a site")
         if hour is not None and flow is not None:
             flows[name, hour].append(flow)
     if not any(any(each) for each in flows.values()):
-        raise CountsError(f"{path} has no count above zero; give counts of detectors that work")
+        raise CountsError(f"{path} has no count above zero; give counts of working detectors")
     if sites is not None:
         rows, columns = _table(sites)
         _need(sites, columns, ("site",))

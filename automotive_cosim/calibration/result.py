@@ -197,7 +197,7 @@ def read_calibration(folder: Path) -> Calibration:
     try:
         table = read_json(path)
     except (OSError, ValueError) as error:
-        raise ScenarioError(f"{path} is not what `automotive-cosim scenarios calibrate` writes: {error}") from error
+        raise ScenarioError(f"{path} was not written by `automotive-cosim scenarios calibrate`: {error}") from error
     return checked(
         Calibration, table, lambda steps: (f"{path} of `scenarios calibrate`", dotted(steps)), ScenarioError
     )

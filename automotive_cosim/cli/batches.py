@@ -77,7 +77,7 @@ def executor_of(name: str, workers: int | None, ray_address: str | None, ray_sen
 
 
 class ProgressView(Generic[R]):
-    """Shows the progress of a run: a bar in a terminal, else a line now and then."""
+    """Shows the progress of a run: a bar in a terminal, else occasional lines."""
 
     EVERY_S = 15.0
 
@@ -132,15 +132,15 @@ def tell_stopped(end: Progress[Any]) -> None:
     """Ends a command whose budget did not last.
 
     Raises:
-        UserError: something was not run for that reason.
+        UserError: something was not run because of the budget.
     """
     if end.stopped:
         left = counted(end.planned - end.done, "run")
-        raise UserError(f"{end.stopped}; {left} left: rerun with a larger budget to go on")
+        raise UserError(f"{end.stopped}; {left} left: rerun with a larger budget to continue")
 
 
 def tell_notes(scenarios: Iterable[Scenario]) -> None:
-    """Prints what is assumed, set or left out in scenarios of others, to the standard error."""
+    """Prints what is assumed, set or left out in other people's scenarios, to standard error."""
     for scenario in scenarios:
         for note in scenario.notes:
             typer.echo(f"note: {note}", err=True)
@@ -162,7 +162,7 @@ def seeds_in(text: str) -> list[int]:
     """Whole numbers and ranges, separated by commas.
 
     Raises:
-        UserError: the text has anything else.
+        UserError: the text contains anything else.
     """
     seeds: list[int] = []
     for word in words("seeds", text):

@@ -1,4 +1,4 @@
-"""``automotive-cosim bench``: what the coupling costs on this machine, compared with bare SUMO."""
+"""``automotive-cosim bench``: the cost of the coupling on this machine, compared with bare SUMO."""
 
 from __future__ import annotations
 

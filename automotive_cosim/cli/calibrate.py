@@ -1,4 +1,4 @@
-"""``automotive-cosim scenarios calibrate``: a demand that carries counts when it is driven."""
+"""``automotive-cosim scenarios calibrate``: a demand that reproduces counts in simulation."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def calibrate_scenario(
     ] = None,
     hold_out: Annotated[
         float,
-        typer.Option(parser=number(0.0, 0.9), metavar="SHARE", help="Share of the sites to keep from the fit."),
+        typer.Option(parser=number(0.0, 0.9), metavar="SHARE", help="Share of the sites to hold out of the fit."),
     ] = 0.3,
     rounds: Annotated[
         int, typer.Option(parser=whole_number(1, 50), metavar="N", help="Maximum rounds of fit and simulation.")
@@ -65,8 +65,8 @@ def calibrate_scenario(
 ) -> None:
     """Fit a scenario's traffic to counts, and simulate until it matches them.
 
-    Some sites are held out, to see what the fit is worth where nobody counted. The exit code is 1, and nothing is
-    written, if the traffic gridlocks.
+    Some sites are held out, to test the fit where nothing was counted. If the traffic gridlocks, the exit code is 1
+    and nothing is written.
     """
     from automotive_cosim.calibration import CalibrationOptions, calibrate
     from automotive_cosim.report.calibration import require_plots, write_page

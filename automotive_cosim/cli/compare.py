@@ -1,4 +1,4 @@
-"""``automotive-cosim compare``: compares two evaluations, as a check on every change."""
+"""``automotive-cosim compare``: compares two evaluations, as a check for every change."""
 
 from __future__ import annotations
 

@@ -13,12 +13,12 @@ from automotive_cosim.cli.terminal import plain
 
 
 class Console(RichConsole):
-    """rich's console, whose texts are plain and contain no markup."""
+    """rich's console for plain texts without markup."""
 
     def __init__(self, *, markup: bool = False, **named: Any) -> None:
         super().__init__(markup=markup, emoji=False, **named)
 
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterable[Segment]:
-        """What is written of something, piece by piece; rich's own controls are marked as such."""
+        """The pieces to write for something; rich's own controls are marked as such."""
         for segment in super().render(renderable, options):
             yield segment if segment.control else segment._replace(text=plain(segment.text))

@@ -33,7 +33,7 @@ def context(
     lat: Annotated[float, typer.Argument(help="Degrees north; negative is south.")],
     lon: Annotated[float, typer.Argument(help="Degrees east; negative is west.")],
     time: Annotated[
-        str, typer.Option(help="ISO date and time, in the local zone unless it names one; now by default.")
+        str, typer.Option(help="ISO date and time, in the local zone unless it has one; now by default.")
     ] = "",
     speed: Annotated[
         float, typer.Option(parser=number(0, FASTEST_KMH), metavar="KMH", help="Speed of the car in km/h.")
@@ -109,7 +109,7 @@ def _time(text: str, zone_name: str) -> datetime:
         return datetime.now(zone)
     try:
         time = datetime.fromisoformat(text)
-        # There and back through UTC: a clock time that summer time skips becomes the one an hour later.
+        # Through UTC and back: a clock time that summer time skips becomes the one an hour later.
         return time.replace(tzinfo=time.tzinfo or zone).astimezone(UTC).astimezone(zone)
     except (ValueError, OverflowError) as error:
         raise UserError(f"{text!r} is not a date and time; give one such as 2026-03-20T18:30") from error
@@ -134,7 +134,7 @@ def _report(code: int | None, seed: int, online: bool, lat: float, lon: float, l
     from automotive_cosim.geo.forecast import Climate, OpenMeteo
 
     if code is not None:
-        raise UserError("--weather states the weather; omit --draw and --online")
+        raise UserError("--weather sets the weather; omit --draw and --online")
     if seed < 0:
         raise UserError(f"--draw {seed} is not a seed; give a whole number from 0")
     source = OpenMeteo(Climate(seed)) if online else Climate(seed)

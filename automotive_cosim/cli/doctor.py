@@ -1,4 +1,4 @@
-"""``automotive-cosim doctor``: what this machine lacks, and how to get it."""
+"""``automotive-cosim doctor``: what is missing on this machine, and how to install it."""
 
 from __future__ import annotations
 
@@ -31,9 +31,9 @@ class Health(StrEnum):
 
     OK = "ok"
     LIMITED = "limited"
-    """It works, with less than the whole."""
+    """It works, with limitations."""
     MISSING = "missing"
-    """The main job does not work."""
+    """The package cannot run episodes."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,7 +44,7 @@ class Finding:
     state: Health
     found: str
     fix: str = ""
-    """What to do; empty if all is well."""
+    """What to do; empty if there is nothing to do."""
 
 
 class Extra(NamedTuple):
@@ -72,7 +72,7 @@ EXTRAS = {
 def doctor(
     as_json: AsJson = False,
 ) -> None:
-    """Check this machine and say what is missing and how to get it; exit code 1 if the main job cannot run."""
+    """Check this machine and say what is missing and how to install it; exit code 1 if episodes cannot run."""
     findings = [check() for check in CHECKS]
     ready = all(each.state is not Health.MISSING for each in findings)
     if as_json:
@@ -93,7 +93,7 @@ def _folders() -> Finding:
     """Tasks, agents and scenarios are links in a checkout, which git on Windows leaves as text files."""
     missing = [name for name in ("tasks", "agents", "sumo_scenarios") if not _is_package(name)]
     if not missing:
-        return Finding("folders", Health.OK, "tasks, agents and scenarios are found")
+        return Finding("folders", Health.OK, "tasks, agents and scenarios found")
     fix = "in a checkout: `git config core.symlinks true`, then `git checkout -- .`; or install the wheel"
     return Finding("folders", Health.MISSING, f"automotive_cosim has no {', '.join(missing)}", fix)
 
@@ -128,14 +128,14 @@ def _fonts() -> Finding:
         return Finding("fonts", Health.MISSING, str(error), "pip install --force-reinstall automotive-cosim")
     if not sets_right_to_left():
         fix = "for those: pip install 'automotive-cosim[report]'; on Debian also apt-get install libfribidi0"
-        return Finding("fonts", Health.OK, "all faces of the screens, but no Arabic and Hebrew", fix)
-    return Finding("fonts", Health.OK, "all faces of the screens")
+        return Finding("fonts", Health.OK, "all fonts of the screens, but no Arabic or Hebrew", fix)
+    return Finding("fonts", Health.OK, "all fonts of the screens")
 
 
 def _processes() -> Finding:
     if hasattr(os, "fork"):
         return Finding("processes", Health.OK, f"fork; {counted(_cores(), 'core')}")
-    fix = "use Linux, macOS or WSL for quick resets"
+    fix = "use Linux, macOS or WSL for fast resets"
     return Finding("processes", Health.LIMITED, "no fork: each reset runs the warm-up again", fix)
 
 
@@ -161,16 +161,16 @@ def _disk() -> Finding:
     found = f"{free_mb:,} MB free in {scratch}"
     if free_mb >= DISK_MB:
         return Finding("disk", Health.OK, found)
-    return Finding("disk", Health.LIMITED, found, "free some, or set TMPDIR to a folder on another disk")
+    return Finding("disk", Health.LIMITED, found, "free some space, or set TMPDIR to a folder on another disk")
 
 
 def _ports() -> Finding:
     try:
         with socket.create_server(("127.0.0.1", 0)):
-            return Finding("ports", Health.OK, "a server may listen on 127.0.0.1")
+            return Finding("ports", Health.OK, "a server can listen on 127.0.0.1")
     except OSError as error:
-        found = f"no server may listen on 127.0.0.1 ({error.strerror})"
-        return Finding("ports", Health.LIMITED, found, "Ray needs one; everything else runs without")
+        found = f"no server can listen on 127.0.0.1 ({error.strerror})"
+        return Finding("ports", Health.LIMITED, found, "Ray and serve need one; everything else runs without")
 
 
 def _extras() -> Finding:
@@ -180,7 +180,7 @@ def _extras() -> Finding:
     if not lacking:
         return Finding("extras", Health.OK, found)
     uses = "; ".join(f"[{name}] for {extra.used_by}" for name, extra in lacking.items())
-    return Finding("extras", Health.OK, f"{found}; not installed, if you need them: {uses}")
+    return Finding("extras", Health.OK, f"{found}; not installed: {uses}")
 
 
 def _version() -> Finding:
@@ -188,7 +188,7 @@ def _version() -> Finding:
         return Finding("package", Health.OK, f"automotive-cosim {version('automotive-cosim')}")
     except PackageNotFoundError:
         fix = "pip install -c constraints.txt -e ."
-        return Finding("package", Health.LIMITED, "runs from a folder without being installed", fix)
+        return Finding("package", Health.LIMITED, "runs from a folder, but is not installed", fix)
 
 
 CHECKS: tuple[Callable[[], Finding], ...] = (

@@ -27,7 +27,7 @@ def drive(
     scenario: Annotated[
         str,
         typer.Option(
-            help="Drive there instead: a shipped scenario, or the path of a scenario, .sumocfg or .net.xml.",
+            help="Drive here instead: a shipped scenario, or the path of a scenario, .sumocfg or .net.xml.",
             show_default=False,
         ),
     ] = "",
@@ -45,7 +45,7 @@ def drive(
     feedback: Annotated[
         str,
         typer.Option(
-            help="What the agent is told of its last action: quiet (the control, and whether it took) or verbose "
+            help="What the agent is told of its last action: quiet (the control, and whether it worked) or verbose "
             "(also what changed in the car)."
         ),
     ] = "quiet",
@@ -80,7 +80,7 @@ def drive(
     if not name:
         raise UserError(f"drive needs the name of a family, such as {next(iter(FAMILIES))}; --list lists them")
     if out is not None and (out / "row.json").exists():
-        raise UserError(f"{out} holds the results of a drive; give another folder to --out")
+        raise UserError(f"{out} holds the results of a drive; give --out another folder")
     sees, told, size = see_of(see), feedback_of(feedback), screen_of(screen)
     player = make_agent(agent, model, AgentSettings(seed=seed, see=sees))
     setup = WatchSetup(
@@ -109,7 +109,7 @@ def drive(
 
 
 def _tell(console: Console, row: WatchRow) -> None:
-    """The drive's events and acts in the order of time, and its score."""
+    """The drive's events and acts in chronological order, and its score."""
     from automotive_cosim.drives.judge import Worth
 
     lines = [

@@ -67,14 +67,14 @@ def evaluate(
     suite: Annotated[
         str | None,
         typer.Option(
-            help="Suite that the tasks are chosen from: standard, hard or all. An id names its task in any.",
+            help="Suite that the tasks are chosen from: standard, hard or all. An id selects a task in any suite.",
             show_default="standard",
         ),
     ] = None,
     split: Annotated[
         str | None,
         typer.Option(
-            help="Only the episodes of one public set, by seed and phrasing: dev or test; both for all.",
+            help="Only the episodes of one public split, by seed and phrasing: dev or test; both for all.",
             show_default="both",
         ),
     ] = None,
@@ -92,7 +92,7 @@ def evaluate(
         ),
     ] = None,
     everywhere: Annotated[
-        bool, typer.Option("--everywhere", help="Also run tasks in scenarios that they do not name.")
+        bool, typer.Option("--everywhere", help="Also run tasks in scenarios that they do not list.")
     ] = False,
     seeds: Annotated[str | None, typer.Option(help="Seeds, as in 0-4 or 0,3,7.", show_default="0")] = None,
     geo: Annotated[
@@ -179,7 +179,7 @@ def evaluate(
     budget_usd: Annotated[
         float | None,
         typer.Option(
-            help="The same in dollars, by the prices in the models' names.",
+            help="The same in dollars, at the prices in the models' names.",
             metavar="X",
             parser=number(0.000001, 10**9),
             show_default=False,
@@ -248,7 +248,7 @@ def evaluate(
     if dry_run:
         console.print(_time_in_words(plan, workers or 1), soft_wrap=True)
         for lack in lacks:
-            console.print(f"before it can run: {lack}", soft_wrap=True, markup=False)
+            console.print(f"to fix before it can run: {lack}", soft_wrap=True, markup=False)
         return
     with where, ProgressView(console, "episodes", _said) as view:
         try:
@@ -288,12 +288,12 @@ def evaluate(
     if errors:
         raise InfrastructureError(
             f"{len(errors)} of {counted(end.planned, 'episode')} ended in an infrastructure error, which no rate "
-            "counts as a success; rerun the command to try again"
+            "counts as a success; rerun the command to retry them"
         )
 
 
 def _failures(rows: Sequence[EpisodeRow]) -> Iterator[str]:
-    """A line for each agent whose side ended episodes."""
+    """A line for each agent that failed."""
     failed: dict[str, list[EpisodeRow]] = {}
     for row in rows:
         if row.agent_error is not None:
@@ -323,10 +323,10 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
             "left out", f"{counted(len(left_out), 'task')} that cannot run there; --everywhere includes them"
         )
     if beyond := plan.beyond_the_list():
-        table.add_row("not as tree", f"{counted(len(beyond), 'task')} that need the picture")
+        table.add_row("not for tree", f"{counted(len(beyond), 'task')} that need the picture")
     if unspoken := plan.unspoken():
         table.add_row(
-            "not said", f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.language)}"
+            "left out", f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.language)}"
         )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     table.add_row("geo controls", ", ".join(plan.geo))
@@ -339,7 +339,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     table.add_row("split", "development and test" if plan.split == "both" else plan.split)
     limits = plan.limits
     table.add_row(
-        "at most",
+        "limits",
         f"{counted(limits.steps, 'step')} ({limits.hard_steps} in the hard suite), "
         f"{limits.sim_s:g} s simulated, {limits.wall_s:g} s real and "
         f"{limits.agent_s:g} s in the agent's process, {limits.tokens:,} tokens",
@@ -364,7 +364,7 @@ def _time_in_words(plan: Plan, workers: int) -> str:
     slow = any(job.setup.model not in ("rules", "none") for job in jobs)
     return (
         f"time: {told} with {counted(workers, 'worker')}, within a factor of two on an idle machine"
-        + (", and the time that the models take to answer" if slow else "")
+        + (", plus the time that the models take to answer" if slow else "")
         + "; nothing was run"
     )
 

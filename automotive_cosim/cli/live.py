@@ -36,7 +36,7 @@ PLAIN_EVERY_S = 10.0
 
 
 class Notes(Watcher):
-    """Prints what was assumed of a scenario to the standard error, and nothing else."""
+    """Prints only the assumptions about a scenario, to standard error."""
 
     def loading(self, scenario: Scenario) -> None:
         """See ``Watcher``."""
@@ -45,7 +45,7 @@ class Notes(Watcher):
 
 
 class Live(Watcher):
-    """Shows an episode as it runs, and at its end the verdict and the timeline."""
+    """Shows an episode as it runs and, at the end, the verdict and the timeline."""
 
     def __init__(self, console: Console | None = None) -> None:
         self._console = console or Console(highlight=False)
@@ -59,10 +59,10 @@ class Live(Watcher):
         self._begins: Moment | None = None
         """When the next action begins."""
         self._held: list[str] = []
-        """What was said of the drive since then: the action is known at its end, and its line comes first."""
+        """Lines about the drive since then: the action is known when it ends, and its line comes first."""
 
     def loading(self, scenario: Scenario) -> None:
-        """What is loaded, and what was assumed of it."""
+        """Shows what is loaded, and the assumptions about it."""
         for note in scenario.notes:
             self._console.print(Text(f"note: {note}", style="yellow"), soft_wrap=True)
         size_mb = read_configuration(scenario.config).net.stat().st_size / 1e6
@@ -85,7 +85,7 @@ class Live(Watcher):
             self._console.print(f"{scenario}: {done_s:.0f} of {total_s:.0f} s of traffic warmed up")
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """The drive as it is now."""
+        """Shows the current drive."""
         if self._hand_over_s is None:
             self._title = "drive up to the hand-over"
         if self._console.is_terminal:
@@ -100,7 +100,7 @@ class Live(Watcher):
         """The driver's words."""
         self._hand_over_s = shot.step.moment.time_s
         self._begins = shot.step.moment
-        self._title = "the agent is at work"
+        self._title = "the agent acts"
         self._goal = episode.instance.goal
         if not self._console.is_terminal:
             moment = shot.step.moment
@@ -115,7 +115,7 @@ class Live(Watcher):
         self._goal = " ".join([self._goal, *step.said])
         declares = step.action is not None and step.action.action_type is ActionType.STATUS
         if declares:
-            self._title = "after the end: how the drive continues"
+            self._title = "after the end: the drive continues"
         if self._console.is_terminal:
             self._show(self._panel(step.moment))
         else:

@@ -1,4 +1,4 @@
-"""``automotive-cosim``: the commands, and what an error looks like.
+"""``automotive-cosim``: the commands, and the form of errors.
 
 Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an infrastructure error,
 130 interrupted, 143 terminated.
@@ -44,7 +44,7 @@ from automotive_cosim.errors import InfrastructureError, UserError
 INTERRUPTED = 130
 """Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
 TERMINATED = 143
-"""The same for SIGTERM: ``kill``, a container that is stopped, a batch system whose time is up."""
+"""The same for SIGTERM: ``kill``, a stopped container, a batch system whose time is up."""
 
 app = typer.Typer(
     name="automotive-cosim",
@@ -104,7 +104,7 @@ def main() -> None:
     terminations: list[int] = []
 
     def terminate(number: int, frame: object) -> None:
-        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # another one must not interrupt the clearing up
+        signal.signal(signal.SIGTERM, signal.SIG_IGN)  # a second one must not interrupt the clean-up
         terminations.append(number)
         raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
 
@@ -128,7 +128,9 @@ def _run() -> int:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise
         problems = [error.format_message()] if isinstance(error, typer.TyperException) else error.args
-        for problem in filter(None, map(str, problems)):  # none: the help for a missing command has been printed
+        for problem in filter(
+            None, map(str, problems)
+        ):  # without any, the help for a missing command has been printed
             print("error: " + " ".join(problem.split()), file=sys.stderr)
         return 3 if isinstance(error, InfrastructureError) else 2
     except OSError as error:

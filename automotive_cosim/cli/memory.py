@@ -1,4 +1,4 @@
-"""``automotive-cosim memory``: what ASURADA remembers of earlier episodes."""
+"""``automotive-cosim memory``: what ASURADA remembers from earlier episodes."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import typer
 from automotive_cosim.cli.options import print_json
 from automotive_cosim.errors import UserError
 
-app = typer.Typer(help="What ASURADA remembers of earlier episodes.", no_args_is_help=True)
+app = typer.Typer(help="What ASURADA remembers from earlier episodes.", no_args_is_help=True)
 
 
 @app.command()

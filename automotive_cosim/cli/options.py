@@ -42,7 +42,8 @@ TasksFrom = Annotated[
 SuiteName = Annotated[
     str,
     typer.Option(
-        "--suite", help="Suite that the tasks are chosen from: standard, hard or all. An id names its task in any."
+        "--suite",
+        help="Suite that the tasks are chosen from: standard, hard or all. An id selects a task in any suite.",
     ),
 ]
 """For every command that chooses tasks by words."""
@@ -52,16 +53,16 @@ def _refuse_mode(mode: str | None) -> None:
     if mode is not None:
         from automotive_cosim.run.former import INSTEAD
 
-        raise UserError(f"there are no modes any more; {INSTEAD}")
+        raise UserError(f"modes no longer exist; {INSTEAD}")
 
 
 NoMode = Annotated[str | None, typer.Option("--mode", "--modes", hidden=True, callback=_refuse_mode)]
-"""What earlier versions took; its callback says what took its place."""
+"""An option of earlier versions; its callback says what has replaced it."""
 
 
 def reads_results(command: Callable[P, None]) -> Callable[P, None]:
-    """For a command that reads what another wrote and someone may have changed since: whatever is wrong with it is
-    one error for the user, and ``--debug`` shows its cause."""
+    """For a command that reads what another one wrote and someone may have changed since: any fault in it is one
+    error for the user, and ``--debug`` shows its cause."""
 
     @wraps(command)
     def guarded(*given: P.args, **named: P.kwargs) -> None:
@@ -85,7 +86,7 @@ def print_json(values: object) -> None:
 
 
 def whole_number(least: int, most: int) -> Callable[[str], int]:
-    """A parser of whole numbers in a range, whose error says what came and what was expected."""
+    """A parser of whole numbers in a range; its error says what came and what was expected."""
 
     def parse(text: str) -> int:
         try:
@@ -101,7 +102,7 @@ def whole_number(least: int, most: int) -> Callable[[str], int]:
 
 @dataclass(frozen=True, slots=True)
 class PartOf:
-    """One of so many parts, as in ``3/10``."""
+    """One of several parts, as in ``3/10``."""
 
     number: int
     of: int
@@ -116,12 +117,12 @@ class PartOf:
         return part
 
     def taken(self, all_of_them: tuple[str, ...]) -> tuple[str, ...]:
-        """Every Nth of them, so that the parts together are all."""
+        """Every Nth item, so that all parts together have every item."""
         return all_of_them[self.number - 1 :: self.of]
 
 
 def number(least: float, most: float) -> Callable[[str], float]:
-    """A parser of numbers in a range, ends included, whose error says what came and what was expected."""
+    """A parser of numbers in a range, ends included; its error says what came and what was expected."""
 
     def parse(text: str) -> float:
         try:
@@ -136,7 +137,7 @@ def number(least: float, most: float) -> Callable[[str], float]:
 
 
 def lon_lat(text: str) -> tuple[float, float]:
-    """Reads ``LON,LAT`` in degrees, without checking that it is on earth."""
+    """Reads ``LON,LAT`` in degrees, without checking that it is a place on earth."""
     try:
         lon_deg, lat_deg = (float(part) for part in text.split(","))
     except ValueError:

@@ -1,4 +1,4 @@
-"""``automotive-cosim playback``: shows a recorded episode again."""
+"""``automotive-cosim playback``: plays back a recorded episode."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def playback(
     speed: Annotated[float, typer.Option(help="How many times as fast as recorded.", min=0.1, max=1000)] = 4.0,
     wait: Annotated[bool, typer.Option("--wait/--at-once", help="Keep the recorded time between steps.")] = True,
 ) -> None:
-    """Print a recorded episode step by step, at its own pace, or write its screens as an animation."""
+    """Print a recorded episode step by step, at its recorded pace, or write its screens as an animation."""
     from time import sleep
 
     from automotive_cosim.errors import UserError

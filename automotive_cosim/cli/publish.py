@@ -1,4 +1,4 @@
-"""``automotive-cosim bundle``, ``verify`` and ``leaderboard``: evaluations for others."""
+"""``automotive-cosim bundle``, ``verify`` and ``leaderboard``: publish and check evaluations."""
 
 from __future__ import annotations
 
@@ -50,10 +50,10 @@ def verify(
         int | None,
         typer.Option(
             "--replay-seed",
-            help="Draws the drives to replay.",
+            help="Seed that draws the drives to replay.",
             metavar="N",
             parser=whole_number(0, 2**31 - 1),
-            show_default="another one each time",
+            show_default="a new one each time",
         ),
     ] = None,
     workers: Workers = None,
@@ -75,7 +75,7 @@ def verify(
         typer.echo(f"PROBLEM {problem}")
     if len(found.problems) > MOST_LISTED:
         typer.echo(f"and {len(found.problems) - MOST_LISTED} more")
-    typer.echo("cannot be known from this:")
+    typer.echo("this check cannot tell:")
     for line in found.unknown:
         typer.echo(f"  {line}")
     if found.problems:
@@ -94,7 +94,7 @@ def leaderboard(
     workers: Workers = None,
     tasks_from: TasksFrom = None,
 ) -> None:
-    """Check every bundle in a folder and write a page that sets them side by side."""
+    """Check every bundle in a folder and write a page that compares them."""
     from automotive_cosim.publish.leaderboard import write_leaderboard
 
     left_out = write_leaderboard(folder, out, workers=workers or 1, mixed=mixed)

@@ -38,12 +38,15 @@ def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
 def replay(
     folder: Annotated[Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)],
     episode: Annotated[
-        str, typer.Argument(help="Of `eval`: id of the episode or drive, or its beginning.", show_default=False)
+        str,
+        typer.Argument(
+            help="In a folder of `eval`: id of the episode or drive, or the beginning of it.", show_default=False
+        ),
     ] = "",
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
-    """Repeat the actions of a stored episode or drive and compare the traces; exit code 1 if they differ."""
+    """Replay the actions of a stored episode or drive and compare the traces; exit code 1 if they differ."""
     from automotive_cosim.run.rerun import rerun
     from automotive_cosim.run.rewatch import holds_drives, rewatch
 
@@ -57,7 +60,7 @@ def replay(
         typer.echo(f"step {step.number:3d}  {step.sha256[:16]}  {differs}")
     if different:
         typer.echo(
-            f"{len(different)} of {counted(len(compared), 'step')} differ, from step {different[0].number} on"
+            f"{len(different)} of {counted(len(compared), 'step')} differ, starting with step {different[0].number}"
         )
         raise typer.Exit(1)
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
@@ -65,7 +68,7 @@ def replay(
 
 @reads_results
 def regrade(folder: Folder, tasks_from: TasksFrom = None, as_json: AsJson = False) -> None:
-    """Judge the stored episodes by the current checks and print what changes; nothing is written."""
+    """Judge the stored episodes again by the current checks and print what changes; nothing is written."""
     from automotive_cosim.run.coverage import coverage
     from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.regrade import regrade as judged_again

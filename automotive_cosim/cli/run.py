@@ -56,7 +56,7 @@ def run(
     feedback: Annotated[
         str,
         typer.Option(
-            help="What the agent is told of its last action: quiet (the control, and whether it took) or verbose "
+            help="What the agent is told of its last action: quiet (the control, and whether it worked) or verbose "
             "(also what changed in the car)."
         ),
     ] = "quiet",
@@ -109,7 +109,7 @@ def run(
     origin: Annotated[
         str,
         typer.Option(
-            help="Move the centre of the network there, with that place's law, clock and climate.",
+            help="Move the centre of the network to this place, with its law, clock and climate.",
             metavar="LON,LAT",
             show_default=False,
         ),
@@ -138,7 +138,7 @@ def run(
 ) -> None:
     """Run one episode: a task, an agent, a seed.
 
-    Without options, a car drives 80 km/h where 50 is posted in Paris, and the agent has been asked to warn of that.
+    Without options, a car in Paris drives at 80 km/h where 50 is posted, and the agent is to warn the driver.
     """
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import geo_input, parts

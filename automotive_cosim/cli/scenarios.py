@@ -64,7 +64,7 @@ def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: As
     typer.echo(f"{found.name}: {found.title}\n{found.about.strip()}\n")
     for label, value in (
         ("folder", found.folder),
-        ("country", found.country or "none known"),
+        ("country", found.country or "unknown"),
         ("starts", f"{found.start:%A %Y-%m-%d %H:%M %Z}"),
         ("weather", _weather(found)),
         ("steps", f"{found.sumo.step_length_s:g} s, after {found.sumo.warm_up_s:g} s of warm-up"),
@@ -121,9 +121,9 @@ def check_scenarios(
     quick: Annotated[bool, typer.Option("--quick", help="Skip the hour of traffic.")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Prove that scenarios do what they say; exit code 1 if one does not.
+    """Prove that scenarios are as described; exit code 1 if one is not.
 
-    Each is loaded, warmed up and placed. Its streets and limits are compared with those that it names, every trip
+    Each is loaded, warmed up and located. Its streets and limits are compared with those that it states, every trip
     of the ego is driven to its end, its situations must occur, and its traffic must flow for an hour.
     """
     from automotive_cosim.scenery import open_scenario
@@ -179,14 +179,14 @@ def render(
     to_file = out is not None and not out.is_dir() and bool(out.suffix)
     if out and to_file and (out.suffix.lower() not in ENDINGS or len(found) > 1):
         wanted = "a folder" if len(found) > 1 else f"a file that ends in {' or '.join(ENDINGS)}"
-        raise UserError(f"--out {out} cannot be used here; give {wanted}")
+        raise UserError(f"--out {out} does not fit; give {wanted}")
     for scenario in found:
         target = out if out and to_file else (out or Path("runs/maps")) / f"{scenario.name}.webp"
         unwritten = save_picture(scenario, target)
         typer.echo(f"{target} written")
         if unwritten:
             left_out = counted(len(unwritten), "street name")
-            typer.echo(f"{left_out} left out, such as {unwritten[0]}: no font here has that script", err=True)
+            typer.echo(f"{left_out} left out, such as {unwritten[0]}: no installed font has that script", err=True)
 
 
 @app.command("import")
@@ -211,11 +211,11 @@ def import_scenario(
     minutes: Annotated[
         float,
         typer.Option(
-            parser=number(1, 110), metavar="M", help="Minutes that the traffic must flow after its warm-up."
+            parser=number(1, 110), metavar="M", help="Minutes for which the traffic must flow after its warm-up."
         ),
     ] = 30.0,
     quick: Annotated[
-        bool, typer.Option("--quick", help="Take modest traffic, and try it for ten minutes only.")
+        bool, typer.Option("--quick", help="Use light traffic, and test it for only ten minutes.")
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
 ) -> None:
@@ -257,15 +257,20 @@ def equilibrate_scenario(
         int,
         typer.Option(parser=whole_number(5, 1440), metavar="M", help="Minutes of departures after the warm-up."),
     ] = 60,
-    seed: Annotated[int, typer.Option(help="Seed of the traffic and of who changes.")] = 0,
+    seed: Annotated[int, typer.Option(help="Seed of the traffic and of the drivers who change routes.")] = 0,
     out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_equilibrium")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier equilibrium.")] = False,
     system_optimum: Annotated[
         bool,
-        typer.Option("--system-optimum", help="Then look for routes that take less time in total, and compare."),
+        typer.Option(
+            "--system-optimum", help="Then search for routes with a lower total travel time, and compare."
+        ),
     ] = False,
     draws: Annotated[
-        int, typer.Option(parser=whole_number(2, 100), metavar="N", help="Seeds with which both states are driven.")
+        int,
+        typer.Option(
+            parser=whole_number(2, 100), metavar="N", help="Number of seeds with which both states are driven."
+        ),
     ] = 10,
     as_json: AsJson = False,
 ) -> None:
@@ -344,10 +349,10 @@ def _print_states(found: SystemOptimum) -> None:
     low, high = found.interval
     typer.echo(
         f"\nprice of anarchy: {found.price_of_anarchy:.3f} ({low:.3f} to {high:.3f}, 95 % over {len(found.ratios)} "
-        "seeds), and at least that: the search need not have found the optimum"
+        "seeds); a lower bound, as the search may not have found the optimum"
     )
     if found.kept == 0:
-        typer.echo("the search found no routes that cost less than the equilibrium's")
+        typer.echo("the search found no routes with a lower total time than the equilibrium's")
     elif low <= 1 <= high:
         typer.echo("the interval includes 1: these seeds show no difference")
 
@@ -365,10 +370,11 @@ def download_map(
     ],
     out: Annotated[Path, typer.Option(help="File to create, for `scenarios import`.")] = Path("map.osm"),
     timeout: Annotated[
-        float, typer.Option(parser=number(1, 3600), metavar="S", help="Seconds of silence before stopping.")
+        float, typer.Option(parser=number(1, 3600), metavar="S", help="Seconds without an answer before giving up.")
     ] = 180.0,
     tries: Annotated[
-        int, typer.Option(parser=whole_number(1, 20), metavar="N", help="How often to ask a busy server.")
+        int,
+        typer.Option(parser=whole_number(1, 20), metavar="N", help="Maximum number of requests to a busy server."),
     ] = 4,
     max_mb: Annotated[
         float, typer.Option(parser=number(0.001, 10_000), metavar="MB", help="Size limit of the map.")
@@ -390,12 +396,12 @@ def download_map(
 
 
 SAY_EVERY_S = 10.0
-"""Least wall time between two lines about the same activity in a log."""
+"""Minimum wall time between two lines about the same activity in a log."""
 
 
 @contextmanager
 def _progress() -> Iterator[Tell]:
-    """The current activity on stderr: one line that changes in a terminal, a line now and then in a log."""
+    """The current activity on stderr: one changing line in a terminal, occasional lines in a log."""
     from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
     from automotive_cosim.cli.console import Console
@@ -454,8 +460,8 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("signals", f"{report.signals}, roundabouts {report.roundabouts}"),
         ("tunnels", f"{counted(report.tunnels, 'edge')} ({report.tunnel_km:.1f} km)"),
         ("lamps", f"known for {report.lit_known_share:.0%} of the length"),
-        ("built-up", f"or not: known for {report.built_up_known_share:.0%} of the length"),
-        ("schools", f"{report.school_zone_km:.1f} km; limits by the clock on {report.timed_limit_km:.1f} km"),
+        ("built-up", f"area or not: known for {report.built_up_known_share:.0%} of the length"),
+        ("schools", f"{report.school_zone_km:.1f} km; time-dependent limits on {report.timed_limit_km:.1f} km"),
         ("bus lanes", f"{report.bus_lane_km:.1f} km, speed cameras {report.speed_cameras}"),
         ("ground", ", ".join(f"{count:,} of {kind}" for kind, count in report.ground.items())),
         ("traffic", f"{report.vehicles_per_hour:.0f} vehicles per hour, about {flow.vehicles_mean:.0f} at a time"),

@@ -1,4 +1,4 @@
-"""``automotive-cosim schema``: the formats of files that users write, for editors."""
+"""``automotive-cosim schema``: the formats of files that users write, for use in editors."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ def schema(
         Path | None, typer.Option(help="File to write; standard output if not given.", show_default=False)
     ] = None,
 ) -> None:
-    """Print the JSON Schema of a file you write, so that an editor checks and completes it."""
+    """Print the JSON Schema of a file format, so that an editor can check and complete such files."""
     from automotive_cosim import schemas
     from automotive_cosim.errors import UserError
 

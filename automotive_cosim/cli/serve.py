@@ -20,21 +20,19 @@ def serve(
         ),
     ] = None,
     host: Annotated[
-        str, typer.Option(help="Address to listen on; by default nobody on another machine can connect.")
+        str, typer.Option(help="Address to listen on; by default, only this machine can connect.")
     ] = "127.0.0.1",
     port: Annotated[
-        int, typer.Option(help="Port to listen on; 0 takes a free one.", metavar="N", parser=whole_number(0, 65535))
+        int, typer.Option(help="Port to listen on; 0 picks a free one.", metavar="N", parser=whole_number(0, 65535))
     ] = 0,
     play: Annotated[
         bool,
-        typer.Option(
-            "--play", help="Let one person at a time play: work the cockpit, and be judged as agents are."
-        ),
+        typer.Option("--play", help="Let one person at a time operate the cockpit, judged as agents are."),
     ] = False,
     study: Annotated[
         Path | None,
         typer.Option(
-            help="TOML file of a study: deals its episodes to several people, each on a page of their own.",
+            help="TOML file of a study: deals its episodes to several people, each on their own page.",
             metavar="FILE",
             show_default=False,
         ),
@@ -44,8 +42,8 @@ def serve(
     """Show runs, results, tasks and scenarios in a browser; a run in progress is shown live.
 
     Open the address that it prints: anyone who has it can read what is in the folders and, with --play, play.
-    Played episodes are recorded in the first folder, a study in its own folder there, named after the file. Ctrl-C
-    ends it; no run depends on it, and a study goes on where it was.
+    Played episodes are recorded in the first folder; a study in a subfolder named after its file. Ctrl-C stops the
+    server: runs do not depend on it, and a study resumes where it was.
     """
     from automotive_cosim.serve.server import WebServer
 
@@ -61,11 +59,11 @@ def serve(
         from automotive_cosim.serve.study import PeopleStudy
 
         if (shown[0] / "steps.jsonl").exists() or (shown[0] / "manifest.json").exists():
-            raise UserError(f"{shown[0]} is a record itself; give a folder that holds records")
+            raise UserError(f"{shown[0]} is itself a record; give a folder of records")
         game = Game(shown[0]) if play else None
         dealt = PeopleStudy(read_study(study), shown[0] / study.stem) if study else None
     with WebServer(shown, host, port, game, dealt) as server:
         typer.echo(f"Open {server.address}")
         if dealt is not None:
-            typer.echo(f"People who take part open {server.people_address}")
+            typer.echo(f"Participants open {server.people_address}")
         server.serve_forever(poll_interval=0.2)

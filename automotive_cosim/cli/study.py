@@ -54,7 +54,7 @@ def reroute(
         str, typer.Option("--from", help="Where the ego's route begins: an edge, a street or LON,LAT.")
     ] = "",
     to_place: Annotated[
-        str, typer.Option("--to", help="Where it ends; if only one of the two is given, the other is drawn.")
+        str, typer.Option("--to", help="Where it ends; if only --from or --to is given, the other is drawn.")
     ] = "",
     seeds: Annotated[
         str, typer.Option(help="Seeds of the traffic, as in 0-9; at least 10 for an interval, 30 to publish.")
@@ -92,7 +92,7 @@ def reroute(
         str,
         typer.Option(
             help="How often each future is driven, each time with fresh random numbers; auto: more often where the "
-            "mean gain does not show its sign."
+            "sign of the mean gain is unclear."
         ),
     ] = "1",
     whole_drives: Annotated[
@@ -105,7 +105,7 @@ def reroute(
     together: Annotated[
         str | None,
         typer.Option(
-            help="Shares, 0 to 1, of the eligible cars that take the other route along with the ego.",
+            help="Shares, 0 to 1, of the eligible cars that take the other route with the ego.",
             show_default="none",
         ),
     ] = None,
@@ -120,7 +120,7 @@ def reroute(
         bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
     ] = False,
     trajectories: Annotated[
-        bool, typer.Option("--trajectories", help="Keep where the ego was in every future, step by step.")
+        bool, typer.Option("--trajectories", help="Store the ego's position in every future, step by step.")
     ] = False,
     ego_class: Annotated[
         str,
@@ -130,11 +130,11 @@ def reroute(
         ),
     ] = "",
     redraw: Annotated[
-        bool, typer.Option("--redraw", help="Draw the trips of the demand anew for every seed: another day.")
+        bool, typer.Option("--redraw", help="Redraw the trips of the demand for every seed, as on another day.")
     ] = False,
     arrived: Annotated[
         float,
-        typer.Option(help="Share of the vehicles there at a decision that must arrive before its futures end."),
+        typer.Option(help="Share of the vehicles present at a decision that must arrive before its futures end."),
     ] = 0.95,
     scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
     warm_up: Annotated[
@@ -263,7 +263,7 @@ def suite(
     warm_ups: Annotated[
         str | None,
         typer.Option(
-            help="Seconds of traffic before the first departure; each is a study of its own.",
+            help="Seconds of traffic before the first departure; each is a separate study.",
             show_default="scenario's",
         ),
     ] = None,
@@ -347,7 +347,7 @@ def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
                 console.print(table.markdown(), soft_wrap=True)
         for warning in warnings(study):
             console.print(warning, soft_wrap=True)
-        console.print(f"{counted(count, 'decision')} counted; the report is {page}", soft_wrap=True)
+        console.print(f"{counted(count, 'decision')} counted; report written to {page}", soft_wrap=True)
     if errors:
         first = errors[0]
         raise InfrastructureError(
@@ -399,7 +399,7 @@ def _departures(scenario: str, text: str) -> tuple[float, ...]:
 
 
 def _replicates(text: str) -> int | str:
-    """A number, or a word for the plan to judge."""
+    """A number, or a word that the plan checks."""
     return int(text) if text.isdecimal() else text
 
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 PICTURES = (".webp", ".png", ".jpg")
 PICTURE_WIDTH = 640
-NOT_MEASURED = "not measured since its situation last changed"
+NOT_MEASURED = "not measured since the situation last changed"
 
 app = typer.Typer(help="List, show and export tasks.", no_args_is_help=True)
 
@@ -107,7 +107,9 @@ def show(
             help="Also draw the reference solution, screen by screen, to a .webp, .png or .jpg.", show_default=False
         ),
     ] = None,
-    seed: Annotated[int, typer.Option(help="Seed of the picture.", metavar="N", parser=whole_number(0, 10**6))] = 0,
+    seed: Annotated[
+        int, typer.Option(help="Seed for the picture.", metavar="N", parser=whole_number(0, 10**6))
+    ] = 0,
     as_json: AsJson = False,
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""
@@ -171,7 +173,7 @@ def _chosen(words: str, suite: str) -> list[Task]:
 
 
 def _within(tasks: list[Task], subset: str) -> list[Task]:
-    """Those of a subset."""
+    """The tasks of a subset."""
     from automotive_cosim.errors import UnknownNameError, UserError
     from automotive_cosim.tasking.task import Subset
 
@@ -205,7 +207,7 @@ def _cells(tasks: list[Task]) -> str:
 
 
 def _instances(tasks: list[Task]) -> str:
-    """The number of different instances, with the cockpit's content counted as it is drawn."""
+    """The number of different instances, in words."""
     from automotive_cosim.tasking.instance import instances
 
     return f"{sum(map(instances, tasks)):,} instances by words, parameters and scenario"

@@ -1,5 +1,5 @@
-"""What reaches a terminal: plain text. Names of streets, answers of models and messages of SUMO come from others,
-and a terminal obeys control characters: it moves the cursor, sets its title, hides a line.
+"""Makes what reaches a terminal plain text. Names of streets, answers of models and messages of SUMO come from
+others, and a terminal obeys control characters: it moves the cursor, sets its title, hides a line.
 
     print, typer.echo -> Plain -> the stream
     rich -> console.Console -> the stream, with rich's own controls
@@ -16,7 +16,7 @@ SHOWN_AS = "\N{REPLACEMENT CHARACTER}"
 OBEYED = (
     *range(0x20),
     *range(0x7F, 0xA0),  # delete, and the second set of controls
-    *range(0x202A, 0x202F),  # turn the direction of writing
+    *range(0x202A, 0x202F),  # reverse the direction of writing
     *range(0x2066, 0x206A),
 )
 _PLAIN = dict.fromkeys(set(OBEYED) - {ord("\n"), ord("\t")}, SHOWN_AS)
@@ -33,15 +33,15 @@ def escaped(text: str) -> str:
 
 
 class Plain:
-    """A stream to which only plain text is written."""
+    """A stream that writes only plain text."""
 
     encoding = "utf-8"
-    """What it takes; of a stream that says ``ascii``, click would take the bytes below instead."""
+    """Its encoding; for a stream that reports ``ascii``, click would write to the bytes below instead."""
 
     def __init__(self, stream: TextIO) -> None:
         self._stream = stream
         self.rich_proxied_file = stream
-        """Where rich's consoles write: they take this attribute of a stream that stands for another."""
+        """The stream that rich's consoles write to: they use this attribute of a wrapper."""
 
     def write(self, text: str) -> int:
         """Writes the text as plain text."""
@@ -57,7 +57,7 @@ class Plain:
 
 @contextmanager
 def plain_streams() -> Iterator[None]:
-    """In the block, the standard output and the standard error take plain text only."""
+    """Within the block, standard output and standard error take only plain text."""
     kept = sys.stdout, sys.stderr
     sys.stdout, sys.stderr = (cast(TextIO, Plain(stream)) for stream in kept)
     try:

@@ -32,7 +32,7 @@ def validate(
     part: Annotated[
         PartOf | None,
         typer.Option(
-            help="Prove only part K of N, as in 3/10; the parts together are all tasks.",
+            help="Prove only part K of N, as in 3/10; together, the parts are all tasks.",
             metavar="K/N",
             parser=PartOf.read,
             show_default=False,
@@ -68,7 +68,7 @@ def validate(
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
-    """Prove that tasks are solvable by public actions, but not by trivial strategies, and repeat exactly.
+    """Prove that tasks can be solved by public actions, cannot be solved by trivial strategies, and repeat exactly.
 
     Exit code 1 if a gate fails, else 3 if a proof could not be completed. With --out, rerun the command to resume.
     """
@@ -101,7 +101,7 @@ def validate(
     def begun(planned: int) -> None:
         console.print(
             f"{counted(planned, 'proof')} by {counted(len(chosen), 'gate')}, up to a minute each; "
-            "each is told as it ends",
+            "each is reported when it ends",
             highlight=False,
             soft_wrap=True,
         )
@@ -115,7 +115,7 @@ def validate(
     result = json_of(proofs, task_ids, numbers)
     changed = changed_traces(before, result["traces"]) if before is not None else ()
     for name in changed:
-        console.print(f"[red]✗[/] {name}: its reference solution gives another trace", highlight=False)
+        console.print(f"[red]✗[/] {name}: its reference solution gives a different trace", highlight=False)
     if as_json:
         typer.echo(json.dumps(result))
     else:
@@ -140,7 +140,7 @@ def _summary(proofs: Sequence[Proof], gates: Sequence[str]) -> Iterator[str]:
     for gate in gates:
         tried = [proof.wrong[gate] for proof in proofs if gate in proof.wrong]
         passed = sum(not wrong for wrong in tried)
-        said = f"{passed:,} of {counted(len(tried), 'proof')} passed" if tried else "nothing to try"
+        said = f"{passed:,} of {counted(len(tried), 'proof')} passed" if tried else "nothing to test"
         yield f"{'ok  ' if passed == len(tried) else 'FAIL'}  {gate:<{wide}}  {said}"
     for task_id in dict.fromkeys(proof.task for proof in proofs):
         own = [proof for proof in proofs if proof.task == task_id]

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.watches import WatchPlan
 
 TASKS_ONLY = ("tasks", "suite", "split", "everywhere", "held_out", "limits", "spare_traffic")
-"""Parts of a plan that drives do not have."""
+"""Options of a plan that drives do not have."""
 
 
 def watch(
@@ -36,7 +36,7 @@ def watch(
     dry_run: bool,
     as_json: bool,
 ) -> None:
-    """Runs the drives of a plan, and prints what came of them."""
+    """Runs the drives of a plan, and prints the results."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.report.drives import standings
     from automotive_cosim.run.store import read_rows
@@ -44,7 +44,7 @@ def watch(
     from automotive_cosim.run.watches import make_watch_plan, run_watch_plan
 
     if surplus := [name for name in TASKS_ONLY if name in values]:
-        raise UserError(f"drives take no {' or '.join(surplus)}; omit what belongs to tasks, or omit --drives")
+        raise UserError(f"drives do not take {' or '.join(surplus)}; omit what belongs to tasks, or omit --drives")
     plan = make_watch_plan(values)
     folder = out or _folder(plan)
     console = Console(stderr=as_json, highlight=False)
@@ -75,7 +75,8 @@ def watch(
     tell_stopped(end)
     if end.errors:
         raise InfrastructureError(
-            f"{end.errors} of {counted(end.planned, 'drive')} ended in an infrastructure error and do not count"
+            f"{end.errors} of {counted(end.planned, 'drive')} ended in an infrastructure error and do not count; "
+            "rerun the command to retry them"
         )
 
 

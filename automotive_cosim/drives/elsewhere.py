@@ -45,7 +45,7 @@ def _in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:
     for first in trips:
         round_: tuple[Trip, ...] = ()
         for trip in (first, *(other for other in trips if other is not first)):
-            with suppress(ScenarioError):  # no way leads on from it
+            with suppress(ScenarioError):  # no route leads from it to the others
                 planned(network, first, (*round_, trip))
                 round_ = (*round_, trip)
         best = max(best, round_, key=len)

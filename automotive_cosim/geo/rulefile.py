@@ -105,9 +105,9 @@ class RuleEntry:
         if (self.value is None) == (self.cases is None):
             raise ValueError("it requires either value (with when) or cases")
         if self.cases is not None and self.when is not None:
-            raise ValueError("when belongs inside each case")
+            raise ValueError("put when inside each case")
         if self.topic == "limit" and self.cases is not None and len(self.cases) != 1:
-            raise ValueError("each limit is a rule of its own, with value and when")
+            raise ValueError("each limit needs a separate rule, with value and when")
         for value, _ in self.answers:
             if isinstance(value, str) and (value == "none") != (self.topic == "limit"):
                 raise ValueError(f"value is {value!r}; a limit is a number or 'none', and no other rule is 'none'")

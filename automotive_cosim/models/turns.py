@@ -1,4 +1,4 @@
-"""Turns at an endpoint: who may ask next, when only so many questions a minute are allowed."""
+"""Turns at an endpoint that allows only so many questions a minute."""
 
 from __future__ import annotations
 

@@ -159,8 +159,8 @@ def _check(options: ImportOptions) -> None:
             raise ImportMapError(f"a {what} of {value:g} is impossible; give a number above zero")
     if options.density_per_km > FULL_PER_KM:
         raise ImportMapError(
-            f"a density of {options.density_per_km:g} vehicles per km of lane is impossible: bumper to bumper "
-            f"there is room for {FULL_PER_KM:.0f}; give a number such as 1"
+            f"a density of {options.density_per_km:g} vehicles per km of lane is impossible: at most "
+            f"{FULL_PER_KM:.0f} fit, bumper to bumper; give a number such as 1"
         )
     if options.seed < 0:
         raise ImportMapError(f"seed {options.seed} is below zero; give a whole number from 0")

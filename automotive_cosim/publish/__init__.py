@@ -1,1 +1,1 @@
-"""Evaluations for others: one file to publish, its check, and a page of many."""
+"""Publishing evaluations: one file to publish, its check, and a leaderboard of many."""

@@ -1,4 +1,4 @@
-"""A bundle as an archive: a zip without compression, of which the same files give the same bytes.
+"""A bundle as an archive: a zip without compression, with the same bytes for the same files.
 
 bundle.json                      what is in it (``contents``)
 manifest.json                    the plan; versions, platform and state of the code at each start
@@ -26,7 +26,7 @@ MEMBER = re.compile(
 MOST_BYTES = 8 * 2**30
 """Largest bundle that is unpacked."""
 _LONG_AGO = (1980, 1, 1, 0, 0, 0)
-"""A zip's earliest time, for every file."""
+"""The time of every file: the earliest that a zip can store."""
 _CHUNK_BYTES = 2**20
 
 
@@ -64,7 +64,7 @@ def unpacked(bundle: Path) -> Iterator[Path]:
     """A bundle's files in a folder that is removed afterwards.
 
     Raises:
-        UserError: it is not a bundle, or has something that does not belong there.
+        UserError: it is not a bundle, or contains a file that does not belong there.
     """
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
         folder = Path(name)
@@ -84,7 +84,7 @@ def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
         left -= entry.file_size
         if not MEMBER.fullmatch(entry.filename) or path.exists():
             raise UserError(
-                f"{bundle} has {entry.filename[:100]!r}, which does not belong in a bundle or is there twice"
+                f"{bundle} contains {entry.filename[:100]!r}, which does not belong in a bundle or is there twice"
             )
         if entry.compress_type != zipfile.ZIP_STORED or left < 0:
             raise UserError(f"{bundle} is compressed or larger than {MOST_BYTES >> 30} GB; a bundle is neither")

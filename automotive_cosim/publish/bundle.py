@@ -1,7 +1,8 @@
-"""Makes a bundle of an evaluation: everything that a check needs, and nothing that is nobody's business.
+"""Makes a bundle of an evaluation: everything that a check needs, and nothing private.
 
 The newest line of each episode, with error texts cleaned of this machine's folders, and the traces of judged
-episodes; no screenshots. What still has a key of the environment or somebody's home folder in it is refused.
+episodes; no screenshots. A file that still contains a key of the
+environment or the path of a home folder is refused.
 """
 
 from __future__ import annotations
@@ -30,7 +31,7 @@ from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, t
 from automotive_cosim.run.versions import ran_with
 
 SHORTEST_KEY = 12
-"""A shorter value of a variable that is named like a key is a dummy, and may occur anywhere."""
+"""A shorter value of a variable that is named like a key is a dummy and may occur anywhere."""
 _PATH = re.compile(r"""(?<![\w.:/\\<])(?:[A-Za-z]:)?[/\\](?=[\w.~])[^\s'"<>|,;()\[\]]+""")
 """An absolute path in a text."""
 _HOME = re.compile(r"/home/\w|/Users/\w|/root/|[A-Za-z]:\\{1,2}Users\\{1,2}\w")
@@ -40,16 +41,18 @@ def write_bundle(folder: Path, out: Path) -> Contents:
     """Writes the bundle of an evaluation; the same folder gives the same bytes.
 
     Raises:
-        UserError: the folder is not an evaluation's, is damaged, has no episodes, or holds what must not be
+        UserError: the folder is not an evaluation's, is damaged, has no episodes, or contains what must not be
             published; or the file cannot be written.
     """
     manifest, rows = read_evaluation(folder), read_rows(folder, EpisodeRow)
     found = coverage(manifest, rows)
-    manifest["episodes"] = found.planned  # which older evaluations do not tell
+    manifest["episodes"] = found.planned  # which older evaluations do not record
     if not rows:
         raise UserError(f"{folder} has no episodes yet ({found}); rerun its `eval` command")
     if found.problem:
-        raise UserError(f"{folder} cannot be bundled: {found.problem}; give --tasks-from what it was run with")
+        raise UserError(
+            f"{folder} cannot be bundled: {found.problem}; give --tasks-from the folder it was run with"
+        )
     for name in (*manifest["plan"]["scenarios"], *manifest["plan"]["agents"]):
         if PurePosixPath(name).is_absolute() or PureWindowsPath(name).is_absolute():
             raise UserError(f"the plan of {folder} names {name!r} by an absolute path; run it with a relative one")
@@ -100,7 +103,7 @@ def _stage(folder: Path, row: EpisodeRow, staged: Path) -> EpisodeRow:
 
 
 def _cleaned_line(line: Json) -> Json:
-    """A line of a trace without folders in what an agent's side said; nothing else in it may name one."""
+    """A line of a trace without folders in the texts from an agent's side; nothing else in it may name one."""
     if "result" in line:
         result = _without_homes(line["result"])
         if result["agent_error"] is not None:
@@ -114,7 +117,7 @@ def _cleaned_line(line: Json) -> Json:
 
 
 def _without_homes(value: Any) -> Any:
-    """A copy of JSON in which texts with a home folder are cleaned."""
+    """A copy of JSON with home folders removed from its texts."""
     match value:
         case str():
             return cleaned(value) if _HOME.search(value) else value
@@ -128,7 +131,7 @@ def _without_homes(value: Any) -> Any:
 def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
     """
     Raises:
-        UserError: a file has a key of the environment or a home folder in it.
+        UserError: a file contains a key of the environment or the path of a home folder.
     """
     secrets = {
         value.encode(): name
@@ -140,7 +143,9 @@ def _refuse_secrets(staged: Path, environment: Mapping[str, str]) -> None:
         data = {".gz": gzip.decompress, ".xz": lzma.decompress}.get(Path(name).suffix, bytes)(data)
         for secret, variable in secrets.items():
             if secret in data:
-                raise UserError(f"{name} has the value of {variable} in it; remove it from the evaluation first")
+                raise UserError(f"{name} contains the value of {variable}; remove it from the evaluation first")
         if found := _HOME.search(text := data.decode(errors="replace")):
             told = text[found.start() : found.end() + 20]
-            raise UserError(f"{name} has a home folder in it: {told!r}; remove it from the evaluation first")
+            raise UserError(
+                f"{name} contains the path of a home folder: {told!r}; remove it from the evaluation first"
+            )

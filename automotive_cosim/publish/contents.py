@@ -26,7 +26,7 @@ Sha256 = Annotated[str, Form("^[0-9a-f]{64}$", "64 hexadecimal digits")]
 
 @dataclass(frozen=True, slots=True)
 class BundleCounts:
-    """What has become of the planned episodes."""
+    """How many of the planned episodes were judged, ended in an error or were not run."""
 
     planned: Annotated[int, Ge(0)]
     """Episodes in the plan."""
@@ -35,9 +35,9 @@ class BundleCounts:
     successes: Annotated[int, Ge(0)]
     """Episodes judged a success."""
     errors: Annotated[int, Ge(0)]
-    """Ended in an infrastructure error."""
+    """Episodes that ended in an infrastructure error."""
     not_run: Annotated[int, Ge(0)]
-    """Planned and never run."""
+    """Episodes that were planned but not run."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,16 +45,16 @@ class Contents:
     """The file ``bundle.json``, the first in a bundle."""
 
     format: Literal[1]
-    """Of the bundle; any other is refused."""
+    """Format of the bundle; any other is refused."""
     suite: str
     """Version of automotive-cosim that ran the evaluation."""
     counts: BundleCounts
-    """What has become of the planned episodes."""
+    """Counts of the planned episodes."""
     files: Mapping[str, Sha256]
     """SHA-256 of every other file, by its path in the bundle."""
 
     def text(self) -> str:
-        """The file's only form."""
+        """The only valid form of the file."""
         return json.dumps(asdict(self), indent=1, sort_keys=True) + "\n"
 
     @property

@@ -40,7 +40,7 @@ ALSO_IN_RESULT = (
     "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
     "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
-"""Fields of a row that the result at the end of the trace has too."""
+"""Fields of a row that the result at the end of the trace also has."""
 FROM_MOMENTS = (
     "local_time", "traffic", "signals", "weather", "gps", "connectivity", "context", "events",
 )  # fmt: skip
@@ -57,13 +57,13 @@ BY_REPLAY = frozenset(
         "step feedback",
     }
 )  # fmt: skip
-"""What only a replay can check."""
+"""Fields that only a replay can check."""
 ON_TRUST = frozenset(
     {
         f"{ROWS} wall_seconds", f"{ROWS} failed_attempts", "result without", "step thought", "step stages",
     }
 )  # fmt: skip
-"""What nothing in the bundle or a replay can check."""
+"""Fields that neither the bundle nor a replay can check."""
 
 
 def check_episode(folder: Path, job: EpisodeJob, row: EpisodeRow) -> tuple[Problem, ...]:
@@ -155,28 +155,28 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
 
 
 def _step_problems(file: str, steps: Sequence[Json], judged: Judged) -> Iterator[Problem]:
-    """What the steps have that their moments do not."""
+    """Problems of the steps, compared with their moments."""
     moments = {moment.time_s: moment for moment in judged.trace}
     for number, step in enumerate(steps):
         if step.keys() - {SAID} != STEP or step["step"] != number:
-            yield Problem(file, f"step {number}", "is not there, or has other fields")
+            yield Problem(file, f"step {number}", "is missing, or has other fields")
             return
         moment = moments.get(step["time_s"])
         if moment is None:
-            yield Problem(file, f"step {number} time_s", "is the time of no stored moment")
+            yield Problem(file, f"step {number} time_s", "matches no stored moment")
             continue
         expected = Step(number, moment, (), None, Feedback(FeedbackCode.NONE, "")).as_json()
         yield from differences(file, f"step {number}", step, expected, FROM_MOMENTS, "its stored moment")
     if [step["time_s"] for step in steps] != sorted(step["time_s"] for step in steps):
-        yield Problem(file, "time_s", "the steps are not in their order")
+        yield Problem(file, "time_s", "the steps are not in order")
     if steps[0]["time_s"] != judged.trace[0].time_s or steps[0]["action"] is not None:
         yield Problem(file, "step 0", "is not the hand-over")
     action = None if steps[-1]["action"] is None else parse(steps[-1]["action"])
     declared = (action.goal_status, action.reason) if action else (None, None)
     if declared != (judged.declared, judged.reason):
-        yield Problem(file, f"step {len(steps) - 1} action", "is not the declaration that was judged")
+        yield Problem(file, f"step {len(steps) - 1} action", "is not the judged declaration")
     if tuple(text for step in steps for text in _answers(step)) != judged.said:
-        yield Problem(file, "action", "the answers are not those that were judged")
+        yield Problem(file, "action", "the answers are not the judged ones")
 
 
 def _answers(step: Json) -> Iterator[str]:
@@ -186,7 +186,7 @@ def _answers(step: Json) -> Iterator[str]:
 
 
 def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
-    """The row's fields about questions; none of a row that was written before they were counted."""
+    """The row's fields about questions; empty for a row that was written before they were counted."""
     if row.questions is None:
         return {}
     half = Instance(job.task, row.half, judged.goal, judged.parameters, language=row.language).half
@@ -195,7 +195,7 @@ def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
 
 
 def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) -> Iterator[Problem]:
-    """Whether it ended as its moments say."""
+    """Problems with the end of the episode, compared with its moments."""
     last = judged.trace[-1]
     passed_s = last.time_s - judged.trace[0].time_s
     most_s = job.setup.max_sim_s
@@ -214,14 +214,12 @@ def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) 
 
 
 def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Iterator[Problem]:
-    """Whether what the driver said is a phrasing of the task, and held out or not as the row says."""
+    """Problems with the phrasing: it must be one of the task's, and held out or not as the row says."""
     said = phrased(job.task, row.half, judged.parameters, row.language)
     if judged.goal not in said:
         yield Problem(file, "goal", f"is {judged.goal!r}, which is not a phrasing of {row.task}")
     elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):
-        yield Problem(
-            ROWS, f"{row.id} held_out", f"is {str(row.held_out).lower()}, but not by what the driver said"
-        )
+        yield Problem(ROWS, f"{row.id} held_out", f"is {str(row.held_out).lower()}, but the phrasing is not")
 
 
 def _steps(steps: Sequence[Json], judged: Judged) -> list[Step]:

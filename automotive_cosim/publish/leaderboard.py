@@ -1,7 +1,7 @@
-"""A static page that sets the evaluations in a folder of bundles side by side, as far as they can be compared.
+"""A static page that compares the evaluations in a folder of bundles, as far as they can be compared.
 
-Only contestants that were to run the same episodes with the same minor version under the same limits share a table.
-Every bundle is checked first; one with a problem is left out and named.
+Only contestants that were planned to run the same episodes with the same minor version under the same limits share
+a table. Every bundle is checked first; one with a problem is left out and listed.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ COLUMNS = (
 
 @dataclass(frozen=True, slots=True)
 class BundleConditions:
-    """What contestants must share to stand in one table."""
+    """The conditions that contestants in one table share."""
 
     suite: str
     tasks: str
@@ -46,7 +46,7 @@ class BundleConditions:
     phrasings: str
     limits: str
     episodes: str
-    """How many a contestant was to run, with a digest of exactly which."""
+    """How many episodes a contestant was planned to run, with a digest of their ids."""
 
     def differing(self, other: BundleConditions) -> list[str]:
         """The conditions in which another differs, in words."""
@@ -84,10 +84,10 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
         folder: of bundles.
         out: file to write.
         workers: processes that check.
-        mixed: set evaluations of several versions of the suite in one table, and say so.
+        mixed: put evaluations of several versions of the suite into one table, and say so.
 
     Returns:
-        What was left out, and why.
+        The bundles that were left out, and why.
 
     Raises:
         UserError: there is no bundle without a problem, or the page cannot be written.
@@ -138,7 +138,7 @@ def read_entries(bundle: Path) -> list[BoardEntry]:
 
 
 def tables(entries: Sequence[BoardEntry]) -> list[tuple[Table, BundleConditions, list[str]]]:
-    """A table for each set of conditions, that with the most entries first; with how it differs from the first."""
+    """A table for each set of conditions, the largest first, and how it differs from the first."""
     alike: dict[BundleConditions, list[BoardEntry]] = defaultdict(list)
     for entry in entries:
         alike[entry.conditions].append(entry)
@@ -173,7 +173,7 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
 
 
 def _speed(each: Contestant) -> str:
-    """How long its answers took on the road."""
+    """Simulated time that its answers took."""
     return f"{each.clock}, latency {each.latency_s:g} s" if each.latency_s else each.clock
 
 

@@ -1,4 +1,4 @@
-"""What a check finds wrong: which file, which field, and why."""
+"""Problems that a check finds: which file, which field, and why."""
 
 from __future__ import annotations
 
@@ -12,12 +12,12 @@ from automotive_cosim.formats.words import shown
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """Something that does not fit the rest."""
+    """Something that is inconsistent with the rest."""
 
     file: str
     """Path in the bundle or folder."""
     field: str
-    """Where in the file; empty for the whole."""
+    """Where in the file; empty for the whole file."""
     why: str
 
     def __str__(self) -> str:
@@ -59,7 +59,7 @@ def _first(one: Any, other: Any, steps: tuple[str | int, ...]) -> tuple[str | in
 
 
 def _at(value: Any, steps: Iterable[str | int]) -> Any:
-    """The value at a path; None where the last step of it is a field that is not there."""
+    """The value at a path; None if its last field is missing."""
     for step in steps:
         if isinstance(value, Mapping) and step not in value:
             return None

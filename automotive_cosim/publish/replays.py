@@ -1,4 +1,4 @@
-"""Drives a stored episode again by its recorded actions and compares everything that follows from them."""
+"""Replays a stored episode's recorded actions and compares everything that follows from them."""
 
 from __future__ import annotations
 
@@ -41,10 +41,10 @@ STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s")
 
 
 def replay(folder: Path, job: EpisodeJob, row: EpisodeRow, simulations: Simulations) -> tuple[Problem, ...]:
-    """What differs when the actions of a stored episode are played again, bit for bit.
+    """What differs, bit for bit, when the actions of a stored episode are replayed.
 
     Raises:
-        CosimError: it cannot be played.
+        CosimError: it cannot be replayed.
     """
     *steps, last = read_trace(folder, row.id)
     found: tuple[Problem, ...] = ()
@@ -57,7 +57,7 @@ def replay(folder: Path, job: EpisodeJob, row: EpisodeRow, simulations: Simulati
 
 
 def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]]:
-    """The channels that its agent may have had; no foreign agent is loaded to be asked for them."""
+    """The channels that its agent may have had; no foreign agent is loaded to find out."""
     setup = job.setup
     if ":" not in setup.agent:
         settings = AgentSettings(geo_input(setup.geo), seed=setup.seed)
@@ -72,7 +72,7 @@ def _differences(
     *new_steps, new_last = json.loads(json.dumps(again.lines))
     file = trace_file(folder, row.id).relative_to(folder).as_posix()
     if len(steps) != len(new_steps):
-        yield Problem(file, "", f"has {len(steps)} steps, and {len(new_steps)} when it is replayed")
+        yield Problem(file, "", f"has {len(steps)} steps, but {len(new_steps)} when replayed")
     for number, (step, new) in enumerate(zip(steps, new_steps, strict=False)):
         told, now = ({SAID: []} | each for each in (step, new))
         yield from differences(file, f"step {number}", told, now, (*STEP, SAID), "its replay")

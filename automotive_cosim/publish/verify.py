@@ -1,7 +1,7 @@
-"""Checks an evaluation or a bundle: is it whole, does it fit together, and do its drives happen again.
+"""Checks an evaluation or a bundle: is it complete and consistent, and can its drives be reproduced.
 
 Nothing here trusts what a file says about itself: rows are compared with the plan and the catalogue, steps with the
-stored moments, verdicts with a new judgement of these, and a sample of the drives with new ones.
+stored moments, verdicts with new ones from these moments, and a sample of the drives with replays.
 """
 
 from __future__ import annotations
@@ -41,23 +41,23 @@ from automotive_cosim.traffic.fork import Simulations
 
 MANIFEST = "manifest.json"
 PLAN_ON_TRUST = frozenset({"models", "everywhere", "limits", "spare_traffic"})
-"""Fields of a plan that need not show in its episodes: models that no agent uses, limits that none reached, ..."""
+"""Fields of a plan that may not show in its episodes: models that no agent uses, limits that none reached, ..."""
 STARTS_ON_TRUST = frozenset({"started", "platform", "git", "versions"})
-"""Fields of a start that nothing else tells, but for the version of the suite."""
+"""Fields of a start that nothing else records, except the version of the suite."""
 UNKNOWN = (
-    "whether the named agent and model gave these actions: a drive shows what was done, not by whom",
-    "whether these are the first attempts: evaluations that went worse may have been thrown away",
+    "whether the named agent and model gave these actions: a drive shows what was done, but not by whom",
+    "whether these are the first attempts: evaluations with worse results may have been discarded",
     "thoughts, prompts, answers, token counts, costs and wall times",
     "when, where and with which versions it ran, and limits that no episode reached",
-    "whether an infrastructure error was one; each rate counts it as no success, and says how many there were",
+    "whether infrastructure errors were genuine; each rate counts them as no success, and says how many there were",
 )
-"""What no check can find out."""
+"""Facts that no check can establish."""
 UNKNOWN_WITHOUT_REPLAY = (
-    "of the drives that were not replayed: that the traffic was SUMO's, the baseline run, the counterfactual, the "
+    "for drives that were not replayed: whether the traffic was SUMO's, the baseline run, the counterfactual, the "
     "cockpit's answers, and what is measured after the end (speed-limit compliance, time to collision, harm, path, "
     "violations)"
 )
-UNKNOWN_WITHOUT_HASHES = "whether files were changed since: a folder has no hashes; a bundle has"
+UNKNOWN_WITHOUT_HASHES = "whether files were changed afterwards: a folder has no hashes, but a bundle has"
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +66,7 @@ class Verified:
 
     coverage: Coverage
     facts: tuple[str, ...]
-    """What was checked, a line each."""
+    """What was checked, one line each."""
     problems: tuple[Problem, ...]
     unknown: tuple[str, ...]
     """What cannot be known from it."""
@@ -85,12 +85,12 @@ def verify(
     Args:
         path: of the folder or the bundle.
         replays: how many judged episodes to drive again.
-        seed: draws them; whoever made the evaluation must not know it, or he could spare what he forged.
+        seed: draws them; the author of the evaluation must not know it, or could leave these drives unforged.
         workers: processes that judge.
         tell: called with the number of episodes judged so far and of all.
 
     Raises:
-        UserError: it is neither, or it cannot be read at all.
+        UserError: it is neither, or it cannot be read.
     """
     with ExitStack() as ends:
         bundle = None if path.is_dir() else path
@@ -124,7 +124,7 @@ def _verified(
     facts = [
         *([f"{counted(len(contents.files), 'file')}, sha256 of {NAME} {contents.sha256}"] if contents else []),
         str(found),
-        f"{counted(sum(row.success is not None for row in planned.values()), 'verdict')} judged again",
+        f"{counted(sum(row.success is not None for row in planned.values()), 'verdict')} recomputed",
         f"{counted(len(drawn), 'drive')} replayed" + (f", drawn with seed {seed}" if drawn else ""),
         *(f"  {name}" for name in drawn),
         *_versions(manifest),
@@ -141,7 +141,7 @@ def _verified(
 
 
 def hash_problems(folder: Path, contents: Contents) -> list[Problem]:
-    """The files of an unpacked bundle whose hash is another, that lack, or that nobody hashed."""
+    """The files of an unpacked bundle whose hash differs, that are missing, or that have no hash."""
     present = set(archive.members(folder)) - {NAME}
     found = []
     for name in sorted(present | set(contents.files)):
@@ -150,9 +150,9 @@ def hash_problems(folder: Path, contents: Contents) -> list[Problem]:
         elif name not in contents.files:
             found.append(Problem(name, "", f"is not in {NAME}"))
         elif file_sha256(folder / name) != contents.files[name]:
-            found.append(Problem(name, "", f"has another hash than in {NAME}: it was changed"))
+            found.append(Problem(name, "", f"has a different hash from that in {NAME}: it was changed"))
     if (folder / NAME).read_text(encoding="utf-8") != contents.text():
-        found.append(Problem(NAME, "", "is not in its only form"))
+        found.append(Problem(NAME, "", "is not in its only valid form"))
     return found
 
 
@@ -177,7 +177,7 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, EpisodeJob]) -> Iterat
         yield Problem(MANIFEST, "starts", "is empty")
     for number, start in enumerate(starts):
         if start.keys() != {"started", "versions", "platform", "git"}:
-            yield Problem(MANIFEST, f"starts[{number}]", "lacks a field or has another one")
+            yield Problem(MANIFEST, f"starts[{number}]", "lacks a field or has an unknown one")
             return
         yield from differences(
             MANIFEST, f"starts[{number}]", start, starts[0], ("versions", "git"), "the first start"
@@ -187,11 +187,11 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, EpisodeJob]) -> Iterat
         except (TypeError, ValueError):
             yield Problem(MANIFEST, f"starts[{number}].started", "is not a time")
     if any(before["started"] > after["started"] for before, after in pairwise(starts)):
-        yield Problem(MANIFEST, "starts", "are not in their order")
+        yield Problem(MANIFEST, "starts", "are not in order")
 
 
 def _line_problems(folder: Path, rows: Mapping[str, EpisodeRow], *, strict: bool) -> Iterator[Problem]:
-    """Lines with fields that no row has; in a bundle, also lines that are there twice or not in their only form."""
+    """Lines with unknown fields; in a bundle, also lines that are there twice or not in their only valid form."""
     known = {"untouched_drive", *(name for row in rows.values() for name in as_json(row))}
     texts = (folder / ROWS).read_text(encoding="utf-8").splitlines() if (folder / ROWS).is_file() else []
     names: list[str] = []
@@ -207,7 +207,7 @@ def _line_problems(folder: Path, rows: Mapping[str, EpisodeRow], *, strict: bool
 
 
 def _file_problems(folder: Path, rows: Mapping[str, EpisodeRow]) -> Iterator[Problem]:
-    """Files in ``traces`` that belong to no episode with a verdict, or to none at all."""
+    """Files in ``traces`` that belong to no judged episode."""
     known = {path.name for name in rows for path in (trace_file(folder, name), judged_file(folder, name))}
     for path in sorted((folder / "traces").glob("*")):
         if path.name not in known:
@@ -275,6 +275,6 @@ def _versions(manifest: Json) -> list[str]:
     told = [f"run with {ran}; checked with automotive-cosim {__version__}, libsumo {version('libsumo')}"]
     git = start["git"]
     if git is not None:
-        changed = " with changes that it does not hold" if git["is_changed"] else ""
+        changed = " with uncommitted changes" if git["is_changed"] else ""
         told.append(f"run from commit {git['commit']}{changed}")
     return told

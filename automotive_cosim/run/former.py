@@ -7,7 +7,7 @@ from typing import Any
 
 from automotive_cosim.errors import UserError
 
-INSTEAD = "drives have replaced monitoring:  `automotive-cosim drive`, and `automotive-cosim eval --drives all`"
+INSTEAD = "drives have replaced monitoring: `automotive-cosim drive`, and `automotive-cosim eval --drives all`"
 
 
 def without_mode(values: Mapping[str, Any], where: str) -> dict[str, Any]:

@@ -80,7 +80,7 @@ class Plan:
     tasks: Annotated[tuple[str, ...], MinLen(1)] = ("all",)
     """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
-    """The suite that these are chosen from: ``standard``, ``hard`` or ``all``. An id names its task in any."""
+    """The suite they are chosen from: ``standard``, ``hard`` or ``all``. An id selects a task in any suite."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
     """Models for the agents that use one."""
     scenarios: tuple[str, ...] = ()

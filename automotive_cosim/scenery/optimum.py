@@ -1,12 +1,12 @@
-"""A system optimum to compare an equilibrium with: routes that cost everybody together less.
+"""A system optimum to compare an equilibrium with: routes with a lower total travel time.
 
 In an equilibrium everyone takes the route that is quickest for themselves; in a system optimum, the one whose
 marginal time is least: their own time and what they cost all others (Wardrop's second principle). On a road whose
-time is t0 (1 + a (q / c)^b), as the Bureau of Public Roads has it, the others lose b (t - t0) by one vehicle more,
-whatever its capacity. Here t is what a micro simulation measured in five minutes, red lights and queues included,
-and t0 the least that an edge took in any five minutes so far.
+time is t0 (1 + a (q / c)^b), the formula of the Bureau of Public Roads, one more vehicle costs the others b (t -
+t0), whatever the capacity. Here t is what a micro simulation measured in five minutes, red lights and queues
+included, and t0 the least that an edge took in any five minutes so far.
 
-A micro simulation has no such formula, so what this finds is no proven optimum. Total times are measured, though:
+A micro simulation has no such formula, so the result is not a proven optimum. Total times are measured, though:
 from the planned departures to the arrivals of all trips that count, in simulations with seeds of their own. Their
 ratio, the price of anarchy, is at least the one printed.
 """

@@ -128,7 +128,7 @@ class Content:
         if kind == "drives":
             return self._drives(entry, manifest)
         if kind != "evaluation":
-            raise NotHereError(f"{entry.folder.name} has no episodes of agents")
+            raise NotHereError(f"{entry.folder.name} holds no agents' episodes")
         rows = read_rows(entry.folder, EpisodeRow)
         return {
             "id": entry.id,

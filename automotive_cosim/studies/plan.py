@@ -120,7 +120,7 @@ class StudyPlan:
         for name in ("departures_s", "seeds", "shares", "ages_s", "compliance", "policies", "trips", "together"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
-                raise UserError(f"{_option(name)} has duplicates: {', '.join(map(str, values))}")
+                raise UserError(f"{_option(name)} lists a value twice: {', '.join(map(str, values))}")
         if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
             raise UserError(
                 f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium below "

@@ -55,14 +55,14 @@ LARGEST = 1e9
 
 
 SLOWEST_MPS = 0.01
-"""On a slower lane nobody arrives."""
+"""On a slower lane no vehicle arrives."""
 
 
 def quantity(text: str, least: float = -LARGEST) -> float:
     """A number of a network.
 
     Raises:
-        ValueError: it is no number, not finite, below ``least`` or impossibly large.
+        ValueError: it is not a number, not finite, below ``least`` or impossibly large.
     """
     try:
         number = float(text)

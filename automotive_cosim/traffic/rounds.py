@@ -23,7 +23,7 @@ class Round:
     first: tuple[str, ...]
     """Edges of the first trip."""
     legs: tuple[tuple[str, ...], ...]
-    """Edges of the trips after it, in their order; one can go on from the end of each to the start of each."""
+    """Edges of the trips after it, in their order; a route leads from the end of each to the start of each."""
 
     def following(self, network: Network, here: str, leg: int) -> tuple[str, ...]:
         """The edges from the present destination to the end of a leg; empty if no way leads there."""
@@ -36,7 +36,7 @@ def planned(network: Network, first: Trip, onward: Sequence[Trip]) -> Round:
     """The round of some trips on a network.
 
     Raises:
-        ScenarioError: one of them has no route, or one cannot go on from it to the others.
+        ScenarioError: one of them has no route, or no route leads from it to the others.
     """
     ways = [_way(network, trip) for trip in (first, *onward)]
     core = _core(network, ways[0])
@@ -44,7 +44,7 @@ def planned(network: Network, first: Trip, onward: Sequence[Trip]) -> Round:
     for trip, part in zip((first, *onward), parts, strict=True):
         if not part:
             raise ScenarioError(
-                f"no way leads on from trip {trip.name!r} to the others and back; leave it out of the round"
+                f"no route leads from trip {trip.name!r} to the others and back; leave it out of the round"
             )
     begun = ways[0][: ways[0].index(parts[0][-1]) + 1]
     return Round(begun, tuple(parts[1:]))

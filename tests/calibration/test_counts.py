@@ -83,7 +83,7 @@ def test_plain_counts_are_read_also_gzipped_and_rows_of_several_days_have_a_medi
         ([PLAIN, "a,3,-1,e"], "line 2: vehicles_per_hour is '-1'"),
         ([PLAIN, "a,3,nan,e"], "line 2: vehicles_per_hour is 'nan'"),
         ([PLAIN, "a,3,5,e", "a,4,5,f"], "line 3: site 'a' has a different position than before"),
-        ([PLAIN, ",3,5,e"], "line 2 names no site"),
+        ([PLAIN, ",3,5,e"], "line 2 has no site"),
         ([PLAIN.replace("edge", "lon,lat"), "a,3,5,200,1"], "line 2: lon is '200'"),
     ],
 )

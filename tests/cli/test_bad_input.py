@@ -42,7 +42,7 @@ def _assert_refused(ran, *words):
         (["--seed", "one"], ["--seed", "one"]),
         (["--actions", "nowhere.jsonl"], ["nowhere.jsonl"]),
         (["--taks", "x"], ["--taks"]),
-        (["--mode", "monitoring"], ["there are no modes any more", "automotive-cosim drive"]),
+        (["--mode", "monitoring"], ["modes no longer exist", "automotive-cosim drive"]),
         (["surplus"], ["surplus"]),
     ],
 )
@@ -76,12 +76,12 @@ def test_a_folder_of_an_earlier_version_is_read_unless_it_has_monitoring(cli, tm
     manifest["plan"] = plan | {"modes": ["prompted", "monitoring"]}
     (tmp_path / "manifest.json").write_text(json.dumps(manifest))
     for command in (["report", "."], ["compare", ".", "."], ["regrade", "."], ["replay", ".", job.id]):
-        _assert_refused(cli(*command), "manifest.json has an older format", "drives took the place of monitoring")
+        _assert_refused(cli(*command), "manifest.json has an older format", "drives have replaced monitoring")
 
 
 def test_a_single_run_of_an_earlier_version_is_replayed_unless_it_has_monitoring(cli, tmp_path):
     (tmp_path / "steps.jsonl").touch()
-    for mode, said in (("monitoring", "drives took the place"), ("prompted", "surplus")):
+    for mode, said in (("monitoring", "drives have replaced"), ("prompted", "surplus")):
         record = {"manifest": {"setup": {"mode": mode, "surplus": 1}}, "agent_error": None}
         (tmp_path / "episode.json").write_text(json.dumps(record))
         _assert_refused(cli("replay", "."), said)

@@ -86,8 +86,8 @@ def test_an_agent_that_fails_is_judged_and_told(cli, tmp_path):
         (("--agents", "t3a", "--ray-send", "."), "--ray-send requires --executor ray"),
         (("--agents", "t3a", "--scenarios", ""), "--scenarios is empty"),
         (("--plan", "none.toml"), "none.toml"),
-        (("--agents", "t3a", "--modes", "monitoring"), "drives took the place of monitoring"),
-        (("--agents", "t3a", "--drives", "all", "--mode", "prompted"), "there are no modes any more"),
+        (("--agents", "t3a", "--modes", "monitoring"), "drives have replaced monitoring"),
+        (("--agents", "t3a", "--drives", "all", "--mode", "prompted"), "modes no longer exist"),
     ],
 )
 def test_bad_input_is_one_line(cli, arguments, said, tmp_path):
@@ -165,7 +165,7 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
     write_trace(tmp_path / "e", name, lines)
     differs = cli("replay", "e", "hvac_fan_max")
     assert differs.code == 1
-    assert "1 of 3 steps differ, from step 2 on" in differs.out
+    assert "1 of 3 steps differ, starting with step 2" in differs.out
     assert "differs in signals" in differs.out
     assert cli("replay", "e", "hvac_x").code == 2
     assert cli("report", "e").code == 0
@@ -173,7 +173,7 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("plan", "said"), [(None, "is not an evaluation"), ({"tasks": ["all"]}, "no episodes of agents")]
+    ("plan", "said"), [(None, "is not an evaluation"), ({"tasks": ["all"]}, "holds no agents' episodes")]
 )
 def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
     if plan is not None:
@@ -191,7 +191,7 @@ def test_a_dry_run_needs_no_key_and_says_how_long_and_what_is_missing(cli, monke
     ran = cli("eval", *plan, "--dry-run")
     assert (ran.code, ran.err) == (0, "")
     assert "time: less than a minute with 1 worker" in ran.out
-    assert "before it can run: model 'nowhere/m' requires a key in NOWHERE_API_KEY" in ran.out
+    assert "to fix before it can run: model 'nowhere/m' requires a key in NOWHERE_API_KEY" in ran.out
     refused = cli("eval", *plan)
     assert refused.code == 2
     assert "NOWHERE_API_KEY" in refused.err

@@ -93,7 +93,7 @@ def test_a_place_that_is_none_is_one_line(cli, tmp_path, arguments, words):
 def test_show_takes_any_scenario(cli, flat):
     ran = cli("scenarios", "show", flat / "grid.net.xml")
     assert ran.code == 0
-    assert "country  none known" in ran.out
+    assert "country  unknown" in ran.out
     assert "without GPS" in ran.err
     assert "drawn by seed from the climate" in cli("scenarios", "show", load("grid").folder / "grid.net.xml").out
 

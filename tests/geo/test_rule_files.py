@@ -137,7 +137,7 @@ def test_a_well_formed_file_reads(tmp_path: Path) -> None:
         ("as_of = 2026-01-01", 'as_of = "2026"', 18, "as_of is '2026'; it must be a date"),
         ('law = "Act 1"\n', "", 11, "lacks 'law'; give a text"),
         ("value = 30\n", "", 11, "either value"),
-        ("value = 30\n", "cases = [{ value = 30 }, { value = 20 }]\n", 11, "each limit is a rule of its own"),
+        ("value = 30\n", "cases = [{ value = 30 }, { value = 20 }]\n", 11, "each limit needs a separate rule"),
     ],
 )
 def test_a_wrong_rule_is_refused_with_file_line_and_reason(

@@ -124,7 +124,7 @@ def test_a_bundle_and_its_folder_are_found_in_order_by_several_workers_too(ran, 
             found = verify(path, workers=workers)
             assert found.problems == ()
             assert "5 of 6 planned episodes judged, 1 error" in found.facts
-            assert "5 verdicts judged again" in found.facts
+            assert "5 verdicts recomputed" in found.facts
 
 
 def problems_of_row(folder, job, values):
@@ -326,7 +326,7 @@ def test_the_commands_tell_by_their_exit_code(packed, tmp_path):
     fine = CliRunner().invoke(app, ["verify", str(packed), "--replay", "1"])
     assert fine.exit_code == 0, fine.output
     assert "1 drive replayed" in fine.output
-    assert "cannot be known from this" in fine.output
+    assert "this check cannot tell" in fine.output
     data = bytearray(packed.read_bytes())
     data[data.index(b"wall_seconds") + 16] ^= 1
     (tmp_path / "b.bundle").write_bytes(data)

@@ -192,7 +192,7 @@ def test_a_plan_of_an_earlier_version_is_read_unless_it_has_another_mode(tmp_pat
     assert make_plan(read_plan(path)) == plan(agents=["t3a"])
     for modes in ('["monitoring"]', '["prompted", "monitoring"]', '"promted"', "[]"):
         path.write_text(f'agents = ["t3a"]\nmodes = {modes}\n')
-        with pytest.raises(UserError, match=r"plan.toml has an older format: its modes .* drives took the place"):
+        with pytest.raises(UserError, match=r"plan.toml has an older format: its modes .* drives have replaced"):
             read_plan(path)
 
 

@@ -195,7 +195,7 @@ def test_the_command_refuses_in_one_line(tmp_path: Path, serving: Serving) -> No
     for folders, port, play, why in (
         ([tmp_path / "nowhere"], 0, False, "is not a folder"),
         ([tmp_path], taken, False, "cannot listen"),
-        ([record], 0, True, "a folder that holds records"),
+        ([record], 0, True, "give a folder of records"),
     ):
         with pytest.raises(UserError, match=why):
             serve(folders, "127.0.0.1", port, play)

@@ -89,13 +89,13 @@ def test_a_study_is_resumed_and_becomes_results_and_an_export(tmp_path: Path) ->
     assert results.coverage.is_complete
     assert [each.model for each in results.contestants] == ["fox", "heron"]
     study.close()
-    with pytest.raises(UserError, match="other plan"):
+    with pytest.raises(UserError, match="a different plan"):
         PeopleStudy(replace(PLAN, people=("heron", "fox", "owl")), folder)
 
 
 def test_a_code_name_is_for_one_window(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     study = PeopleStudy(PLAN, tmp_path / "mine")
-    with pytest.raises(UserError, match="nobody in this study"):
+    with pytest.raises(UserError, match="this study has no code name"):
         study.join("owl")
     seat = study.join("heron")
     assert study.join("heron", seat) == seat
