@@ -1,9 +1,9 @@
-"""Calibrates shipped scenarios to counts of a twin world, whose demand is known to have another mix of ways.
+"""Calibrates shipped scenarios to counts of a twin world, whose demand is known to have a different mix of routes.
 
     python benchmarks/calibration.py --scenario paris_centre --seeds 3
 
-The twin has the scenario's network, and each of its flows times a factor drawn from a lognormal distribution
-(spread ``--spread``), and everything in it times ``--level``. Sites are drawn among the roads that it uses. The
+The twin has the scenario's network, with each flow multiplied by a factor drawn from a lognormal distribution
+(spread ``--spread``) and by ``--level``. Sites are drawn among the roads that it uses. The
 scenario's own demand then has to be calibrated to the twin's counts; 30 % of the sites are held out.
 """
 
@@ -26,7 +26,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.options import Setup, read_configuration, run_options
 
 LEAST_PER_H = 50
-"""Sites stand where the twin has at least as much traffic."""
+"""Sites are placed where the twin has at least this much traffic."""
 
 RATES = ("probability", "vehsPerHour", "number")
 

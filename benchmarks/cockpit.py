@@ -1,7 +1,7 @@
 """How long the cockpit takes to draw: run ``python benchmarks/cockpit.py [NETWORK ...]``.
 
-Each network is a SUMO ``.net.xml(.gz)``; without one that of ``paris_centre`` is taken. A car drives through its
-middle at 50 km/h, one simulated second a frame, turning slowly. Processor time, medians, milliseconds.
+Each network is a SUMO ``.net.xml(.gz)``; without one, that of ``paris_centre`` is used. A car drives through its
+middle at 50 km/h, one simulated second per frame, turning slowly. Processor time, medians, milliseconds.
 """
 
 from __future__ import annotations

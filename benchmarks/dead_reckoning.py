@@ -1,11 +1,11 @@
-"""How far off is the car's own idea of its place while GPS is out, against SUMO's truth?
+"""Error of the car's own position estimate while GPS is out, compared with SUMO's true position.
 
     python benchmarks/dead_reckoning.py
 
 Drives trips with a tunnel, several seeds each, and gives the median error in metres by the seconds since the last
 fix: of the last fix itself, of dead reckoning, and of dead reckoning that keeps to the map's roads; then of the
-receiver after the fix is back. The odometer reads 1 % too much and the compass drifts by 0.05 degrees a second, as
-worn tyres and a plain MEMS gyroscope do.
+receiver once it has a fix again. The odometer reads 1 % too much and the compass drifts by 0.05 degrees a second,
+as worn tyres and a plain MEMS gyroscope do.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ AGES_S = (10, 20, 40, 60, 90, 120)
 
 @dataclass(frozen=True, slots=True)
 class Instant:
-    """What the car knows."""
+    """What the car measures."""
 
     time_s: float
     driving: DrivingState
@@ -50,7 +50,7 @@ def off_m(truth: DrivingState, lon_deg: float, lat_deg: float) -> float:
 
 
 def sensed(truth: DrivingState, out_s: float) -> DrivingState:
-    """With the errors of odometer and compass."""
+    """Measurements with the errors of odometer and compass."""
     heading_deg = (truth.heading_deg + COMPASS_DEG_PER_S * out_s) % 360.0
     return replace(truth, speed_mps=truth.speed_mps * ODOMETER, heading_deg=heading_deg)
 
@@ -100,7 +100,10 @@ def main() -> None:
             row = (f"{median(errors[name][age]):9.1f}" if errors[name][age] else f"{'':9}" for age in AGES_S)
             print(f"{scenario + ' ' + trip:28}{name:12}" + "".join(row), flush=True)
         back = [error for found in errors["realigned"].values() for error in found]
-        print(f"{'':28}fix back: median {median(back):.1f} m" if back else f"{'':28}fix not back", flush=True)
+        print(
+            f"{'':28}after the fix: median {median(back):.1f} m" if back else f"{'':28}no fix afterwards",
+            flush=True,
+        )
 
 
 if __name__ == "__main__":

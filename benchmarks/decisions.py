@@ -1,17 +1,17 @@
-"""What a decision costs: run ``python benchmarks/decisions.py [--profile] [--check]``.
+"""The cost of a decision: run ``python benchmarks/decisions.py [--profile] [--check]``.
 
-Plays random actions, drawn from a seed, on ``grid`` and prints processor time, which bears a busy machine better
-than the clock does: that of this process, where cockpit, place and judge are, and of the simulations' processes.
+Plays random actions, drawn from a seed, on ``grid`` and prints processor time, which depends less on a busy
+machine than wall time: that of this process, with cockpit, place and judge, and that of the simulations' processes.
 
 | figure | what |
 |---|---|
-| ``decision_ms`` | of this process, a decision, resets and verdicts included |
+| ``decision_ms`` | of this process, per decision, resets and verdicts included |
 | ``sumo_ms`` | of the simulations' processes, likewise |
 | ``step_ms``, ``reset_ms`` | of this process, ``step`` and ``reset`` alone; medians |
-| ``reset_sumo_ms``, ``reset_wall_ms`` | of the simulations' processes, and by the clock, a reset on warm traffic |
-| ``per_s`` | decisions a second by the clock, which counts only on an idle machine |
+| ``reset_sumo_ms``, ``reset_wall_ms`` | of the simulations' processes, and wall time, for a reset on warm traffic |
+| ``per_s`` | decisions per second of wall time, meaningful only on an idle machine |
 
-``--profile`` adds where this process spends it, by part of the project: a library's time counts for its callers.
+``--profile`` adds where this process spends its time, by part of the project; libraries count for their callers.
 ``--check`` compares the traces of every environment of a vector with those of the same environment alone.
 """
 
@@ -53,7 +53,7 @@ class Children:
 
     @contextmanager
     def counted(self) -> Iterator[Children]:
-        """Sees every process that is started or forked meanwhile."""
+        """Counts every process that is started or forked in the meantime."""
         first_call, close = RemoteProcess.receive, RemoteProcess.close
 
         @functools.wraps(first_call)
@@ -76,7 +76,7 @@ class Children:
 
     @property
     def spent_s(self) -> float:
-        """By all of them so far."""
+        """Seconds spent by all of them so far."""
         return self._ended_s + sum(map(spent_s, self._running))
 
 
@@ -89,7 +89,7 @@ def spent_s(pid: int) -> float:
 
 
 class Clock:
-    """Milliseconds since it was read last: this process, its children, the wall."""
+    """Milliseconds since the last reading: of this process, its children and the wall clock."""
 
     def __init__(self, children: Children) -> None:
         self._children = children
@@ -99,7 +99,7 @@ class Clock:
         return time.process_time(), self._children.spent_s, time.perf_counter()
 
     def lap(self) -> tuple[float, ...]:
-        """All three."""
+        """All three readings."""
         before, self._last = self._last, self._now()
         return tuple(1000 * (now - then) for now, then in zip(self._last, before, strict=True))
 
@@ -135,7 +135,7 @@ def played(env: gym.Env[Any, Any], decisions: int, children: Children) -> dict[s
 
 
 def action(env: gym.Env[Any, Any], rng: np.random.Generator) -> Any:
-    """Of a flat environment any; of the other a tap on something that can be tapped, and at times an end."""
+    """For a flat environment, any action; for the other, a tap on a clickable element or, rarely, a declaration."""
     if isinstance(env.action_space, gym.spaces.Discrete):
         return rng.integers(env.action_space.n)
     elements = env.unwrapped.episode.elements  # type: ignore[attr-defined]
@@ -146,7 +146,7 @@ def action(env: gym.Env[Any, Any], rng: np.random.Generator) -> Any:
 
 
 def vector(mode: str | None, count: int, rounds: int, children: Children, *, check: bool) -> dict[str, Any]:
-    """As many environments over one warm simulation, and whether each does what it does alone."""
+    """A vector of environments on one warm simulation, and whether each behaves as it does alone."""
     actions = np.random.default_rng(SEED).integers(100, size=(rounds, count))
     with closing(Simulations()) as pool:
         options: dict[str, Any] = {"tasks": TASKS, "scenario": SCENARIO, "simulations": pool}
@@ -194,7 +194,7 @@ def _alone(options: dict[str, Any], actions: Any, seed: int, shared: dict[str, i
 
 
 def shares(profile: cProfile.Profile) -> dict[str, float]:
-    """Percent of the profiled time by module of the project; what is not its own counts for its callers."""
+    """Per cent of the profiled time by module of the project; the time of libraries counts for their callers."""
     stats = pstats.Stats(profile).stats  # type: ignore[attr-defined]
     own: Counter[str] = Counter()
     for function, (_, _, seconds, _, callers) in stats.items():
@@ -220,7 +220,7 @@ def _owners(stats: Any, function: Any, callers: Any, depth: int) -> Iterator[tup
 
 def main() -> None:
     """Measures and prints."""
-    parser = argparse.ArgumentParser(description="What a decision costs.")
+    parser = argparse.ArgumentParser(description="The cost of a decision.")
     parser.add_argument("--decisions", type=int, default=300)
     parser.add_argument("--envs", type=int, default=8)
     parser.add_argument("--only", choices=("flat", "cockpit", "vector"))

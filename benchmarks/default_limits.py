@@ -3,8 +3,8 @@
     python benchmarks/default_limits.py legal_default_speeds.json
 
 The table is the JSON that https://github.com/westnordost/osm-legal-default-speeds makes from the OpenStreetMap
-wiki's page "Default speed limits" (CC BY-SA 2.0). It is not shipped: get it yourself. A disagreement is a question,
-not an answer: the law's own text decides, and its rule gets the status ``verified`` once it was read.
+wiki's page "Default speed limits" (CC BY-SA 2.0). It is not shipped: download it yourself. A disagreement is a
+question, not an answer: the law's own text decides; once it has been read, its rule gets the status ``verified``.
 """
 
 from __future__ import annotations
@@ -42,14 +42,14 @@ WALK_KMH = 7.0
 
 
 class Compared(NamedTuple):
-    """One limit in both."""
+    """One limit in both sources."""
 
     code: str
     road: str
     here: AppliedRule | None
     """None: not certain."""
     there: str
-    """As in OpenStreetMap, ``"none"`` without one."""
+    """As in OpenStreetMap; ``"none"`` without a limit."""
 
     @property
     def outcome(self) -> str:

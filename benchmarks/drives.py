@@ -1,13 +1,13 @@
-"""What comes of what drives stage, and how well agents watch, over families and seeds.
+"""How many staged events of drives occur, and how well agents watch, over families and seeds.
 
     python benchmarks/drives.py                                  # all families, seed 0: nobody at the cockpit
     python benchmarks/drives.py beauce_june grid_january --seeds 0 1 2 3 4
-    python benchmarks/drives.py --watch perfect late             # plays them, and scores what they do
+    python benchmarks/drives.py --watch perfect late             # runs these watchers and scores them
     python benchmarks/drives.py --watch perfect --seeds 0 1 2 3 4 --keep runs/perfect    # resumes; docs/drives.md
     python benchmarks/drives.py --watch silent always wakes often late    # the negative controls, in one table
 
-Staged is what the plans ask for. On the drive with nobody at the cockpit, an event *came off* if its kind obliged
-within five minutes, and a bait if nothing of its kind did while it lasted. None of it depends on how busy the
+"Staged" counts what the plans ask for. In the do-nothing run, an event *occurred* if its kind required an act
+within five minutes, and a bait if nothing of its kind did while it lasted. None of this depends on how busy the
 machine is.
 """
 
@@ -50,7 +50,7 @@ WATCHERS: Mapping[str, Callable[[], RulePerfect | Silent | AlertAll | AlertOnWak
     "often": AlertOften,
 }
 LATEST_S = 300.0
-"""An event comes off by this time after it was staged: a tyre leaks for minutes, an incident lies ahead."""
+"""An event occurs within this time after it was staged: a tyre leaks for minutes, an incident lies ahead."""
 STEPS = 10**6
 FIGURES = ("hours", "events", "recall", "false/h", "repeats/h", "score")
 """Columns of ``_row``, after the name."""
@@ -58,7 +58,7 @@ FIGURES = ("hours", "events", "recall", "false/h", "repeats/h", "score")
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """An event of the drive with nobody at the cockpit; seconds since departure."""
+    """An event of the do-nothing run; seconds since departure."""
 
     kind: str
     observable_s: float
@@ -67,7 +67,7 @@ class Found:
 
 @dataclass(frozen=True, slots=True)
 class Kept:
-    """What one drive left."""
+    """What is kept of one drive."""
 
     family: str
     seed: int
@@ -85,7 +85,7 @@ class Kept:
         return score(Judgement(self.events, self.acts), self.driven_s)
 
     def came_off(self, staged: Staged) -> bool:
-        """Whether what was staged happened without anybody's doing."""
+        """Whether the staged event happened in the do-nothing run."""
         latest_s = APART_S if staged.is_bait else LATEST_S
         due = any(
             event.kind == staged.kind
@@ -133,9 +133,9 @@ def found(drive: Sequence[Moment]) -> Iterator[Found]:
 
 
 def staged(drives: Sequence[Kept]) -> Iterator[str]:
-    """What came off, by family, then by kind."""
+    """Staged events that occurred, by family, then by kind."""
     yield from _table(
-        ("family", "drives", "km", "staged", "came off", "events"),
+        ("family", "drives", "km", "staged", "occurred", "events"),
         (
             (
                 name,
@@ -157,7 +157,7 @@ def staged(drives: Sequence[Kept]) -> Iterator[str]:
     for kind in sorted({kind for kind, _ in came}):
         halves = [came[kind, is_bait] for is_bait in (False, True)]
         rows.append((kind, *(part for each in halves for part in (len(each), f"{mean(each or [0]):.0%}"))))
-    yield from _table(("kind", "staged", "came off", "baits", "came off"), rows)
+    yield from _table(("kind", "staged", "occurred", "baits", "occurred"), rows)
 
 
 def watched(drives: Sequence[Kept]) -> Iterator[str]:
@@ -237,7 +237,7 @@ def _table(head: Sequence[str], rows: Iterator[Sequence[object]] | Sequence[Sequ
 def run(
     whos: Sequence[str], families: Sequence[str], seeds: Sequence[int], folder: Path | None, minutes: float
 ) -> list[Kept]:
-    """Every drive, read from the folder where it is kept, else played; without more than what the time allows."""
+    """Every drive, read from the folder of finished drives or else run, as far as the time allows."""
     until, drives = time.monotonic() + 60 * minutes, []
     with closing(Simulations(count_limit=2)) as simulations:
         for who, seed, family in product(whos, seeds, families):
@@ -276,12 +276,12 @@ def _news(drive: Kept, took_s: float) -> Iterator[str]:
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description="What drives stage, and what comes of it.")
+    parser = argparse.ArgumentParser(description="The events that drives stage, and how many occur.")
     parser.add_argument("families", nargs="*", default=list(FAMILIES))
     parser.add_argument("--seeds", nargs="+", type=int, default=[0])
-    parser.add_argument("--watch", nargs="+", choices=WATCHERS, help="play these watchers instead of nobody")
-    parser.add_argument("--keep", type=Path, help="folder of finished drives, which are not played again")
-    parser.add_argument("--minutes", type=float, default=float("inf"), help="begin no drive after this time")
+    parser.add_argument("--watch", nargs="+", choices=WATCHERS, help="run these watchers instead of none")
+    parser.add_argument("--keep", type=Path, help="folder of finished drives, which are not rerun")
+    parser.add_argument("--minutes", type=float, default=float("inf"), help="start no drive after this time")
     asked = parser.parse_args()
     if asked.keep is not None:
         asked.keep.mkdir(parents=True, exist_ok=True)

@@ -1,17 +1,17 @@
-"""How good are the predicted travel times? Every way offered is driven in a branch of its own.
+"""The accuracy of predicted travel times: every offered route is driven in a branch of its own.
 
     python benchmarks/eta.py                     # all shipped scenarios
     python benchmarks/eta.py grid paris_centre --seeds 1 2 --at 5 90
-    python benchmarks/eta.py town/run.sumocfg    # a network of others, with its own demand
+    python benchmarks/eta.py town/run.sumocfg    # any other network, with its own demand
 
-For each scenario: every trip by different seeds; at some instants of each the alternatives are asked for, and each
+For each scenario: every trip by different seeds; at some instants of each the alternatives are requested, and each
 of them is driven to the goal in a branch. The ratio is predicted over driven time; neither depends on how busy the
 machine is. The columns ``state`` are for the time that the driving state gives on the way taken (``ahead.eta_s``),
 which knows the traffic of the last signal cycle but not the signals that nobody waits at.
 
 With ``--later 15 30 45`` each trip also departs that many seconds later, into other phases of the same signals. The
 last column is then the error of a forecast with hindsight, the mean of a route's driven times: no forecast by mean
-times does better, because which light is red is chance to it.
+times does better, because to it the state of the lights is chance.
 """
 
 from __future__ import annotations
@@ -38,12 +38,12 @@ class Drive(NamedTuple):
     """One route, predicted and driven."""
 
     asked: tuple[object, ...]
-    """Seed, instant and route: what drives have in common that differ in their departure alone."""
+    """Seed, instant and route: what drives share that differ only in their departure."""
     driven_s: float
     option_s: float
     """Predicted by the alternatives that the map offers."""
     state_s: float | None
-    """Predicted by the driving state; None on another route than the one taken."""
+    """Predicted by the driving state; None on routes other than the one taken."""
 
 
 def drives(
@@ -90,7 +90,7 @@ def main() -> None:
     parser.add_argument("scenarios", nargs="*", default=shipped())
     parser.add_argument("--seeds", nargs="+", type=int, default=[1, 2], help="of traffic and driver")
     parser.add_argument("--at", nargs="+", type=float, default=[5.0, 90.0], help="seconds after departure")
-    parser.add_argument("--later", nargs="+", type=float, default=[], help="seconds later to depart, too")
+    parser.add_argument("--later", nargs="+", type=float, default=[], help="also depart this many seconds later")
     parser.add_argument("--step", type=float, help="SUMO's step instead of the scenario's own; 1 s is quick")
     asked = parser.parse_args()
     at_s = sorted(asked.at)

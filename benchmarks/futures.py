@@ -1,12 +1,12 @@
-"""What a decision of ``study reroute`` costs, and what SUMO's own steps would cost.
+"""The cost of a decision of ``study reroute``, and that of SUMO's own steps.
 
     python benchmarks/futures.py                                       # paris_centre, the trip into the jam
     python benchmarks/futures.py --scenario my/network.sumocfg --share 0 --delay 15 --replicates 1 3
 
-Runs a study in this process and prints processor seconds per decision, which bear a busy machine better than the
-clock does: of this process, which compares, and of all simulations, warm-up, forks and proofs included. Then every
-future is driven once more by bare steps of libsumo that read nothing, in a fork of the same instant and for as many
-steps: the least that those futures can cost.
+Runs a study in this process and prints processor seconds per decision, which depend less on a busy machine than
+wall time: of this process, which compares, and of all simulations, warm-up, forks and proofs included. Then every
+future is driven once more with bare steps of libsumo that read nothing, in a fork of the same instant and for as
+many steps: the least that those futures can cost.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class Tally:
 
 @contextmanager
 def counted(tally: Tally) -> Iterator[None]:
-    """Counts every future that is driven to its end; drives it by bare steps too."""
+    """Counts every future that is driven to its end; also drives it with bare steps."""
     begin, end = RemoteTraffic.begin_settling, RemoteTraffic.settled
     begun: dict[RemoteTraffic, tuple[float, float, RemoteTraffic]] = {}
 
@@ -119,11 +119,11 @@ def main() -> None:
     parser.add_argument("--policies", nargs="*", default=list(POLICIES))
     parser.add_argument("--placebo-every", type=int, default=3)
     parser.add_argument("--arrived", type=float, default=0.95, help="0.5: futures end about when the ego arrives")
-    parser.add_argument("--no-bare", action="store_true", help="leave out the bare steps, which take as long again")
+    parser.add_argument("--no-bare", action="store_true", help="leave out the bare steps, which double the time")
     parser.add_argument("--replicates", type=int, nargs="*", default=[1, 2, 4])
     given = parser.parse_args()
     print(f"load {os.getloadavg()[0]:.1f}; seconds of one processor per decision")
-    columns = ["draws", "decisions", "all", "of this process", "by the clock"]
+    columns = ["draws", "decisions", "all", "of this process", "wall time"]
     columns += [] if given.no_bare else ["futures", "steps of each", "futures, s", "bare SUMO, s"]
     print(f"| {' | '.join(columns)} |\n|{'---:|' * len(columns)}")
     for draws in given.replicates:

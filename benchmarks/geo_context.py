@@ -1,4 +1,4 @@
-"""How long one geo-context takes: the same place again, and a new place each time.
+"""The time that one geo-context takes: at the same place again, and at a new place each time.
 
     python benchmarks/geo_context.py            # prints one JSON object, milliseconds
 

@@ -1,4 +1,4 @@
-"""What somebody who looks at the road costs the simulation, in processor time per simulated second.
+"""The cost of watching the road during a simulation, in processor time per simulated second.
 
     python benchmarks/looking.py [SCENARIO] [SECONDS]
 
@@ -24,7 +24,7 @@ def main() -> None:
     advancing, looking, vehicles = list[float](), list[float](), list[int]()
     with closing(InProcess(scenario, allow_unprojected=True)) as simulation:
         traffic = simulation.depart(EgoPlan(scenario.ego.trips[0], scenario.ego.driver))
-        traffic.look()  # SUMO's index of lanes is built at the first
+        traffic.look()  # SUMO builds its index of lanes at the first look
         while len(looking) < seconds and traffic.state.end is None:
             began_s = process_time()
             traffic.advance(1.0)

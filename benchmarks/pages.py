@@ -1,4 +1,4 @@
-"""How fast the pages are in headless Chromium, which draws without a graphics card.
+"""The speed of the pages in headless Chromium, which draws without a graphics card.
 
     pip install 'automotive-cosim[browser]'       # and the system's chromium
     python benchmarks/pages.py [TAPS]

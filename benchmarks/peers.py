@@ -1,11 +1,11 @@
-"""What a second of traffic costs here and in sumo-rl, on the same network and the same demand.
+"""The cost of a second of traffic here and in sumo-rl, on the same network with the same demand.
 
     pip install sumo-rl eclipse-sumo
     python benchmarks/peers.py                                   # paris_centre
     python benchmarks/peers.py /path/to/any.sumocfg --seconds 1200
 
-Every figure comes from a process of its own, at SUMO steps of one second, after the scenario's warm-up. sumo-rl
-leaves the signals their programs and reads their lanes every five seconds; here the whole state of one car is read
+Every figure comes from a separate process, at SUMO steps of one second, after the scenario's warm-up. sumo-rl
+keeps the signals' programs and reads their lanes every five seconds; here the whole state of one car is read
 every second, in a process of its own, ten in a message. These are different questions: the ratio tells what each
 adds to SUMO.
 """
@@ -31,7 +31,7 @@ from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration
 
 SUMO_RL_S = 5
-"""Between two actions of sumo-rl, as it comes."""
+"""Seconds between two actions of sumo-rl, by default."""
 
 
 def plain(scenario: Scenario, seconds: int) -> float:
@@ -94,7 +94,7 @@ WAYS: dict[str, tuple[Callable[[Scenario, int], float], dict[str, str]]] = {
     "sumo-rl, libsumo": (sumo_rl, {"LIBSUMO_AS_TRACI": "1"}),
     "sumo-rl, traci": (sumo_rl, {}),
 }
-"""How to measure each, and what its environment has to hold."""
+"""How to measure each, and the environment variables that it needs."""
 
 
 def opened(name: str) -> Scenario:
@@ -107,14 +107,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="The cost of a second of traffic, here and in sumo-rl.")
     parser.add_argument("scenario", nargs="?", default="paris_centre", help="name, folder, .sumocfg or .net.xml")
     parser.add_argument("--seconds", type=int, default=600, help="of traffic to measure, after the warm-up")
-    parser.add_argument("--repeats", type=int, default=3, help="of each; the quickest counts")
+    parser.add_argument("--repeats", type=int, default=3, help="of each; the fastest counts")
     parser.add_argument("--measure", choices=WAYS, help=argparse.SUPPRESS)
     asked = parser.parse_args()
     if asked.measure:
         print("took", WAYS[asked.measure][0](opened(asked.scenario), asked.seconds))
         return
     reference_ms: float | None = None
-    print(f"{'':24}{'ms a second':>14}{'of the loop':>14}")
+    print(f"{'':24}{'ms per second':>14}{'of the loop':>14}")
     for name, (_, needed) in WAYS.items():
         command = [sys.executable, __file__, asked.scenario, f"--seconds={asked.seconds}", f"--measure={name}"]
         environment = {**os.environ, **sumo_programs.environment(), **needed}

@@ -3,10 +3,10 @@
     pip install 'automotive-cosim[rl]' matplotlib
     python benchmarks/ppo_flat.py --out docs/images
 
-Without a GPU install torch first, in its CPU build, which spares a few gigabytes. The actions to choose from are
+Without a GPU, install torch first, in its CPU build, which saves a few gigabytes. The actions to choose from are
 five apps, the fifteen switches of the climate screen and three declarations. Training adds a bonus while the goal
-holds (a potential); success is the verdict's in all figures. Seeds 0 to 3 give the traffic it learns in, 1000 and
-up that it is measured in.
+holds (a potential); success is the verdict's in all figures. Seeds 0 to 3 give the traffic for training, 1000 and
+up that for measurement.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ WORKERS = 4
 
 
 def measured(model) -> float:
-    """Share of successes on unseen seeds, the policy taken at its word."""
+    """Share of successes on unseen seeds, with the deterministic policy."""
     env = FlatEnv(TASKS, CLIMATE, APPS, scenario="grid")
     won = 0
     for seed in UNSEEN:
@@ -85,7 +85,7 @@ def plot(curve: list[dict[str, float]], path: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--steps", type=int, default=20_480)
-    parser.add_argument("--rounds", type=int, default=5, help="measurements on the way")
+    parser.add_argument("--rounds", type=int, default=5, help="measurements during training")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=None, help="folder for ppo_curve.json and ppo_curve.svg")
     chosen = parser.parse_args()

@@ -1,13 +1,13 @@
-"""Whether the figures of `study reroute` are true: in worlds whose truth is known.
+"""Whether the figures of `study reroute` are correct, in worlds whose truth is known.
 
     python benchmarks/studies.py                     # invented gains: a minute of one processor
-    python benchmarks/studies.py --driven            # small studies that are really driven in SUMO
+    python benchmarks/studies.py --driven            # small studies, driven in SUMO
 
 Each world makes 200 small studies of invented gains, with seeds, decisions and draws that differ as measured on
-real networks, and puts them through the code that makes the report. It prints how often a 95 % interval holds the
-true mean gain of `always`, and what `best` says where the truth is known. A driven study has two ways that mirror
-each other, with the same signals and random traffic: the other way gains nothing, or loses exactly what a longer
-free road behind it takes. The intervals of its disjoint small studies should hold that.
+real networks, and passes them to the code that makes the report. It prints how often a 95 % interval contains the
+true mean gain of `always`, and what `best` says where the truth is known. A driven study has two routes that
+mirror each other, with the same signals and random traffic: the other route gains nothing, or loses exactly what a
+longer free road behind it takes. The intervals of its disjoint small studies should contain that.
 """
 
 from __future__ import annotations
@@ -46,18 +46,18 @@ POLICIES = ("always", "best")
 
 @dataclass(frozen=True, slots=True)
 class World:
-    """How gains differ, in seconds; each is normal."""
+    """The spreads of gains, in seconds; each is normal."""
 
     name: str
     gain_s: float
-    """The true mean gain of the other way."""
+    """The true mean gain of the other route."""
     between_s: float
     """Standard deviation between decisions, of which half the variance is the seed's."""
     within_s: float
     """Standard deviation of one draw within a decision."""
 
     def best_s(self, draws: int, rng: np.random.Generator) -> tuple[float, float]:
-        """What somebody gains who knows the true mean of every decision, and who knows all its draws but one."""
+        """The gain of choosing by the true mean of every decision, and by all its draws but one."""
         true_s = rng.normal(self.gain_s, self.between_s, 1_000_000)
         known_s = true_s + rng.normal(0, self.within_s, len(true_s)) / max(1, draws - 1) ** 0.5
         return float(np.maximum(true_s, 0).mean()), float((true_s * (known_s > 0)).mean())
@@ -270,7 +270,7 @@ def show_driven(seeds: int, draws: int, workers: int) -> None:
         held = sum(part.interval.low <= true_s <= part.interval.high for part in parts if part.interval)
         print(
             f"true gain {true_s:+.0f} s: {always.count} decisions, mean {always.value:+.1f} s, "
-            f"{always.interval}; {held} of {len(parts)} studies of {SEEDS} seeds hold it; best "
+            f"{always.interval}; {held} of {len(parts)} studies of {SEEDS} seeds contain it; best "
             f"{best.value:+.1f} s, by single draws {means(single)[1].value:+.1f} s"
         )
 
@@ -285,7 +285,7 @@ def main() -> None:
         show_driven(options.seeds, 4, options.workers)
         return
     print(
-        "| world | draws | t interval holds the mean | resampled | true best, s | by the other draws, s | best, s |"
+        "| world | draws | t interval contains mean | resampled | true best, s | by the other draws, s | best, s |"
     )
     print("|---|---:|---:|---:|---:|---:|---:|")
     for draws in (1, 4):

@@ -148,7 +148,7 @@ def evaluate(
     repeats: Annotated[
         int | None,
         typer.Option(
-            help="How often to run each episode.", metavar="N", parser=whole_number(1, 1000), show_default="1"
+            help="How many times to run each episode.", metavar="N", parser=whole_number(1, 1000), show_default="1"
         ),
     ] = None,
     held_out: Annotated[

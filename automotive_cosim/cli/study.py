@@ -91,7 +91,7 @@ def reroute(
     replicates: Annotated[
         str,
         typer.Option(
-            help="How often each future is driven, each time with fresh random numbers; auto: more often where the "
+            help="How many times each future is driven, with fresh random numbers; auto: more times where the "
             "sign of the mean gain is unclear."
         ),
     ] = "1",
@@ -259,7 +259,7 @@ def suite(
     per_drive: Annotated[
         int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
     ] = 2,
-    replicates: Annotated[str, typer.Option(help="How often each future is driven, or auto.")] = "2",
+    replicates: Annotated[str, typer.Option(help="How many times each future is driven, or auto.")] = "2",
     warm_ups: Annotated[
         str | None,
         typer.Option(

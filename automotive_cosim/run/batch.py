@@ -77,7 +77,7 @@ def run_plan(
         plan: what to run.
         folder: results folder, new or to be resumed.
         executor: where to run it.
-        retries: how often an episode is retried after an infrastructure error before the error is recorded.
+        retries: how many times an episode is retried after an infrastructure error before the error is recorded.
         pictures: which screenshots to keep.
         budget: what it may spend on its models, with all earlier starts. Once it is spent, the rest is not run.
         tell: called at the start and after every episode.
@@ -117,7 +117,7 @@ def run_jobs(
         opener: makes the runner of each worker.
         failed: makes the row of a job whose worker died, from the job, the kind of error and the reason.
         executor: where to run them.
-        retries: how often a job is retried after an error before its row is written.
+        retries: how many times a job is retried after an error before its row is written.
         limit: the meter of its budget, if it has one. Once it is spent, the rest is not run.
         tell: called at the start and after every job.
 

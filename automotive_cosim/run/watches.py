@@ -243,7 +243,7 @@ def run_watch_plan(
         plan: what to run.
         folder: results folder, new or to be resumed.
         executor: where to run it; the results do not depend on it.
-        retries: how often a drive is retried after an infrastructure error.
+        retries: how many times a drive is retried after an infrastructure error.
         budget: what it may spend on its models, with all earlier starts.
         tell: called at the start and after every drive.
 

@@ -42,7 +42,7 @@ def run_study(
         plan: what to run.
         folder: results folder, new or to be resumed.
         executor: where to run it; the results do not depend on it.
-        retries: how often to retry a drive after an infrastructure error.
+        retries: how many times to retry a drive after an infrastructure error.
         tell: called at the start and after every drive.
 
     Raises:

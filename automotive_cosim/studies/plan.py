@@ -72,7 +72,7 @@ class StudyPlan:
     placebo_every: Annotated[int, Ge(0), Le(1_000_000)] = 1
     """One placebo in this many drives with a decision; 0 for none. Replicates contain it."""
     replicates: Annotated[int, Ge(1), Le(100)] | Literal["auto"] = 1
-    """How often each future is driven; ``auto`` drives more where the sign of the mean gain is still unclear."""
+    """How many times each future is driven; ``auto`` drives more where the sign of the gain is unclear."""
     arrived: Annotated[float, Ge(0.5), Le(1)] = 0.95
     """Share of the vehicles there at the decision that must arrive before a future ends."""
     limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0

@@ -260,7 +260,7 @@ class Decision:
 
     @property
     def draws(self) -> int:
-        """How often each future was driven."""
+        """How many times each future was driven."""
         return 1 + len(self.replicates)
 
     @property
@@ -303,7 +303,7 @@ class WholeDrive:
     draw: int
     """0 with the random numbers of the drive itself, then with fresh ones."""
     reroutings: int
-    """How often the policy left its route; with 0 the two drives are the same."""
+    """How many times the policy left its route; with 0 the two drives are the same."""
     branch: Branch
     excluded: str = ""
     """Why it is excluded from the averages; empty if it counts."""
@@ -382,7 +382,7 @@ class PolicyChoice:
     unfinished_stay: float
     unfinished: float
     draws: int
-    """How often each future was driven; ``gain`` and the figures of the others are means over them."""
+    """How many times each future was driven; ``gain`` and the figures of the others are means over them."""
     gain_error_s: float | None
     """Standard error of the mean time gained at this decision; None with a single draw."""
     won: float | None
