@@ -135,7 +135,7 @@ def told(values_ms: Sequence[float]) -> str:
 
 @contextmanager
 def served(folder: Path) -> Iterator[str]:
-    """The address of a server in a process of its own."""
+    """The address of a server in a separate process."""
     words = [sys.executable, "-c", "from automotive_cosim_main import main; main()", "serve", str(folder), "--play"]
     with subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True) as process:
         assert process.stdout is not None

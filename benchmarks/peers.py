@@ -6,7 +6,7 @@
 
 Every figure comes from a separate process, at SUMO steps of one second, after the scenario's warm-up. sumo-rl
 keeps the signals' programs and reads their lanes every five seconds; here the whole state of one car is read
-every second, in a process of its own, ten in a message. These are different questions: the ratio tells what each
+every second, in a separate process, ten in a message. These are different questions: the ratio tells what each
 adds to SUMO.
 """
 

@@ -111,7 +111,7 @@ def evaluate(
     feedback: Annotated[
         str | None,
         typer.Option(
-            help="What the agent is told of its last action, separated by commas: quiet, verbose.",
+            help="What the agent is told about its last action, separated by commas: quiet, verbose.",
             show_default="quiet",
         ),
     ] = None,

@@ -50,14 +50,14 @@ def run(
     mode: NoMode = None,
     geo: Annotated[
         str,
-        typer.Option(help="What the agent is told of the place: full, gps, context, wrong, irrelevant or none."),
+        typer.Option(help="What the agent is told about the place: full, gps, context, wrong, irrelevant or none."),
     ] = "full",
     see: Annotated[str, typer.Option(help="How the agent sees the screen: tree, picture or both.")] = "both",
     feedback: Annotated[
         str,
         typer.Option(
-            help="What the agent is told of its last action: quiet (the control, and whether it worked) or verbose "
-            "(also what changed in the car)."
+            help="What the agent is told about its last action: quiet (the control, and whether it worked) or "
+            "verbose (also what changed in the car)."
         ),
     ] = "quiet",
     screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",

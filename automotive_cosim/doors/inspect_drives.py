@@ -51,10 +51,10 @@ def _drives(
     Args:
         families: of drives, patterns, scenarios, seasons or ``all``, separated by commas.
         seeds: one, or several separated by commas; each draws its own drive.
-        geo: what the agent is told of where it is.
+        geo: what the agent is told about its place.
         pictures: whether it sees the screen.
         see: how it sees the screen: ``tree``, ``picture`` or ``both``.
-        feedback: what it is told of its last action: ``quiet`` or ``verbose``.
+        feedback: what it is told about its last action: ``quiet`` or ``verbose``.
         screen: size of the screen: ``1280x720``, ``1920x720`` or ``1080x1920``.
     """
     given = conditions_of(geo, see, feedback, screen)

@@ -53,10 +53,10 @@ def _cockpit(
         tasks: ids, patterns, modules, tags, ``general``, ``safety`` or ``all``, separated by commas.
         seeds: one, or several separated by commas.
         scenario: in place of the tasks' own.
-        geo: what the agent is told of where it is.
+        geo: what the agent is told about its place.
         pictures: whether it sees the screen.
         see: how it sees the screen: ``tree``, ``picture`` or ``both``.
-        feedback: what it is told of its last action: ``quiet`` or ``verbose``.
+        feedback: what it is told about its last action: ``quiet`` or ``verbose``.
         screen: size of the screen: ``1280x720``, ``1920x720`` or ``1080x1920``.
         language: what the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``; tasks without
             phrasings in it are left out.

@@ -29,11 +29,11 @@ class DriveSpec:
     """Id of the family that it is drawn from."""
     seed: int = 0
     geo: GeoInput = GeoInput.FULL
-    """What the agent is told of where it is."""
+    """What the agent is told about its place."""
     see: See = See.BOTH
     """How the agent sees the screen."""
     feedback: FeedbackDetail = FeedbackDetail.QUIET
-    """What it is told of its last action."""
+    """What it is told about its last action."""
     screen: ScreenSize = ScreenSize.STANDARD
     """Size of the car's screen."""
 

@@ -48,7 +48,7 @@ class Conditions:
     channels: frozenset[Channel] = ALL
     """Channels that the agent wants; ``geo`` and ``see`` may withhold some of them."""
     geo: GeoInput = GeoInput.FULL
-    """What the agent is told of where it is."""
+    """What the agent is told about its place."""
     max_steps: int | None = None
     """Actions after which the episode is cut off; None takes the task's own limit (``Suite.max_steps``)."""
     max_sim_s: float | None = None
@@ -58,7 +58,7 @@ class Conditions:
     see: See = See.BOTH
     """How the agent sees the screen."""
     feedback: FeedbackDetail = FeedbackDetail.QUIET
-    """What it is told of its last action."""
+    """What it is told about its last action."""
     screen: ScreenSize = ScreenSize.STANDARD
     """Size of the car's screen."""
 
@@ -105,7 +105,7 @@ class EpisodeSpec:
     """Whether the driver says the task's held-out phrasing (``tasking.instance.Instance.held_out``); otherwise any
     phrasing is drawn."""
     geo: Annotated[GeoInput, OneOf(GeoInput, "geo control")] = GeoInput.FULL
-    """What the agent is told of where it is."""
+    """What the agent is told about its place."""
     max_steps: Annotated[int, Ge(1)] | None = None
     """Actions after which the episode is cut off; None takes the task's own limit, 20 or in the hard suite 40."""
     max_sim_s: Annotated[float, Gt(0)] | None = None
@@ -115,7 +115,7 @@ class EpisodeSpec:
     see: Annotated[See, OneOf(See, "way to see the screen")] = See.BOTH
     """How the agent sees the screen."""
     feedback: Annotated[FeedbackDetail, OneOf(FeedbackDetail, "kind of feedback")] = FeedbackDetail.QUIET
-    """What it is told of its last action."""
+    """What it is told about its last action."""
     screen: Annotated[ScreenSize, OneOf(ScreenSize, "size of the screen")] = ScreenSize.STANDARD
     """Size of the car's screen."""
     language: Annotated[Language, OneOf(Language, "language")] = Language.ENGLISH

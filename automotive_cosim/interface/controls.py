@@ -41,7 +41,7 @@ PLACE = frozenset({Channel.GPS, Channel.CONTEXT})
 
 
 class GeoInput(StrEnum):
-    """What an agent is told of where it is; see the module's table."""
+    """What an agent is told about its place; see the module's table."""
 
     FULL = "full"
     GPS = "gps"

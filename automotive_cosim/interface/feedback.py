@@ -1,4 +1,4 @@
-"""What an agent is told of its last action.
+"""What an agent is told about its last action.
 
 | ``--feedback`` | after an action that the car could perform |
 |---|---|
@@ -24,7 +24,7 @@ _OUTCOMES = {FeedbackCode.OK: DONE, FeedbackCode.NO_EFFECT: UNCHANGED}
 
 
 class FeedbackDetail(StrEnum):
-    """How much an agent is told of its last action; see the module's table."""
+    """How much an agent is told about its last action; see the module's table."""
 
     QUIET = "quiet"
     VERBOSE = "verbose"

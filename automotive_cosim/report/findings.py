@@ -144,7 +144,7 @@ def sight(results: Results) -> Table:
 
 
 def feedback(results: Results) -> Table:
-    """Success by what an agent is told of its last action; no rows if all were told the same."""
+    """Success by what an agent is told about its last action; no rows if all were told the same."""
     note = "Quiet feedback names the control and says if it worked; verbose also says what changed in the car."
     return _side_by_side(
         results,

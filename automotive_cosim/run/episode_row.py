@@ -74,7 +74,7 @@ class EpisodeRow(JobRow):
     see: See = See.BOTH
     """How the agent saw the screen."""
     feedback: FeedbackDetail = FeedbackDetail.VERBOSE
-    """What it was told of its last action."""
+    """What it was told about its last action."""
     screen: ScreenSize = ScreenSize.STANDARD
     """Size of the car's screen."""
     language: Language = Language.ENGLISH

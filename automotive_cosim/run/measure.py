@@ -55,7 +55,7 @@ class Figures:
     in_process_ratio: float
     """Its ratio to bare steps of the same process, block by block."""
     forked_s_per_step: float
-    """A simulation in a process of its own, every state, ten steps per message."""
+    """A simulation in a separate process, every state, ten steps per message."""
     forked_single_s_per_step: float
     """The same with one step per message."""
     env_s_per_step: float
@@ -106,7 +106,7 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
         fork_s = median(_seconds_of_fork(loaded, simulations))
         with closing(simulations.warm(loaded).depart(_plan(loaded))) as traffic:
             vehicles = traffic.state.vehicle_count
-        say("driving states from a process of its own")
+        say("driving states from a separate process")
         forked, single = (
             median(_forked(loaded, steps, at_once, simulations) for _ in range(REPEATS)) for at_once in (10, 1)
         )
@@ -212,7 +212,7 @@ def _inside(scenario: str, steps: int) -> tuple[float, float]:
 
 
 def _forked(scenario: Scenario, steps: int, at_once: int, simulations: Simulations) -> float:
-    """Seconds per step of a drive in a process of its own."""
+    """Seconds per step of a drive in a separate process."""
     simulation, step_s = simulations.warm(scenario), scenario.sumo.step_length_s
     seconds, done = 0.0, 0
     while done < steps:

@@ -1,4 +1,4 @@
-"""Agents in processes of their own: a fresh one for each episode, which gets the observation and nothing else.
+"""Agents in separate processes: a fresh one for each episode, which gets the observation and nothing else.
 
 Whatever its process does, whether it raises, exits, is killed, hangs or sends nonsense, is an ``AgentError``: the
 episode is a failure. The model of an agent that has one is asked on this side, so a ``ModelError`` always comes
@@ -42,7 +42,7 @@ T = TypeVar("T")
 
 
 def is_outside(name: str) -> bool:
-    """Whether an evaluation runs this agent in a process of its own."""
+    """Whether an evaluation runs this agent in a separate process."""
     return ":" in name or name in MODELLED
 
 

@@ -1,4 +1,4 @@
-"""The reference for benchmarks: a plain libsumo loop in a process of its own.
+"""The reference for benchmarks: a plain libsumo loop in a separate process.
 
     python -m automotive_cosim.run.plain '{"command": [...], "folder": "...", "warm_up_steps": 9, "steps": 20}'
 

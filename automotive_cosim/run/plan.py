@@ -94,7 +94,7 @@ class Plan:
     """Seeds of traffic that replace a seed's own, in turn, if the situation does not occur in it although the task
     lists the scenario. Every agent gets the same; the row says which."""
     geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
-    """What an agent is told of where it is."""
+    """What an agent is told about its place."""
     clock: Annotated[str, OneOf(tuple(Clock))] = str(Clock.FIXED)
     """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
     latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
@@ -104,7 +104,7 @@ class Plan:
     feedback: Annotated[tuple[Annotated[str, OneOf(tuple(FeedbackDetail), "kind of feedback")], ...], MinLen(1)] = (
         "quiet",
     )
-    """What an agent is told of its last action: ``quiet`` or ``verbose``."""
+    """What an agent is told about its last action: ``quiet`` or ``verbose``."""
     screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
         "1280x720",
     )

@@ -1,7 +1,7 @@
 """The line of a job in ``episodes.jsonl``, for every kind of job; only this module writes and reads it.
 
 A kind of row is a frozen dataclass derived from ``JobRow``. A new field is one line in it, with a default for the
-rows that were written before; whoever computes it passes it by name. Reading checks the type of every field and
+rows that were written before; its value is passed by name. Reading checks the type of every field and
 ignores unknown ones: they come from a newer version, and no line is ever rewritten.
 
 pydantic does both: it reads 28 000 rows a second, which is faster than ``json`` alone.
@@ -74,7 +74,7 @@ def from_line(kind: type[R], line: bytes) -> R:
     """A row of a kind from its line.
 
     Raises:
-        ValueError: the line is not JSON, or a field is missing or of another type; the message names the first.
+        ValueError: the line is not JSON, or a field is missing or of another type; the message gives the first.
     """
     try:
         return _form(kind).adapter.validate_json(line, strict=True)

@@ -35,7 +35,7 @@ class WatchRow(JobRow):
     see: See = See.BOTH
     """How the agent saw the screen."""
     feedback: FeedbackDetail = FeedbackDetail.VERBOSE
-    """What it was told of its last action."""
+    """What it was told about its last action."""
     screen: ScreenSize = ScreenSize.STANDARD
     """Size of the car's screen."""
     repeat: int = 0

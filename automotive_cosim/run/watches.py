@@ -62,7 +62,7 @@ class WatchPlan:
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
     """Seeds; each draws its own drive."""
     geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
-    """What an agent is told of where it is."""
+    """What an agent is told about its place."""
     clock: Annotated[str, OneOf(tuple(Clock))] = str(Clock.FIXED)
     """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
     latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
@@ -74,7 +74,7 @@ class WatchPlan:
     feedback: Annotated[tuple[Annotated[str, OneOf(tuple(FeedbackDetail), "kind of feedback")], ...], MinLen(1)] = (
         "quiet",
     )
-    """What an agent is told of its last action."""
+    """What an agent is told about its last action."""
     screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
         "1280x720",
     )

@@ -108,7 +108,7 @@ def agent_for(
     nursery: Nursery,
     meter: MeterHandle | None = None,
 ) -> Iterator[Agent]:
-    """An agent, in a process of its own unless it is a reference or a negative control.
+    """An agent, in a separate process unless it is a reference or a negative control.
 
     Args:
         name: as in ``make_agent``, like the model.

@@ -8,7 +8,7 @@ play       lets a person work the cockpit in real time
 person     the person as the agent of an episode, and the screen that an act shows at once
 played     keeps what people play as an evaluation, which every report reads
 dealing    what a study deals to whom, in what order
-study      a study under way: seats, questions, export
+study      a running study: seats, questions, export
 server     answers a browser: token, host and origin checked, a fixed table of routes
 static/    one page, one stylesheet, small scripts without a library; texts are only ever set as text
 """

@@ -1,6 +1,6 @@
 """Deals a study's episodes to people: who plays what, and in what order.
 
-Everybody plays every half of every task with every seed, in two rounds; a pair has one half in each. In a round,
+Everyone plays every half of every task with every seed, in two rounds; a pair has one half in each. In a round,
 the order is a row of a Williams design: over n people for n tasks (2n if n is odd), every task takes every position
 equally often, and follows every other task equally often. ``order_seed`` shuffles the tasks, and the people
 who meet the first half of a pair first. Nobody gets both halves of a pair in a row.
@@ -34,7 +34,7 @@ class PeoplePlan:
     tasks: Annotated[tuple[str, ...], MinLen(1)]
     """Ids, patterns, tags and so on of tasks, as in ``plan.toml``."""
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
-    """Seeds; everybody plays every task with each."""
+    """Seeds; everyone plays every task with each seed."""
     order_seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
     """Seed of the orders."""
     scenario: str | None = None

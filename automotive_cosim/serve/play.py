@@ -201,7 +201,7 @@ class Game(Watcher, WatchWatcher):
 
     @property
     def is_running(self) -> bool:
-        """Whether an episode is under way."""
+        """Whether an episode is running."""
         return self._thread is not None and self._thread.is_alive()
 
     def pace(self, speed: float, *, paused: bool) -> None:
@@ -224,7 +224,7 @@ class Game(Watcher, WatchWatcher):
             The screen as the action will leave it, as a JPEG, before the road has taken that second.
 
         Raises:
-            UserError: it is malformed, too many wait, or nobody can act now.
+            UserError: it is malformed, too many wait, or no action is possible now.
         """
         given = parse(action)
         with self._hand:

@@ -1,4 +1,4 @@
-"""Tells running programs that somebody watches them, by a lock that the system releases with this process."""
+"""Tells running programs that they are being watched, by a lock that the system releases with this process."""
 
 from __future__ import annotations
 

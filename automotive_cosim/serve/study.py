@@ -56,7 +56,7 @@ class StudySeat:
 
 
 class PeopleStudy:
-    """A study under way. Any method may be called from any thread."""
+    """A running study. Any method may be called from any thread."""
 
     def __init__(self, plan: PeoplePlan, folder: Path, simulations: Simulations | None = None) -> None:
         """Starts or resumes it.
@@ -136,7 +136,7 @@ class PeopleStudy:
         """A person's next task; the verdicts once everything is done.
 
         Raises:
-            UserError: nobody sits there.
+            UserError: the seat is empty.
         """
         person = self.seat(secret).person
         with self._lock:
@@ -164,7 +164,7 @@ class PeopleStudy:
         """Begins the next episode of a person.
 
         Raises:
-            UserError: nobody sits there, there is none, the last one's questions are open, or one is running.
+            UserError: the seat is empty, there is none, the last one's questions are open, or one is running.
         """
         seat = self.seat(secret)
         with self._lock:
@@ -180,7 +180,7 @@ class PeopleStudy:
         """Takes the answers to the questions, each 1 to 5.
 
         Raises:
-            UserError: nobody sits there, nothing is asked, or an answer is missing or invalid.
+            UserError: the seat is empty, nothing is asked, or an answer is missing or invalid.
         """
         person = self.seat(secret).person
         for name in QUESTIONS:

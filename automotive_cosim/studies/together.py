@@ -22,7 +22,7 @@ def together(
     Args:
         share: share of the eligible cars that were rerouted with the ego.
         draw: number of the draw.
-        pair: the future in which everybody keeps their route, and the one in which they do not.
+        pair: the future in which everyone keeps their route, and the one in which they do not.
         group: the other vehicles that were present.
         took: those that were rerouted with the ego.
         could: how many were eligible.
