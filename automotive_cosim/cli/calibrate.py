@@ -84,7 +84,7 @@ def calibrate_scenario(
         _print(found)
     if found.gridlock:
         typer.echo(
-            f"the fitted traffic gridlocks: {found.gridlock}; nothing is written. Check the doubts, leave out"
+            f"the fitted traffic gridlocks: {found.gridlock}; nothing is written. Check the warnings, leave out"
             " counts that contradict others, or start from other traffic",
             err=True,
         )

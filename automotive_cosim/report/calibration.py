@@ -100,7 +100,7 @@ def findings(found: Calibration) -> Iterator[str]:
     for site, why in found.unmapped.items():
         yield f"left out: {site}: {why}"
     for doubt in found.doubts:
-        yield f"doubt: {doubt}"
+        yield f"warning: {doubt}"
 
 
 def table(found: Calibration) -> Table:

@@ -79,7 +79,7 @@ def test_the_splits_share_out_the_episodes_between_them():
         assert job.split is split_of(job.task, job.setup.seed), "both halves of a pair are in one set"
     held_out = plan(**chosen, held_out=True)
     assert {job.split for job in held_out.jobs()} == {Split.TEST}
-    with pytest.raises(UserError, match="held-out phrasings, which are all test"):
+    with pytest.raises(UserError, match="held-out phrasings, which are all in test"):
         plan(**chosen, held_out=True, split="dev").check()
 
 
