@@ -135,7 +135,7 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, whole, tm
     (tmp_path / "tasks" / "own.py").write_text(OWN.replace("Split it.", "Part it."))
     changed = validate("own_one,own_two", "--seeds", "2", "--out", "f")
     assert (changed.returncode, changed.stderr.count("\n")) == (2, 1)
-    assert "other plan: task_files was" in changed.stderr
+    assert "a different plan: task_files was" in changed.stderr
     assert len(read_rows(tmp_path / "f", Proof)) == 4
 
 

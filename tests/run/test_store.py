@@ -67,7 +67,7 @@ def test_another_plan_version_or_format_is_refused_and_nothing_lost(tmp_path):
     with opened(folder, PLAN, JobRow) as store:
         store.append(JobRow(id="a"))
     with (
-        pytest.raises(UserError, match=r"other plan: agents was \['oracle'\] and is \['t3a'\]"),
+        pytest.raises(UserError, match=r"a different plan: agents was \['oracle'\] and is \['t3a'\]"),
         opened(folder, {"agents": ["t3a"]}, JobRow),
     ):
         pass
