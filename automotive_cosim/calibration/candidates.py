@@ -57,7 +57,7 @@ class Candidates:
 
     @classmethod
     def of(cls, trips: Iterable[DrivenTrip]) -> Candidates:
-        """Those of a demand that was driven."""
+        """The candidates of a demand that was driven."""
         counts: Counter[tuple[str, ...]] = Counter()
         types: dict[tuple[str, ...], list[str]] = {}
         for trip in trips:
@@ -119,7 +119,7 @@ class _Places:
 
     @classmethod
     def of(cls, routes: Sequence[Candidate]) -> _Places:
-        """Those of some routes."""
+        """The places of some routes."""
         index: dict[str, int] = {}
         edges = np.array([index.setdefault(edge, len(index)) for route in routes for edge in route.edges])
         lengths = np.array([len(route.edges) for route in routes])

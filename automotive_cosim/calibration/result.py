@@ -69,7 +69,7 @@ class Met:
 
     @classmethod
     def of(cls, flows: Sequence[tuple[float, float]]) -> Met:
-        """From pairs of a flow and its count."""
+        """Computes it from pairs of a flow and its count."""
         distances = [geh(flow, count) for flow, count in flows]
         counted = sum(count for _, count in flows)
         return cls(
@@ -183,7 +183,7 @@ class Calibration:
         return self.carried.gridlock
 
     def record(self) -> Json:
-        """As JSON."""
+        """The result as JSON values."""
         return asdict(self)
 
 

@@ -129,7 +129,7 @@ def search(world: SearchWorld, given: DrivenDemand, per_h: float, rounds: int) -
 
 @dataclass(slots=True)
 class Learned:
-    """What the simulations taught."""
+    """What was learned from the simulations."""
 
     bounds: dict[Passing, float] = field(default_factory=dict)
     """Turn and hour -> what it carried when more came."""

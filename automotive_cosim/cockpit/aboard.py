@@ -32,7 +32,7 @@ class Seat(StrEnum):
 
     @property
     def words(self) -> str:
-        """As it is said: ``rear left``."""
+        """The seat in words, such as ``rear left``."""
         return self.replace("_", " ")
 
 

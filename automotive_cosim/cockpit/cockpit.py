@@ -433,7 +433,7 @@ class Cockpit:
 
     @property
     def deeds(self) -> tuple[Deed, ...]:
-        """What was commanded, in order, by whatever way."""
+        """Everything that was commanded, in order, through screens or safety calls."""
         return self._state.deeds
 
     def command(self, signal: Signal[Any], value: Any) -> Feedback:

@@ -155,7 +155,7 @@ class Timer:
         return f"{self.minute // 60:02d}:{self.minute % 60:02d}"
 
     def moved(self, minutes: int) -> Timer:
-        """With another time of day."""
+        """A copy with another time of day."""
         return replace(self, minute=(self.minute + minutes) % 1440)
 
 
@@ -177,7 +177,7 @@ class Appointment:
 
     @property
     def name(self) -> str:
-        """What it is told apart by, whatever its time."""
+        """Tells it from others, regardless of its time."""
         return say("{first}, {second}", first=self.title, second=self.place)
 
 
@@ -239,13 +239,13 @@ class Desk:
         return replace(self, memory=(*self.memory[:slot], values, *self.memory[slot + 1 :]))
 
     def with_app(self, name: str, wanted: bool) -> Desk:
-        """With or without that app."""
+        """A copy with or without an app."""
         return replace(
             self, installed=tuple(app for app in TOOLS if (wanted if app == name else app in self.installed))
         )
 
     def commands(self) -> dict[str, Any]:
-        """What was set, created and paid, as app data."""
+        """Everything that was set, created or paid, as app data."""
         return {
             "apps.installed": list(self.installed),
             "apps.memos": list(self.memos),

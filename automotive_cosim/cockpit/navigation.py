@@ -61,7 +61,7 @@ class Navigation:
         return replace(self, favourites=(*rest, name) if wanted else rest)
 
     def with_avoided(self, name: str, wanted: bool) -> Navigation:
-        """With or without avoiding something."""
+        """A copy that avoids something, or no longer does."""
         return replace(self, avoid=tuple(k for k in AVOIDABLE if (wanted if k == name else k in self.avoid)))
 
     def commands(self) -> dict[str, Any]:

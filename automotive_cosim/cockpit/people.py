@@ -173,15 +173,15 @@ class Phone:
     """The message with a figure that is being put together; it outlives calls and other screens."""
 
     def called(self, who: str, when: str, time_s: float) -> Phone:
-        """With an outgoing call."""
+        """A copy with an outgoing call."""
         return replace(self.logged(PastCall(who, when, "out")), on_call=OnCall(who, time_s))
 
     def logged(self, call: PastCall) -> Phone:
-        """With one more line in the call list."""
+        """A copy with one more line in the call list."""
         return replace(self, made=(call, *self.made))
 
     def received_from(self, message: Received) -> Phone:
-        """With another message, which makes its sender's thread unread."""
+        """A copy with another message, which makes its sender's thread unread."""
         read = tuple(who for who in self.read if who != message.who)
         return replace(self, received=(*self.received, message), read=read)
 
@@ -190,7 +190,7 @@ class Phone:
         return replace(self, sent=(*self.sent, Sent(who, text)))
 
     def opened(self, who: str) -> Phone:
-        """With a contact's messages read."""
+        """A copy with a contact's messages read."""
         return self if who in self.read else replace(self, read=(*self.read, who))
 
     def with_favourite(self, who: str, wanted: bool) -> Phone:

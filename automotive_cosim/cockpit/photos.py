@@ -28,7 +28,7 @@ CUSHION: Colour = (86, 92, 104)
 
 
 class Shows(StrEnum):
-    """What a photo is of."""
+    """The subject of a photo."""
 
     ZONE = "zone"
     """A parking sign with the letter of its zone; ``struck`` where the zone ends."""

@@ -129,7 +129,7 @@ class Gazetteer:
         return next((place for place in self.places if place.edge_id == edge_id), None)
 
     def of(self, kind: PlaceKind) -> tuple[Destination, ...]:
-        """All of one kind."""
+        """All places of one kind."""
         return tuple(place for place in self.places if place.kind is kind)
 
     @property

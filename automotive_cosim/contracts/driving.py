@@ -44,7 +44,7 @@ class Limit:
 
     @property
     def kmh(self) -> float | None:
-        """In km/h."""
+        """The limit in km/h; None as ``mps`` is."""
         return None if self.mps is None else self.mps * KMH_PER_MPS
 
     @property

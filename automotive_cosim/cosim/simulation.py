@@ -41,7 +41,7 @@ class CoSimulation:
 
     @property
     def cockpit(self) -> Cockpit:
-        """The car's."""
+        """The car's cockpit."""
         return self.car.cockpit
 
     def perform(self, action: Action, elements: tuple[Element, ...]) -> Feedback:

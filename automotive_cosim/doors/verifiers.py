@@ -47,7 +47,7 @@ class CockpitData(vf.TaskData):
 
 
 class CockpitState(vf.State):
-    """What came of it."""
+    """The result of an episode."""
 
     outcome: dict[str, Any] | None = None
     """None before the end: an episode without a declared status is no success."""

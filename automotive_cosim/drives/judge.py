@@ -36,7 +36,7 @@ LATE_S = 30.0
 
 
 class EventOutcome(StrEnum):
-    """What became of an event."""
+    """The outcome of an event."""
 
     HIT = "hit"
     """A right act between obligation and deadline."""
@@ -69,7 +69,7 @@ class EventOutcome(StrEnum):
 
 
 class Worth(StrEnum):
-    """What an act was."""
+    """How an act is judged."""
 
     RIGHT = "right"
     """It settled an event, or prepared for one."""

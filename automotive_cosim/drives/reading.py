@@ -28,7 +28,7 @@ class LawLine:
 
     @property
     def said(self) -> str:
-        """What it says, without its source."""
+        """The text without its source."""
         return self.text.rpartition(" (")[0]
 
 
@@ -48,7 +48,7 @@ class Border:
 
 @dataclass(slots=True)
 class Gathered:
-    """What is known at one observation."""
+    """Everything that is known at one observation."""
 
     time_s: float
     vehicle: VehicleState
@@ -76,12 +76,12 @@ class Gathered:
 
     @property
     def speed_kmh(self) -> float:
-        """Of the car."""
+        """Speed of the car."""
         return self.vehicle.speed_kmh
 
     @property
     def mps(self) -> float:
-        """Of the car."""
+        """Speed of the car."""
         return self.vehicle.speed_kmh / 3.6
 
     @property

@@ -25,7 +25,7 @@ LEAST_WORTH = 1.0
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """What one drive, or several together, came to."""
+    """The score of one drive, or of several together."""
 
     driven_s: float
     events: int

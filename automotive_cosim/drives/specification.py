@@ -74,7 +74,7 @@ class DriveSpec:
             raise
 
     def outcome(self, episode_id: str, session: Watch) -> DriveOutcome:
-        """What came of it, once it is over."""
+        """The result, once the drive is over."""
         assert session.end is not None
         seconds = round(session.seconds, 3)
         return DriveOutcome(episode_id, self.family, self.seed, session.end, seconds, result_of(session))

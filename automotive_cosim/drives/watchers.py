@@ -165,7 +165,7 @@ class AlertOften:
     channels: frozenset[Channel] = frozenset()
 
     def __init__(self, kind: AlertKind = AlertKind.SPEED, every_s: float = 30.0) -> None:
-        """Of that kind, that often."""
+        """Alerts of that kind, at that interval."""
         self._kind, self._every_s = kind, every_s
         self.reset("")
 

@@ -86,15 +86,15 @@ class _Ahead(gym.Wrapper[Any, Any, Any, Any]):
         return self._begun
 
     def forget(self) -> None:
-        """What was begun is not asked for any more."""
+        """Drops a step or reset that was begun."""
         self._begun = None
 
     def step(self, action: Any) -> Any:
-        """As begun, or made now."""
+        """The result of what was begun, or of a new call."""
         return self._taken() or self.env.step(action)
 
     def reset(self, **options: Any) -> Any:
-        """As begun, or made now."""
+        """The result of what was begun, or of a new call."""
         return self._taken() or self.env.reset(**options)
 
     def _taken(self) -> Any:

@@ -220,7 +220,7 @@ class BindingLimit:
 
     @property
     def kmh(self) -> float:
-        """In km/h."""
+        """The speed in km/h."""
         assert self.limit.kmh is not None
         return self.limit.kmh
 

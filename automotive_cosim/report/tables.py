@@ -40,13 +40,13 @@ class Table:
             raise ValueError(f"table {self.name!r} has a row that is not {len(self.columns)} wide")
 
     def markdown(self) -> str:
-        """As a Markdown table under its title."""
+        """The table in Markdown, under its title."""
         lines = [_md(self.columns), _md(["---"] * self.heads + ["---:"] * (len(self.columns) - self.heads))]
         lines += [_md([str(cell) for cell in row]) for row in self.rows]
         return f"**{self.title}**\n\n" + "\n".join(lines) + (f"\n\n{self.note}" if self.note else "") + "\n"
 
     def csv(self) -> str:
-        """As comma-separated values, the columns' names first."""
+        """Comma-separated values, the columns' names first."""
         text = StringIO()
         writer = csv.writer(text, lineterminator="\n")
         writer.writerow(self.columns)
@@ -54,7 +54,7 @@ class Table:
         return text.getvalue()
 
     def latex(self) -> str:
-        """As a LaTeX table for the booktabs package."""
+        """A LaTeX table for the booktabs package."""
         columns = "l" * self.heads + "r" * (len(self.columns) - self.heads)
         lines = [_tex(self.columns), r"\midrule", *(_tex([str(cell) for cell in row]) for row in self.rows)]
         return "\n".join(

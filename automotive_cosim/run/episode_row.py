@@ -32,7 +32,7 @@ class PartsHeld:
 
     @classmethod
     def of(cls, verdict: Verdict) -> PartsHeld:
-        """Of a verdict."""
+        """The parts that held in a verdict."""
         return cls(**{name: part.ok for name, part in verdict.parts.items()})
 
     @property

@@ -115,12 +115,12 @@ class Metered:
 
     @property
     def name(self) -> str:
-        """The model's own."""
+        """The model's name."""
         return self._model.name
 
     @property
     def sees_pictures(self) -> bool:
-        """Whether the model does."""
+        """Whether the model sees pictures."""
         return self._model.sees_pictures
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:

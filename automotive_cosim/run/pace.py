@@ -179,11 +179,11 @@ class _Expected:
         return self._own[kind].of(scenario) if kind in self._own else 0.0
 
     def warm_up_s(self, scenario: str) -> float:
-        """What a cold job takes on top."""
+        """Additional seconds of a cold job."""
         return self._warm_ups.of(scenario)
 
     def rest_s(self, turn: JobTurn) -> float:
-        """What is left of a running job."""
+        """Remaining seconds of a running job."""
         takes_s = self.own_s(turn.job.kind, turn.scenario)
         takes_s += self.warm_up_s(turn.scenario) if turn.is_cold else 0.0
         return max(takes_s - turn.seconds, HALF * turn.seconds)

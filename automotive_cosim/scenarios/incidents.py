@@ -31,7 +31,7 @@ LocalTime = Annotated[time, Form(r"^\d\d:\d\d(:\d\d(\.\d+)?)?$", "08:00:00", tim
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Incident:
-    """Fields of all kinds."""
+    """The fields that all kinds of incidents share."""
 
     kind: str
     """Which of the classes below."""

@@ -269,7 +269,7 @@ def read_trips(path: Path) -> Iterable[DrivenTrip]:
 
 @dataclass(frozen=True, slots=True)
 class Ran:
-    """What SUMO wrote of a run."""
+    """SUMO's output of a run."""
 
     trips: tuple[DrivenTrip, ...]
     """All trips, in the order of their departures."""

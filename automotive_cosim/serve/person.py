@@ -81,7 +81,7 @@ class Person:
         (self._goes.clear if paused else self._goes.set)()
 
     def stop(self) -> None:
-        """The person leaves."""
+        """Ends the episode of a person who leaves."""
         self.has_left = True
         self._goes.set()
         self._given.put(None)

@@ -53,7 +53,7 @@ SMALL_BYTES = 1000
 
 @dataclass(frozen=True, slots=True)
 class WebAnswer:
-    """What goes back to the browser."""
+    """A response to the browser."""
 
     body: bytes
     kind: str = "application/json"

@@ -22,7 +22,7 @@ from automotive_cosim.studies.tables import (
 
 
 def context(study: Study) -> list[Table]:
-    """All of these tables."""
+    """All tables of this module, in the order of the report."""
     return [bounds(study), by_departure(study), traffic(study)]
 
 

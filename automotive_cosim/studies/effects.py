@@ -19,7 +19,7 @@ SpreadOf = tuple[PolicyChoice, Spread]
 
 
 def effects(study: Study) -> list[Table]:
-    """All of these tables."""
+    """All tables of this module, in the order of the report."""
     made = (whole, many, closed, everyone, by_trip, horizons, fleet)
     return [each(study) for each in made]
 

@@ -19,7 +19,7 @@ SHARES, TEST_SHARE = 4, 2
 
 
 class Split(StrEnum):
-    """The sets."""
+    """The public sets of episodes."""
 
     DEV = "dev"
     TEST = "test"

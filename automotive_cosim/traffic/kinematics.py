@@ -121,7 +121,7 @@ class ScriptedCar:
         self._factor = factor
 
     def set_top_speed(self, speed_mps: float) -> None:
-        """No faster than this."""
+        """Limits the speed."""
         self._top_mps = speed_mps
 
     def set_headway(self, headway_s: float) -> None:

@@ -55,7 +55,7 @@ class LimitUnits(EventKind):
     writes: ClassVar[Mapping[str, Wanted]] = {HMI.DISTANCE_UNIT.path: lambda value: True}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """For a minute after the border."""
+        """Sights a border for a minute after it was crossed."""
         crossed = crossing(drive)
         if crossed is None:
             return

@@ -43,7 +43,7 @@ class Belt(EventKind):
     requests = (PullOver,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the buckles' switches."""
+        """Reads the switches of the buckles."""
         now = drive[-1]
         kmh = speed_kmh(now)
         for one in seated_by(now.signals):
@@ -70,7 +70,7 @@ class FlapOpen(EventKind):
     requests = (PullOver,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the latches' switches."""
+        """Reads the switches of the latches."""
         signals = drive[-1].signals
         if speed_kmh(drive[-1]) < ROLLING_KMH:
             return
@@ -94,7 +94,7 @@ class Tyre(EventKind):
     requests = (PullOver,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the lowest tyre."""
+        """Reads the lowest tyre pressure."""
         lowest_kpa = min(float(drive[-1].signals[tyre.path]) for tyre in TYRES)
         words = f"a tyre at {lowest_kpa:.0f} kPa"
         if lowest_kpa < LOW_KPA:
@@ -115,7 +115,7 @@ class RangeShort(EventKind):
     requests = (Reroute,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the range that the car shows."""
+        """Compares the range that the car shows with the route."""
         now = drive[-1]
         range_m, left_m = float(now.signals[ENERGY.RANGE.path]), now.driving.ahead.route_left_m
         words = f"range {range_m / 1000:.1f} km, {left_m / 1000:.1f} km to go"

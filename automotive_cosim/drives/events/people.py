@@ -34,7 +34,7 @@ class Fatigue(EventKind):
     requests = (PullOver,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the driving time that the car shows."""
+        """Reads the driving time that the car shows."""
         driven = seen(drive[-1], SightKind.DRIVING_TIME)
         if driven is None or driven.value is None:
             return
@@ -57,7 +57,7 @@ class PhoneUse(EventKind):
     requests = (PullOver,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the interior camera."""
+        """Reads the interior camera."""
         now = drive[-1]
         where, kmh = now.signals[CALL.PHONE.path], speed_kmh(now)
         if where == "AWAY" or kmh < SLOW_KMH:

@@ -60,7 +60,7 @@ class TunnelAhead(EventKind):
     }
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the map, on the route."""
+        """Reads the map along the route."""
         now = drive[-1]
         away_m, mps = now.driving.ahead.tunnel_distance_m, now.driving.speed_mps
         if away_m is None or mps < 2.0 or now.driving.road.in_tunnel:
@@ -88,7 +88,7 @@ class JamTail(EventKind):
     writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.HAZARD.path: on}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the live traffic on the route."""
+        """Reads the live traffic on the route."""
         now = drive[-1]
         tail, mps = seen(now, SightKind.JAM), now.driving.speed_mps
         away_m = None if tail is None else tail.distance_m
@@ -116,7 +116,7 @@ class StandsAhead(EventKind):
     requests = (SlowDown, Reroute)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the reports: on the route, or anywhere else."""
+        """Reads the reported incidents, on the route or elsewhere."""
         now = drive[-1]
         there, mps = seen(now, self.sights), now.driving.speed_mps
         if there is None or there.distance_m is None:
@@ -224,7 +224,7 @@ class LeaderBrakes(EventKind):
     requests = (SlowDown,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """From half that deceleration."""
+        """Sights the vehicle ahead from half that deceleration on."""
         leader = _in_sight(drive[-1])
         if leader is None or leader.drac_mps2 is None or leader.time_to_collision_s is None:
             return
@@ -249,7 +249,7 @@ class TractorAhead(EventKind):
     requests = (SlowDown,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """By the radar and the road's limit."""
+        """Reads the radar and the road's limit."""
         now = drive[-1]
         leader, mps = _in_sight(now), now.driving.speed_mps
         limit_kmh = now.driving.road.limit.kmh

@@ -61,7 +61,7 @@ class OverLimit(SpeedKind):
     alerts = frozenset({AlertKind.SPEED})
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """From one kilometre an hour above the limit."""
+        """Sights a speed from 1 km/h above the limit."""
         now = drive[-1]
         limit, kmh = limit_here(now), speed_kmh(now)
         if limit is None or kmh < SLOW_KMH or is_school_time(now) or is_reduced(now.context, limit):
@@ -94,7 +94,7 @@ class LimitFalls(SpeedKind):
     alerts = frozenset({AlertKind.SPEED, AlertKind.SCHOOL})
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """Within the map's horizon, of posted limits only."""
+        """Sights posted limits within the map's horizon."""
         now = drive[-1]
         ahead, here, kmh = now.driving.ahead, limit_here(now), speed_kmh(now)
         following, away_m = ahead.next_limit, ahead.next_limit_distance_m
@@ -135,7 +135,7 @@ class SchoolHours(SpeedKind):
     alerts = frozenset({AlertKind.SCHOOL, AlertKind.SPEED})
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """In the zone, in motion."""
+        """Sights a moving car in a school zone."""
         now = drive[-1]
         road, kmh = now.driving.road, speed_kmh(now)
         if not road.school_zone or kmh < SLOW_KMH:
@@ -173,7 +173,7 @@ class WeatherSpeed(SpeedKind):
     alerts = frozenset({AlertKind.SPEED, AlertKind.VISIBILITY, AlertKind.WEATHER, AlertKind.SLIPPERY})
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """From the law first, else from the stopping distance."""
+        """Asks the law first, then the stopping distance."""
         now = drive[-1]
         context, kmh, limit = now.context, speed_kmh(now), limit_here(now)
         if kmh < SLOW_KMH:

@@ -39,7 +39,7 @@ class GlassFogs(EventKind):
     }
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """From a twentieth of the light lost."""
+        """Sights fog on the glass from a twentieth of the light lost."""
         now = drive[-1]
         fog = float(now.signals[GLASS.WINDSHIELD_FOG.path])
         if fog < NOTICED / 4 or speed_kmh(now) < 1.0:
@@ -88,7 +88,7 @@ class Slippery(EventKind):
     writes: ClassVar[Mapping[str, Wanted]] = {DRIVE.MODE.path: lambda value: value == "SNOW"}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """Of the lane under the car."""
+        """Reads the friction of the lane under the car."""
         now = drive[-1]
         friction, kmh = now.driving.road.friction, speed_kmh(now)
         if kmh < SLOW_KMH or now.driving.road.in_tunnel:
