@@ -7,9 +7,6 @@ BIN = $(VENV)/bin
 # Container images like to set it; hundreds of processes start in the tests, and each would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-# One more than there are processors: many of the tests wait for processes of their own.
-WORKERS = $$(( $$(nproc 2>/dev/null || getconf _NPROCESSORS_ONLN) + 1 ))
-
 .PHONY: run test test-fast coverage lint check docs report release-check bench clean
 .DELETE_ON_ERROR:
 
@@ -17,7 +14,7 @@ run: $(VENV)/.run
 	$(BIN)/automotive-cosim run
 
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal --durations=10
+	$(BIN)/python -m pytest -n auto --dist worksteal --durations=10
 
 test-fast: $(VENV)/.dev
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not sumo and not slow" -q
