@@ -220,7 +220,7 @@ class Counted(_OfData):
     by: int = 1
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
-        """Whether it has risen by at least ``by``."""
+        """Whether it has risen by ``by``."""
         return bool(now.commands[self.key] - start.commands[self.key] == self.by)
 
     def __str__(self) -> str:
