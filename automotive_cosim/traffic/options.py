@@ -106,6 +106,7 @@ def read_configuration(path: Path) -> Configuration:
     Raises:
         ScenarioError: it is not XML, names no network, or names a missing file.
     """
+    _without_comma(path.absolute(), "move the scenario to another folder")
     if root_of(path).tag == "net":
         return Configuration(path, path.absolute(), {"net-file": str(path.absolute())})
     reader = _Reader(path)
@@ -113,6 +114,16 @@ def read_configuration(path: Path) -> Configuration:
     if "net-file" not in reader.options:
         raise ScenarioError(f"{path} names no net-file")
     return Configuration(path, Path(reader.options["net-file"]), reader.options, tuple(reader.ignored))
+
+
+def _without_comma(path: Path, mend: str) -> None:
+    """Refuses a path that SUMO would take for two.
+
+    Raises:
+        ScenarioError: it has a comma.
+    """
+    if "," in str(path):
+        raise ScenarioError(f"{path} has a comma, at which SUMO parts its lists of files; {mend}")
 
 
 @dataclass(slots=True)
@@ -173,6 +184,7 @@ def run_options(configuration: Configuration, setup: Setup, scratch: Path) -> di
     Raises:
         ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``).
     """
+    _without_comma(scratch, "set TMPDIR to a folder without one")
     options = DEFAULTS | configuration.options | QUIET | FIXED
     for name in INPUTS:
         if files := options.get(name):

@@ -53,8 +53,14 @@ def environment() -> Mapping[str, str]:
     return os.environ | {"SUMO_HOME": str(home()), "PROJ_DATA": str(data / "proj"), "PROJ_LIB": str(data / "proj")}
 
 
-def run(name: str, arguments: Sequence[str | Path]) -> tuple[bool, str]:
+def run(name: str, arguments: Sequence[str | Path], *, folder: Path | None = None) -> tuple[bool, str]:
     """Runs a program to its end.
+
+    Args:
+        name: the program.
+        arguments: its options. A comma in a file's name parts two files, and a colon a host from its port, so files
+            in a folder that anybody chose are best named from within it.
+        folder: where to run it.
 
     Returns:
         Whether it succeeded, and everything it printed.
@@ -62,6 +68,7 @@ def run(name: str, arguments: Sequence[str | Path]) -> tuple[bool, str]:
     done = subprocess.run(
         [program(name), *arguments],
         env=environment(),
+        cwd=folder,
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
