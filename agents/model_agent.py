@@ -59,7 +59,7 @@ class ModelAgent:
         """
         self._profile = profile.under(settings)
         self._asking = Asking(chat_model, settings)
-        if settings.see is See.PICTURE and not self._sees:
+        if settings.conditions.see is See.PICTURE and not self._sees:
             why = "it is shown no pictures" if chat_model.sees_pictures else f"{chat_model.name!r} sees none"
             raise UserError(
                 f"agent {profile.name!r} would see nothing: --see picture leaves it pictures alone, and {why}"

@@ -33,7 +33,7 @@ from automotive_cosim.envs.cockpit import outcome, traffic_seed
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.spaces import APPS, BOUNDS, OPTIONAL
@@ -113,7 +113,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         self._seeds: list[SeedSource] = []
         """One per task, so that what is drawn for one does not depend on the others."""
         self._max_steps = max_steps
-        self._conditions = Conditions(frozenset({Channel.ELEMENTS, Channel.VEHICLE}), max_steps=max_steps)
+        self._setup = SessionSetup(frozenset({Channel.ELEMENTS, Channel.VEHICLE}), max_steps=max_steps)
         self._episode: Episode | None = None
         self._controls = tuple(controls)
         self._apps = tuple(apps)
@@ -153,7 +153,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
             source.traffic = traffic_seed(options, source.traffic)
         number = int(self.np_random.integers(len(self._finders)))
         hand_over = self._finders[number].find(self._seeds[number].next())
-        self._episode = Episode.take_over(hand_over, self._conditions)
+        self._episode = Episode.take_over(hand_over, self._setup)
         self._held = self._holds()
         return self._numbers(), {}
 
