@@ -168,9 +168,9 @@ class ModelAgent:
                     f"this agent has no action {understood.action.action_type}; choose one of the list"
                 )
         except ActionError as error:
-            cut = "; the answer was cut off at its longest" if reply.finish == "length" else ""
-            self._asking.note(StageName.ACT, seen, f"{error}{cut}", reply, asked, len(pictures))
-            raise ActionError(f"{error}{cut}") from None
+            told = f"{error}{reply.ending}"
+            self._asking.note(StageName.ACT, seen, told, reply, asked, len(pictures))
+            raise ActionError(told) from None
         self._asking.note(StageName.INTERPRET, seen, understood.situation, reply, asked, len(pictures))
         self._asking.note(StageName.PLAN, seen, understood.plan)
         form = "" if understood.strict else " (read forgivingly)"
