@@ -77,7 +77,7 @@ class Worth(StrEnum):
     """It would have settled an event before its deadline."""
     NEUTRAL = "neutral"
     """Neither asked for nor false: something that could be known supported it, or it set back what was changed."""
-    BAIT = "bait"
+    LOOKALIKE = "lookalike"
     """A look-alike was taken for an event."""
     WRONG = "wrong"
     """Something was due, but not this."""
@@ -89,7 +89,7 @@ class Worth(StrEnum):
     @property
     def is_false(self) -> bool:
         """Whether it is a false alarm."""
-        return self in (Worth.BAIT, Worth.WRONG, Worth.FALSE)
+        return self in (Worth.LOOKALIKE, Worth.WRONG, Worth.FALSE)
 
     @property
     def is_nuisance(self) -> bool:
@@ -103,7 +103,7 @@ class JudgedEvent:
 
     kind: str
     words: str
-    bait: bool
+    lookalike: bool
     weight: float
     outcome: EventOutcome
     observable_s: float
@@ -210,7 +210,7 @@ def judge(
     """
     cases = [_Case(event, kinds[event.kind], due_anyway.get(index)) for index, event in enumerate(events)]
     for case in cases:
-        case.caused = not case.event.bait and any(_contrary(case, act) for act in acts)
+        case.caused = not case.event.lookalike and any(_contrary(case, act) for act in acts)
     written: set[str] = set()
     judged = []
     for act in acts:
@@ -227,7 +227,7 @@ def _contrary(case: _Case, act: WatchAct) -> bool:
 
 def _act(act: WatchAct, cases: Sequence[_Case], written: set[str], at_start: Mapping[str, Any]) -> JudgedAct:
     there = [case for case in cases if case.is_open(act.time_s)]
-    true = [case for case in there if not case.event.bait]
+    true = [case for case in there if not case.event.lookalike]
     right = [case for case in true if case.kind.settles(act, case.event.value)]
     if right:
         return JudgedAct(act.time_s, act.words, _told(act, right), right[0].event.kind)
@@ -235,11 +235,11 @@ def _act(act: WatchAct, cases: Sequence[_Case], written: set[str], at_start: Map
         return JudgedAct(act.time_s, act.words, Worth.NEUTRAL)
     if act.alert is None and not act.requests and true and (act.said or any(c.kind.concerns(act) for c in true)):
         return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, true[0].event.kind)
-    baits = [case for case in there if case.event.bait and case.kind.settles(act, case.event.value)]
-    for case in baits:
+    lookalikes = [case for case in there if case.event.lookalike and case.kind.settles(act, case.event.value)]
+    for case in lookalikes:
         case.taken = True
-    if baits:
-        return JudgedAct(act.time_s, act.words, Worth.BAIT, baits[0].event.kind)
+    if lookalikes:
+        return JudgedAct(act.time_s, act.words, Worth.LOOKALIKE, lookalikes[0].event.kind)
     due = [case for case in true if case.answered_s is None and case.event.obliged_s is not None]
     worth = Worth.WRONG if any((case.event.obliged_s or 0.0) <= act.time_s for case in due) else Worth.FALSE
     return JudgedAct(act.time_s, act.words, worth)
@@ -292,20 +292,20 @@ def _event(case: _Case) -> JudgedEvent:
     return JudgedEvent(
         kind=event.kind,
         words=event.words,
-        bait=event.bait,
+        lookalike=event.lookalike,
         weight=event.weight,
         outcome=outcome,
         observable_s=event.observable_s,
         obliged_s=obliged_s,
         deadline_s=event.deadline_s,
         ends_s=event.last_s,
-        acted_s=case.answered_s if not event.bait else None,
+        acted_s=case.answered_s if not event.lookalike else None,
     )
 
 
 def _outcome(case: _Case) -> EventOutcome:
     event, acted_s = case.event, case.answered_s
-    if event.bait:
+    if event.lookalike:
         return EventOutcome.TAKEN if case.taken else EventOutcome.AVOIDED
     if event.obliged_s is None:
         in_time = acted_s is not None and case.due_anyway_s is not None

@@ -58,7 +58,9 @@ class Twin:
             for moment in passed:
                 self.drive.append(moment)
                 self.tracker.see(self.drive)
-        same = [event for event in self.tracker.events if event.subject == self.event.subject and not event.bait]
+        same = [
+            event for event in self.tracker.events if event.subject == self.event.subject and not event.lookalike
+        ]
         self.due_s = next((event.obliged_s for event in same if event.obliged_s is not None), None)
         over = bool(same) and all(event.ended for event in same)
         return self.due_s is None and not over and time_s - self.event.observable_s < TWIN_S
@@ -196,7 +198,7 @@ class Watch(Session):
     def _note(self, moment: Moment) -> None:
         self.changes += self.alarm.see(moment)
         for event in self.tracker.see(self.moments):
-            if not event.bait and event.obliged_s is None:
+            if not event.lookalike and event.obliged_s is None:
                 index = len(self.tracker.events) - 1 - self.tracker.events[::-1].index(event)
                 tracker = Tracker({event.kind: KINDS[event.kind]})
                 drive = list(self.moments)

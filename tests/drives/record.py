@@ -1,6 +1,6 @@
 """What happens on one drive of each family with nobody at the cockpit, on record, so that their laws need no SUMO.
 
-python -m tests.drives.record            # families whose plan has changed since
+python -m tests.drives.record            # families whose script has changed since
 python -m tests.drives.record --renew    # drives these and stores what happened: some ten seconds a drive
 python -m tests.drives.record --renew all
 """
@@ -20,7 +20,7 @@ from pathlib import Path
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.plan import plan_json
+from automotive_cosim.drives.script import script_json
 from automotive_cosim.drives.wakes import Alarm
 from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
@@ -33,7 +33,7 @@ SEED = 0
 class Recorded:
     """One drive with nobody at the cockpit."""
 
-    plan_sha256: str
+    script_sha256: str
     begun_s: float
     """Simulation time at departure."""
     driven_s: float
@@ -44,8 +44,8 @@ class Recorded:
 
 
 def sha(family: str) -> str:
-    """Of the plan that would be driven now."""
-    return sha256(plan_json(FAMILIES[family].draw(SEED)).encode()).hexdigest()
+    """Of the script that would be driven now."""
+    return sha256(script_json(FAMILIES[family].draw(SEED)).encode()).hexdigest()
 
 
 @cache
@@ -58,16 +58,16 @@ def recorded() -> Mapping[str, Recorded]:
 def outdated() -> list[str]:
     """The families whose drive is not on record as it is drawn now."""
     known = recorded()
-    return [family for family in FAMILIES if family not in known or known[family].plan_sha256 != sha(family)]
+    return [family for family in FAMILIES if family not in known or known[family].script_sha256 != sha(family)]
 
 
 def drive(family: str, simulations: Simulations) -> Recorded:
     """Drives it."""
-    plan = FAMILIES[family].draw(SEED)
+    script = FAMILIES[family].draw(SEED)
     tracker, alarm, wakes_s = Tracker(KINDS), Alarm(), []
-    with closing(depart(plan, simulations)) as world:
+    with closing(depart(script, simulations)) as world:
         moments = [world.moment]
-        while moments[-1].time_s < moments[0].time_s + plan.duration_s:
+        while moments[-1].time_s < moments[0].time_s + script.duration_s:
             tracker.see(moments)
             if any(change.wakes for change in alarm.see(moments[-1])):
                 wakes_s.append(moments[-1].time_s)

@@ -142,7 +142,7 @@ def test_every_kind_has_its_scenes() -> None:
 @pytest.mark.parametrize("name", KINDS)
 def test_an_event_is_found_with_its_three_instants(name: str) -> None:
     truth, _ = SCENES[name]
-    event, *others = [event for event in found(stream(20, **truth), name) if not event.bait]
+    event, *others = [event for event in found(stream(20, **truth), name) if not event.lookalike]
     assert not others
     assert event.observable_s == 0.0
     assert event.obliged_s is not None
@@ -153,9 +153,9 @@ def test_an_event_is_found_with_its_three_instants(name: str) -> None:
 
 @pytest.mark.parametrize("name", KINDS)
 def test_a_look_alike_obliges_to_nothing(name: str) -> None:
-    _, bait = SCENES[name]
-    events = found(stream(20, **bait), name)
-    assert [event.bait for event in events] == [True]
+    _, lookalike = SCENES[name]
+    events = found(stream(20, **lookalike), name)
+    assert [event.lookalike for event in events] == [True]
     assert events[0].obliged_s is None
 
 
@@ -197,12 +197,14 @@ def test_what_only_oncoming_traffic_forbids_is_not_due() -> None:
     """In Sweden, where the law names oncoming traffic; no sensor of the car tells of it."""
     lit = {"signals": {LIGHTS.HIGH_BEAM.path: True}, "at": NIGHT, "position": (20.2, 67.8)}
     (dark,) = found(stream(10, oncoming=vehicle(200.0), **lit), "high_beam")
-    assert (dark.bait, dark.obliged_s) == (False, None)
+    assert (dark.lookalike, dark.obliged_s) == (False, None)
     (lamps,) = found(stream(10, oncoming=vehicle(200.0), lit=True, **lit), "high_beam")
     assert lamps.obliged_s is not None
     tokyo = lit | {"position": (139.7, 35.66)}
     (coming,) = found(stream(10, oncoming=vehicle(200.0), lit=True, **tokyo), "high_beam")
-    assert (coming.bait, coming.obliged_s) == (False, None), "Japanese law does not forbid it where the road is lit"
+    assert (coming.lookalike, coming.obliged_s) == (False, None), (
+        "Japanese law does not forbid it where the road is lit"
+    )
 
 
 def test_a_border_is_news_for_a_minute() -> None:
@@ -212,7 +214,7 @@ def test_a_border_is_news_for_a_minute() -> None:
 
 def test_glass_covered_by_rain_stays_so_after_it_until_it_is_wiped() -> None:
     dry = {GLASS.WINDSHIELD_FILM.path: 0.9, BODY.FRONT_WIPER.path: "OFF", BODY.RAIN_INTENSITY.path: 0.0}
-    assert [event.bait for event in found(stream(10, signals=dry), "wipers")] == [False]
+    assert [event.lookalike for event in found(stream(10, signals=dry), "wipers")] == [False]
     assert not found(stream(10, signals=dry | {GLASS.WINDSHIELD_FILM.path: 0.1}), "wipers")
 
 
@@ -231,23 +233,27 @@ def test_an_event_that_flickers_is_one() -> None:
 def test_a_child_with_an_adult_and_an_empty_car_need_nobody() -> None:
     child = behind("BABY")
     adult = {OCCUPANT.PASSENGER.occupied.path: True, OCCUPANT.PASSENGER.kind.path: "ELDERLY"}
-    for signals, is_bait in (({**LEFT, **child}, False), ({**LEFT, **child, **adult}, True), (LEFT, True)):
-        assert [event.bait for event in found(stream(20, kmh=0, signals=signals), "left_behind")] == [is_bait]
+    for signals, is_lookalike in (({**LEFT, **child}, False), ({**LEFT, **child, **adult}, True), (LEFT, True)):
+        assert [event.lookalike for event in found(stream(20, kmh=0, signals=signals), "left_behind")] == [
+            is_lookalike
+        ]
     assert not found(stream(20, kmh=0, signals={**child, MOTION.GEAR.path: "P"}), "left_behind")
 
 
-@pytest.mark.parametrize(("kind", "is_bait"), [("ADULT", False), ("BABY", False), ("PET", True), ("OBJECT", True)])
-def test_everybody_aboard_is_belted_and_things_need_not_be(kind: str, is_bait: bool) -> None:
+@pytest.mark.parametrize(
+    ("kind", "is_lookalike"), [("ADULT", False), ("BABY", False), ("PET", True), ("OBJECT", True)]
+)
+def test_everybody_aboard_is_belted_and_things_need_not_be(kind: str, is_lookalike: bool) -> None:
     aboard = behind(kind)
     (event,) = found(stream(20, signals=aboard), "belt")
-    assert (event.bait, event.obliged_s is None) == (is_bait, is_bait)
+    assert (event.lookalike, event.obliged_s is None) == (is_lookalike, is_lookalike)
     assert not found(stream(20, signals={**aboard, OCCUPANT.REAR_LEFT.belted.path: True}), "belt")
 
 
 def test_a_red_light_does_not_end_an_open_belt() -> None:
     open_belt = {SEAT.DRIVER_BELT.path: False}
     drive = [moment(float(s), kmh=0.0 if 10 < s < 60 else 50.0, signals=open_belt) for s in range(80)]
-    assert [event.bait for event in found(drive, "belt")] == [False]
+    assert [event.lookalike for event in found(drive, "belt")] == [False]
 
 
 def test_the_same_limit_again_much_later_is_another_event() -> None:
@@ -266,9 +272,9 @@ def test_the_obligation_comes_sooner_the_faster_the_car() -> None:
 def test_a_little_above_the_sign_of_a_school_zone_is_a_look_alike() -> None:
     at_hours = {"limit_by_clock": True, **SCHOOL}
     events = found([moment(second, kmh=32, **at_hours) for second in range(20)], "school_zone")
-    assert [(event.bait, event.obliged_s) for event in events] == [(True, None)]
+    assert [(event.lookalike, event.obliged_s) for event in events] == [(True, None)]
     events = found([moment(second, kmh=29, **at_hours) for second in range(20)], "school_zone")
-    assert [(event.bait, event.obliged_s) for event in events] == [(False, None)]
+    assert [(event.lookalike, event.obliged_s) for event in events] == [(False, None)]
 
 
 def test_an_advised_speed_above_the_limit_settles_nothing() -> None:
@@ -288,5 +294,5 @@ def test_an_automatic_switch_lights_nothing_by_day() -> None:
 def test_rules_that_are_not_verified_oblige_to_nothing() -> None:
     """The French rule on dipped beam by day is secondary, the Swiss one verified."""
     snow = {"weather_code": 75, "visibility": 600.0, "signals": UNLIT, "at": NOON}
-    assert not [event for event in found(stream(10, **snow), "lamps") if not event.bait]
-    assert [event for event in found(stream(10, position=(8.6, 46.6), **snow), "lamps") if not event.bait]
+    assert not [event for event in found(stream(10, **snow), "lamps") if not event.lookalike]
+    assert [event for event in found(stream(10, position=(8.6, 46.6), **snow), "lamps") if not event.lookalike]

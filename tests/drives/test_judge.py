@@ -14,7 +14,7 @@ SPEEDING = DriveEvent(
     kind="over_limit",
     subject="50",
     words="60 where 50 apply",
-    bait=False,
+    lookalike=False,
     weight=1.0,
     observable_s=100.0,
     last_s=140.0,
@@ -24,7 +24,7 @@ SPEEDING = DriveEvent(
     deadline_s=114.0,
     severities=[(100.0, 1.0)],
 )
-BAIT = replace(SPEEDING, bait=True, obliged_s=None, deadline_s=None, due_until_s=None)
+LOOKALIKE = replace(SPEEDING, lookalike=True, obliged_s=None, deadline_s=None, due_until_s=None)
 APPROACH = replace(
     SPEEDING, kind="tunnel", subject="", value=None, obliged_s=None, deadline_s=None, due_until_s=None
 )
@@ -105,10 +105,10 @@ def test_an_alert_for_nothing_is_false() -> None:
 
 
 def test_an_act_on_a_look_alike_is_a_false_alarm() -> None:
-    found = judged(warn(110.0), events=(BAIT,))
-    assert found.acts[0].worth is Worth.BAIT
+    found = judged(warn(110.0), events=(LOOKALIKE,))
+    assert found.acts[0].worth is Worth.LOOKALIKE
     assert found.events[0].outcome is EventOutcome.TAKEN
-    assert judged(events=(BAIT,)).events[0].outcome is EventOutcome.AVOIDED
+    assert judged(events=(LOOKALIKE,)).events[0].outcome is EventOutcome.AVOIDED
 
 
 def test_a_repeat_within_a_minute_is_a_nuisance_unless_it_has_become_worse() -> None:
@@ -225,8 +225,8 @@ def test_each_nuisance_costs_the_same() -> None:
 
 
 def test_a_drive_without_events_is_won_by_silence() -> None:
-    assert score(judged(events=(BAIT,)), 600.0).value == 100.0
-    assert score(judged(warn(110.0), events=(BAIT,)), 600.0).value < 100.0
+    assert score(judged(events=(LOOKALIKE,)), 600.0).value == 100.0
+    assert score(judged(warn(110.0), events=(LOOKALIKE,)), 600.0).value < 100.0
     assert score(judged(events=()), 600.0).recall is None
 
 

@@ -199,7 +199,7 @@ def test_nothing_that_an_agent_reads_names_an_event(begin: Begin) -> None:
     words: list[str] = []
     played(begin(180.0), Reads())
     told = " ".join(words)
-    assert not [word for word in ("bait", "oblig", "deadline", "event", "over_limit", "due") if word in told]
+    assert not [word for word in ("lookalike", "oblig", "deadline", "event", "over_limit", "due") if word in told]
 
 
 @pytest.mark.slow
@@ -286,7 +286,7 @@ def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(begin: Begin)
 
     def judged(delay_s: float) -> list[JudgedEvent]:
         late = [replace(act, time_s=act.time_s + delay_s) for act in agent.acts]
-        return [event for event in judge(KINDS, watch.events, late, {}).events if not event.bait]
+        return [event for event in judge(KINDS, watch.events, late, {}).events if not event.lookalike]
 
     prompt = [event for event in judged(0.0) if event.outcome.is_credited]
     assert len(prompt) >= 2

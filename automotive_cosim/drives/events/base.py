@@ -34,7 +34,7 @@ class Sighting:
     """Whether something ought to be done now."""
     hold_s: float = 0.0
     """How long it must have been due until it is an obligation."""
-    bait: bool = False
+    lookalike: bool = False
     """Whether it only looks like an event: here no act is right."""
     severity: float = 1.0
     """How bad it is, 1 at the threshold; a repeated alert is right once it has risen."""
@@ -79,7 +79,7 @@ class EventKind(ABC):
     name: ClassVar[str]
     about: ClassVar[str]
     """What is due and why, in one sentence."""
-    bait: ClassVar[str]
+    lookalike: ClassVar[str]
     """What looks like it, in a few words."""
     source: ClassVar[str]
     """Where the times come from."""

@@ -47,7 +47,7 @@ class LimitUnits(EventKind):
 
     name = "limit_units"
     about = "beyond a border the signs have another unit of speed than the car shows"
-    bait = "a border beyond which the car already shows the unit of the signs"
+    lookalike = "a border beyond which the car already shows the unit of the signs"
     source = "our choice: told within 30 s, 670 m at 80 km/h, in which a driver meets the first sign"
     grace_s = 30.0
     alerts = frozenset[AlertKind]()
@@ -64,7 +64,7 @@ class LimitUnits(EventKind):
         words = f"signs in {signs}, the car shows {shown}"
         miles = 1.0 if signs == "mph" else 0.0
         if signs == shown:
-            yield Sighting(words, now.context.country, bait=True)
+            yield Sighting(words, now.context.country, lookalike=True)
         else:
             yield Sighting(words, now.context.country, due=True, hold_s=2.0, value=miles)
 
@@ -81,7 +81,7 @@ class RuleChange(EventKind):
 
     name = "rule_change"
     about = "beyond a border the law on lamps, horn or phone is another"
-    bait = "back in a country in which the car has been on this drive"
+    lookalike = "back in a country in which the car has been on this drive"
     source = "our choice: told within 50 s of the border"
     weight = 0.5
     grace_s = 48.0
@@ -95,7 +95,7 @@ class RuleChange(EventKind):
             return
         country = drive[-1].context.country
         if not crossed.is_new:
-            yield Sighting(f"back in {country}", country, bait=True)
+            yield Sighting(f"back in {country}", country, lookalike=True)
             return
         told = set(_law(crossed.before.context, verified=False))
         changed = [text for text in _law(drive[-1].context, verified=True) if text not in told]

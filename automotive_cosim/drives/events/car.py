@@ -35,7 +35,7 @@ class Belt(EventKind):
 
     name = "belt"
     about = "somebody rides without a belt"
-    bait = "an open belt while the car stands, or around a thing"
+    lookalike = "an open belt while the car stands, or around a thing"
     source = "UN R16, 8.4.2.4: on every seat, from 25 km/h; deadline: 15 s"
     weight = 1.5
     grace_s = 15.0
@@ -51,9 +51,9 @@ class Belt(EventKind):
                 continue
             whose = "the driver's belt is open" if one.seat is Seat.DRIVER else f"the {one.kind}'s belt is open"
             if not one.kind.is_person:
-                yield Sighting(whose, one.seat, bait=True)
+                yield Sighting(whose, one.seat, lookalike=True)
             elif now.signals[MOTION.GEAR.path] == "P" or all(speed_kmh(then) < 1.0 for then in drive[-HALT_S:]):
-                yield Sighting(f"{whose}, the car stands", one.seat, bait=True)
+                yield Sighting(f"{whose}, the car stands", one.seat, lookalike=True)
             else:
                 yield Sighting(f"{whose} at {kmh:.0f} km/h", one.seat, due=kmh >= BELT_KMH, hold_s=2.0)
 
@@ -63,7 +63,7 @@ class FlapOpen(EventKind):
 
     name = "door"
     about = "the trunk or the charging flap is open while the car moves"
-    bait = "a window or the sunroof open while the car moves"
+    lookalike = "a window or the sunroof open while the car moves"
     source = "UN R11 asks for a warning of doors not shut; 2 s; deadline: 20 s"
     grace_s = 20.0
     alerts = frozenset({AlertKind.VEHICLE})
@@ -78,7 +78,7 @@ class FlapOpen(EventKind):
             if signals[part.path]:
                 yield Sighting(f"{words} while driving", part.path, due=True, hold_s=2.0)
         if any(float(signals[part.path]) > 0 for part in WINDOWS):
-            yield Sighting("a window is open", "window", bait=True)
+            yield Sighting("a window is open", "window", lookalike=True)
 
 
 class Tyre(EventKind):
@@ -86,7 +86,7 @@ class Tyre(EventKind):
 
     name = "tyre"
     about = "a tyre has lost a fifth of its pressure"
-    bait = "a tyre that is a little low"
+    lookalike = "a tyre that is a little low"
     source = "UN R141 (and R64): at 20 % below, 200 kPa here; deadline: 60 s of the ten minutes that it allows"
     weight = 1.5
     grace_s = 60.0
@@ -100,7 +100,7 @@ class Tyre(EventKind):
         if lowest_kpa < LOW_KPA:
             yield Sighting(words, due=True, hold_s=5.0, severity=LOW_KPA / max(lowest_kpa, 1.0))
         elif lowest_kpa < WARM_KPA:
-            yield Sighting(words, bait=True)
+            yield Sighting(words, lookalike=True)
 
 
 class RangeShort(EventKind):
@@ -108,7 +108,7 @@ class RangeShort(EventKind):
 
     name = "range"
     about = "the battery's range ends before the destination"
-    bait = "a low battery that still reaches the destination"
+    lookalike = "a low battery that still reaches the destination"
     source = "a reserve of 2 km; deadline: 120 s, while ways to a charger are still open"
     grace_s = 120.0
     alerts = frozenset({AlertKind.VEHICLE})
@@ -122,4 +122,4 @@ class RangeShort(EventKind):
         if range_m < left_m + RESERVE_M:
             yield Sighting(words, due=True, hold_s=5.0)
         elif float(now.signals[ENERGY.LEVEL.path]) < 20.0:
-            yield Sighting(words, bait=True)
+            yield Sighting(words, lookalike=True)

@@ -28,7 +28,7 @@ class LampsMissing(EventKind):
 
     name = "lamps"
     about = "the dipped beam is off in the dark, in a tunnel, or where the law requires it"
-    bait = "a low sun or drizzle, in which the law requires no lamps"
+    lookalike = "a low sun or drizzle, in which the law requires no lamps"
     source = "UN R48, 6.2.7: 2 s; deadline: 10 s"
     alerts = frozenset({AlertKind.VISIBILITY})
     writes: ClassVar[Mapping[str, Wanted]] = {
@@ -49,7 +49,7 @@ class LampsMissing(EventKind):
             why = "in a tunnel" if now.driving.road.in_tunnel else "in the dark" if dark else "where the law asks"
             yield Sighting(f"no dipped beam {why}", due=True, hold_s=LAMP_S, value=1.0 if dark else 0.0)
         elif (sun is not None and sun.elevation_deg < LOW_SUN_DEG) or now.weather.precipitation > 0:
-            yield Sighting("no dipped beam by a low sun or in rain", bait=True, value=0.0)
+            yield Sighting("no dipped beam by a low sun or in rain", lookalike=True, value=0.0)
 
     def settles(self, act: WatchAct, value: float | None) -> bool:
         """By day an automatic switch lights nothing."""
@@ -62,7 +62,7 @@ class HighBeam(EventKind):
 
     name = "high_beam"
     about = "the high beam dazzles a driver ahead, or is on where the law forbids it"
-    bait = "high beam on an empty road where it is allowed"
+    lookalike = "high beam on an empty road where it is allowed"
     source = "UN R48, 6.1.9.3: 100 m to a vehicle ahead, 2 s; deadline: 6 s, one more vehicle met"
     grace_s = 6.0
     alerts = frozenset({AlertKind.VISIBILITY, AlertKind.DISTRACTION})
@@ -82,7 +82,7 @@ class HighBeam(EventKind):
             due = says(_with_nobody_coming(now.context), "high_beam", "forbidden")
             yield Sighting("high beam where the law forbids it", due=due, hold_s=LAMP_S)
         elif gap_m >= CLEAR_M:
-            yield Sighting("high beam on an empty road", bait=True)
+            yield Sighting("high beam on an empty road", lookalike=True)
 
 
 def _with_nobody_coming(context: GeoContext) -> GeoContext:
@@ -95,7 +95,7 @@ class FogLamps(EventKind):
 
     name = "fog_lamps"
     about = "a fog lamp is on where the law forbids it, so that it dazzles"
-    bait = "fog lamps in fog"
+    lookalike = "fog lamps in fog"
     source = "the law of the place; UN R48, 6.2.7: 2 s; deadline: 10 s"
     weight = 0.5
     alerts = frozenset({AlertKind.VISIBILITY})
@@ -114,4 +114,4 @@ class FogLamps(EventKind):
         if any(says(now.context, topic, "forbidden") for topic in lit):
             yield Sighting("a fog lamp where the law forbids it", due=True, hold_s=LAMP_S)
         elif lit:
-            yield Sighting("a fog lamp where it is allowed", bait=True)
+            yield Sighting("a fog lamp where it is allowed", lookalike=True)

@@ -27,7 +27,7 @@ class Fatigue(EventKind):
 
     name = "fatigue"
     about = "the driver has been driving for two hours without a break"
-    bait = "more than one hour, but not two"
+    lookalike = "more than one hour, but not two"
     source = "The Highway Code, rule 91: after two hours; deadline: 120 s, the next lay-by"
     grace_s = 120.0
     alerts = frozenset({AlertKind.FATIGUE})
@@ -39,7 +39,7 @@ class Fatigue(EventKind):
         if driven is None or driven.value is None:
             return
         due = driven.value >= BREAK_AFTER_H
-        yield Sighting(driven.text, due=due, hold_s=5.0 if due else 0.0, bait=not due)
+        yield Sighting(driven.text, due=due, hold_s=5.0 if due else 0.0, lookalike=not due)
 
 
 class PhoneUse(EventKind):
@@ -47,7 +47,7 @@ class PhoneUse(EventKind):
 
     name = "phone"
     about = "the driver holds the phone and looks at it while the car moves"
-    bait = "a call by the phone in its cradle"
+    lookalike = "a call by the phone in its cradle"
     source = (
         "Regulation (EU) 2023/2590: gaze away for 6 s at 20 to 50 km/h, for 3.5 s above; deadline: as long again"
     )
@@ -63,7 +63,7 @@ class PhoneUse(EventKind):
         if where == "AWAY" or kmh < SLOW_KMH:
             return
         if where == "CRADLE":
-            yield Sighting("the phone is used in its cradle", bait=True)
+            yield Sighting("the phone is used in its cradle", lookalike=True)
         else:
             yield Sighting(f"the phone in the driver's hand at {kmh:.0f} km/h", due=True, hold_s=gaze_s(kmh))
 
@@ -73,7 +73,7 @@ class LeftBehind(EventKind):
 
     name = "left_behind"
     about = "the driver has left the parked car, and a child or a pet is alone in it"
-    bait = "a car that is left empty, or with a thing or an adult in it"
+    lookalike = "a car that is left empty, or with a thing or an adult in it"
     source = (
         "Euro NCAP, child presence detection: a warning within 15 s of leaving; deadline: the escalation, due 90 s "
         "after leaving"
@@ -92,7 +92,7 @@ class LeftBehind(EventKind):
         aboard = tuple(seated_by(signals))
         alone = [one.kind for one in aboard if one.kind.needs_care]
         if not alone or any(one.kind.is_person and not one.kind.needs_care for one in aboard):
-            yield Sighting(f"the driver has left; aboard: {', '.join(one.kind for one in aboard)}", bait=True)
+            yield Sighting(f"the driver has left; aboard: {', '.join(one.kind for one in aboard)}", lookalike=True)
             return
         air_c = float(signals[HVAC.FORECAST.path])
         words = f"{' and '.join(alone)} alone in the parked car, {air_c:.0f} degrees in {MINUTES:.0f} min"

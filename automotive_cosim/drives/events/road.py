@@ -51,7 +51,7 @@ class TunnelAhead(EventKind):
 
     name = "tunnel"
     about = "a tunnel comes and the lamps would stay off in it"
-    bait = "a tunnel that is still a kilometre away"
+    lookalike = "a tunnel that is still a kilometre away"
     source = "10 s before the portal; deadline: the portal, less 1 s to switch"
     alerts = frozenset({AlertKind.TUNNEL, AlertKind.VISIBILITY})
     writes: ClassVar[Mapping[str, Wanted]] = {
@@ -68,7 +68,7 @@ class TunnelAhead(EventKind):
         words = f"a tunnel in {away_m:.0f} m"
         if away_m > NEAR_M:
             if away_m <= 3 * NEAR_M:
-                yield Sighting(words, "far", bait=True)
+                yield Sighting(words, "far", lookalike=True)
             return
         dark = not now.signals[LIGHTS.LOW_BEAM.path] and now.signals[LIGHTS.SWITCH.path] != "AUTO"
         left_s = away_m / mps
@@ -80,7 +80,7 @@ class JamTail(EventKind):
 
     name = "jam_tail"
     about = "the car approaches the tail of a jam at speed"
-    bait = "traffic that flows slowly, but flows"
+    lookalike = "traffic that flows slowly, but flows"
     source = "15 s before the tail; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) end there"
     weight = 2.0
     alerts = frozenset({AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.DISTANCE, AlertKind.SPEED})
@@ -94,7 +94,7 @@ class JamTail(EventKind):
         away_m = None if tail is None else tail.distance_m
         if away_m is None:
             if now.driving.around.relative_speed < 0.6 and mps > 2.0:
-                yield Sighting(f"traffic at {now.driving.around.relative_speed:.0%}", bait=True)
+                yield Sighting(f"traffic at {now.driving.around.relative_speed:.0%}", lookalike=True)
             return
         if not 0 < away_m <= JAM_M or speed_kmh(now) < JAM_FROM_KMH:
             return
@@ -122,7 +122,7 @@ class StandsAhead(EventKind):
         if there is None or there.distance_m is None:
             kind = IncidentKind(self.sights.value)
             if any(incident.kind is kind for incident in now.driving.ahead.incidents):
-                yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", bait=True)
+                yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", lookalike=True)
         elif mps > 5.0:
             yield Sighting(
                 there.text,
@@ -136,7 +136,7 @@ class BreakdownAhead(StandsAhead):
 
     name = "breakdown"
     about = "a broken-down vehicle stands ahead on the route"
-    bait = "one that is reported on another road or the other carriageway"
+    lookalike = "one that is reported on another road or the other carriageway"
     sights = SightKind.BREAKDOWN
     alerts = frozenset({AlertKind.MOVE_OVER, AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.SPEED})
 
@@ -146,7 +146,7 @@ class RoadworksAhead(StandsAhead):
 
     name = "roadworks"
     about = "roadworks narrow the road ahead on the route"
-    bait = "roadworks that are reported on another road or the other carriageway"
+    lookalike = "roadworks that are reported on another road or the other carriageway"
     weight = 1.0
     sights = SightKind.ROADWORKS
     alerts = frozenset({AlertKind.TRAFFIC, AlertKind.MOVE_OVER, AlertKind.LANE, AlertKind.SPEED})
@@ -157,7 +157,7 @@ class BlueLight(EventKind):
 
     name = "blue_light"
     about = "an emergency vehicle with blue light comes from behind and wants to pass"
-    bait = "a plain van close behind"
+    lookalike = "a plain van close behind"
     source = "150 m: 8 s at a closing speed of 70 km/h; deadline: 8 s"
     weight = 2.0
     grace_s = 8.0
@@ -172,7 +172,7 @@ class BlueLight(EventKind):
             due = behind.distance_m <= BLUE_DUE_M
             yield Sighting(f"a blue light {behind.distance_m:.0f} m behind", due=due, hold_s=1.0)
         elif follower is not None:
-            yield Sighting(f"a car {follower.distance_m or 0:.0f} m behind comes closer", bait=True)
+            yield Sighting(f"a car {follower.distance_m or 0:.0f} m behind comes closer", lookalike=True)
 
 
 class LeaderClose(EventKind):
@@ -180,7 +180,7 @@ class LeaderClose(EventKind):
 
     name = "leader_close"
     about = "the gap to the vehicle ahead is shorter than the law asks, or than a driver needs to react"
-    bait = "a gap a little longer than that"
+    lookalike = "a gap a little longer than that"
     source = "the law of the place, else 1 s; 3 s to reopen a gap; deadline: 6 s"
     grace_s = 6.0
     alerts = frozenset({AlertKind.DISTANCE, AlertKind.COLLISION})
@@ -201,7 +201,7 @@ class LeaderClose(EventKind):
         if gap_s < least_s:
             yield Sighting(words, due=True, hold_s=GAP_HOLD_S, severity=least_s / max(gap_s, 0.1))
         elif gap_s < least_s + 0.5:
-            yield Sighting(words, bait=True)
+            yield Sighting(words, lookalike=True)
 
 
 def _lawful_s(now: Moment) -> Iterator[float]:
@@ -217,7 +217,7 @@ class LeaderBrakes(EventKind):
 
     name = "leader_brakes"
     about = "only hard braking avoids the vehicle ahead"
-    bait = "a vehicle ahead that slows down, with room to brake gently"
+    lookalike = "a vehicle ahead that slows down, with room to brake gently"
     source = "ISO 15623: by needed deceleration, 3.4 m/s2 (Archer, 2005); deadline: time to collision less 1.1 s"
     weight = 2.0
     alerts = frozenset({AlertKind.COLLISION, AlertKind.DISTANCE})
@@ -233,7 +233,7 @@ class LeaderBrakes(EventKind):
             left_s = leader.time_to_collision_s - REACTION_S
             yield Sighting(words, due=True, left_s=left_s, severity=leader.drac_mps2 / HARD_MPS2)
         elif leader.drac_mps2 >= HARD_MPS2 / 2:
-            yield Sighting(words, bait=True)
+            yield Sighting(words, lookalike=True)
 
 
 class TractorAhead(EventKind):
@@ -241,7 +241,7 @@ class TractorAhead(EventKind):
 
     name = "tractor"
     about = "the car comes up fast behind a slow vehicle on a fast road"
-    bait = "a slow vehicle ahead in a town"
+    lookalike = "a slow vehicle ahead in a town"
     source = "8 s to the vehicle ahead; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO)"
     alerts = frozenset(
         {AlertKind.TRAFFIC, AlertKind.DISTANCE, AlertKind.COLLISION, AlertKind.SPEED, AlertKind.MOVE_OVER}
@@ -261,7 +261,7 @@ class TractorAhead(EventKind):
             return
         words = f"a vehicle at {leader.speed_mps * KMH_PER_MPS:.0f} km/h {leader.gap_m:.0f} m ahead"
         if limit_kmh < FAST_ROAD_KMH:
-            yield Sighting(words, bait=True)
+            yield Sighting(words, lookalike=True)
             return
         left_s = time_left_s(leader.gap_m, closing_mps)
         yield Sighting(words, due=leader.gap_m <= TRACTOR_DUE_S * closing_mps, left_s=left_s)

@@ -55,7 +55,7 @@ class OverLimit(SpeedKind):
 
     name = "over_limit"
     about = "the car is faster than the sign or the law of the road allows"
-    bait = "a little above the limit, within the error limit of speed meters: 52 in a 50"
+    lookalike = "a little above the limit, within the error limit of speed meters: 52 in a 50"
     source = "Regulation (EU) 2021/1958, annex I: the tone after 3 to 6 s by ratio; deadline: the tone's 5 s twice"
     grace_s = 10.0
     alerts = frozenset({AlertKind.SPEED})
@@ -70,13 +70,13 @@ class OverLimit(SpeedKind):
 
 
 def _over(kmh: float, limit_kmh: float, words: str) -> Iterator[Sighting]:
-    """The sighting of a speed above a limit: a bait within the margin, due above it."""
+    """The sighting of a speed above a limit: a look-alike within the margin, due above it."""
     excess_kmh = kmh - limit_kmh
     if excess_kmh <= 1.0:
         return
     subject = f"{limit_kmh:.0f}"
     if excess_kmh <= margin_kmh(limit_kmh):
-        yield Sighting(words, subject, bait=True, value=limit_kmh)
+        yield Sighting(words, subject, lookalike=True, value=limit_kmh)
         return
     hold = hold_s(kmh / limit_kmh)
     severity = max(1.0, excess_kmh / 10)
@@ -88,7 +88,7 @@ class LimitFalls(SpeedKind):
 
     name = "limit_falls"
     about = "the limit falls ahead, and the car no longer gets down to it by coasting"
-    bait = "a lower limit ahead that the car already keeps"
+    lookalike = "a lower limit ahead that the car already keeps"
     source = "coasting 1 m/s2; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) end at the sign"
     weight = 0.5
     alerts = frozenset({AlertKind.SPEED, AlertKind.SCHOOL})
@@ -106,7 +106,7 @@ class LimitFalls(SpeedKind):
             return
         words, subject = f"{following.kmh:.0f} km/h in {away_m:.0f} m at {kmh:.0f} km/h", f"{following.kmh:.0f}"
         if kmh <= following.kmh + 1.0:
-            yield Sighting(words, subject, bait=True, value=following.kmh)
+            yield Sighting(words, subject, lookalike=True, value=following.kmh)
             return
         right_mps = following.mps + margin_kmh(following.kmh) / 3.6
         mps = now.driving.speed_mps
@@ -128,7 +128,7 @@ class SchoolHours(SpeedKind):
 
     name = "school_zone"
     about = "the car is in a school zone at its hours, faster than its sign"
-    bait = "a school zone outside its hours, or a little above its sign"
+    lookalike = "a school zone outside its hours, or a little above its sign"
     source = "Regulation (EU) 2021/1958, annex I, the tone after 3 s; deadline: 8 s, 100 m at 50 km/h"
     weight = 2.0
     grace_s = 8.0
@@ -143,11 +143,11 @@ class SchoolHours(SpeedKind):
         limit_kmh = road.limit.kmh
         if not is_school_time(now) or limit_kmh is None:
             if road.limit_hours:
-                yield Sighting("a school zone outside its hours", road.name, bait=True, value=limit_kmh)
+                yield Sighting("a school zone outside its hours", road.name, lookalike=True, value=limit_kmh)
             return
         if 1.0 < kmh - limit_kmh <= margin_kmh(limit_kmh):
             yield Sighting(
-                f"{kmh:.0f} km/h in a school zone of {limit_kmh:.0f}", road.name, bait=True, value=limit_kmh
+                f"{kmh:.0f} km/h in a school zone of {limit_kmh:.0f}", road.name, lookalike=True, value=limit_kmh
             )
             return
         over_kmh = kmh - limit_kmh - margin_kmh(limit_kmh)
@@ -166,7 +166,7 @@ class WeatherSpeed(SpeedKind):
 
     name = "weather_speed"
     about = "rain, fog or snow lowers the limit by law, or the car cannot stop within what its driver sees"
-    bait = "a road whose limit is lower in rain or fog, in dry clear weather"
+    lookalike = "a road whose limit is lower in rain or fog, in dry clear weather"
     source = "the law of the place; Vienna Convention, art. 13; times as over the limit"
     weight = 1.5
     grace_s = 10.0
@@ -180,7 +180,7 @@ class WeatherSpeed(SpeedKind):
             return
         if limit is not None and is_reduced(context, limit):
             words = f"{kmh:.0f} km/h where {limit.kmh:.0f} apply {limit.text}"
-            over = [sighting for sighting in _over(kmh, limit.kmh, words) if not sighting.bait]
+            over = [sighting for sighting in _over(kmh, limit.kmh, words) if not sighting.lookalike]
             if over:  # else one may still see too little to stop
                 yield from over
                 return
@@ -193,5 +193,5 @@ class WeatherSpeed(SpeedKind):
         for reduced in context.reduced_limits:
             value = reduced.rule.cases[0].value
             if reduced.value is None and isinstance(value, float) and kmh > value + margin_kmh(value):
-                yield Sighting(f"{reduced.rule.text}, which it is not", bait=True, value=value)
+                yield Sighting(f"{reduced.rule.text}, which it is not", lookalike=True, value=value)
                 return

@@ -25,7 +25,7 @@ class GlassFogs(EventKind):
 
     name = "glass_fog"
     about = "the windshield fogs inside while the car moves"
-    bait = "a breath of mist on the glass, that no screen speaks of"
+    lookalike = "a breath of mist on the glass, that no screen speaks of"
     source = "a fifth of the light is lost, as the screens say; deadline: 20 s, what a defroster takes"
     grace_s = 20.0
     alerts = frozenset({AlertKind.VISIBILITY})
@@ -46,7 +46,7 @@ class GlassFogs(EventKind):
             return
         words = f"windshield fogged by {fog:.0%}"
         if fog < NOTICED:
-            yield Sighting(words, bait=True)
+            yield Sighting(words, lookalike=True)
         else:
             yield Sighting(words, due=True, hold_s=3.0, severity=fog / NOTICED)
 
@@ -56,7 +56,7 @@ class Wipers(EventKind):
 
     name = "wipers"
     about = "rain covers the windshield and the wipers are off"
-    bait = "a few drops that cover less than a fifth of the glass"
+    lookalike = "a few drops that cover less than a fifth of the glass"
     source = "a fifth of the light is lost; deadline: 10 s"
     alerts = frozenset({AlertKind.VISIBILITY, AlertKind.WEATHER})
     writes: ClassVar[Mapping[str, Wanted]] = {BODY.FRONT_WIPER.path: lambda value: value != "OFF"}
@@ -71,7 +71,7 @@ class Wipers(EventKind):
         if film >= NOTICED:
             yield Sighting(words, due=True, hold_s=3.0, severity=film / NOTICED)
         elif float(now.signals[BODY.RAIN_INTENSITY.path]) > 0:
-            yield Sighting(words, bait=True)
+            yield Sighting(words, lookalike=True)
 
 
 class Slippery(EventKind):
@@ -79,7 +79,7 @@ class Slippery(EventKind):
 
     name = "slippery"
     about = "the road has the grip of snow or ice and the car is fast"
-    bait = "cold, but a dry road"
+    lookalike = "cold, but a dry road"
     source = "friction: VTI meddelande 911A; deadline: 20 s, 450 m at 80 km/h"
     weight = 1.5
     grace_s = 20.0
@@ -99,4 +99,4 @@ class Slippery(EventKind):
         elif friction < 0.9:
             yield Sighting(f"a wet road, friction {friction:.2f}", "wet")
         elif now.weather.temperature_2m <= COLD_C:
-            yield Sighting(f"{now.weather.temperature_2m:.0f} degrees and dry", bait=True)
+            yield Sighting(f"{now.weather.temperature_2m:.0f} degrees and dry", lookalike=True)
