@@ -19,7 +19,7 @@ from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, spoken
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
-from automotive_cosim.drives.judge import Judgement, judge
+from automotive_cosim.drives.judge import Judgement, facts_of, judge
 from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed
 from automotive_cosim.episode.baseline import Baseline
@@ -234,5 +234,7 @@ class Watch(Session):
             self._advance(max(0.0, self._left_s()))
         for twin in self.twins:
             self.due_anyway[twin.index] = twin.due_s
-        self.judgement = judge(KINDS, self.events, self.acts, self.due_anyway, self.moments[0].commands)
+        self.judgement = judge(
+            KINDS, self.events, self.acts, self.due_anyway, facts_of(self.moments), self.moments[0].commands
+        )
         super()._finish(end)

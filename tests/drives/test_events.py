@@ -20,7 +20,16 @@ from automotive_cosim.cockpit.signals import (
     SEAT,
     TYRE,
 )
-from automotive_cosim.contracts import AlertKind, IncidentKind, RoadIncident, Sight, SightKind, SlowDown
+from automotive_cosim.contracts import (
+    AlertKind,
+    IncidentKind,
+    Limit,
+    LimitSource,
+    RoadIncident,
+    Sight,
+    SightKind,
+    SlowDown,
+)
 from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.events.tracker import CLOSE_S, REOPEN_S
 from automotive_cosim.drives.margins import BORDER_S
@@ -102,11 +111,11 @@ SCENES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "leader_close": ({"kmh": 50, "leader": vehicle(12.0)}, {"kmh": 50, "leader": vehicle(32.0)}),
     "leader_brakes": (
         {"leader": vehicle(15.0, 10, time_to_collision_s=3.5, drac_mps2=4.1)},
-        {"leader": vehicle(30.0, 10, time_to_collision_s=4.0, drac_mps2=2.0)},
+        {"leader": vehicle(60.0, 22, time_to_collision_s=9.0, drac_mps2=0.6)},
     ),
     "tractor": (
         {"kmh": 80, "limit": limit(80), "leader": vehicle(90.0, 25)},
-        {"kmh": 50, "limit": limit(50), "leader": vehicle(40.0, 25)},
+        {"kmh": 50, "limit": limit(50), "leader": vehicle(120.0, 25)},
     ),
     "belt": ({"signals": {SEAT.DRIVER_BELT.path: False}}, {"kmh": 0, "signals": {SEAT.DRIVER_BELT.path: False}}),
     "door": ({"signals": {CABIN.TRUNK.path: True}}, {"signals": {CABIN.DRIVER_WINDOW.path: 50.0}}),
@@ -157,6 +166,49 @@ def test_a_look_alike_obliges_to_nothing(name: str) -> None:
     events = found(stream(20, **lookalike), name)
     assert [event.lookalike for event in events] == [True]
     assert events[0].obliged_s is None
+
+
+@pytest.mark.parametrize("name", KINDS)
+def test_a_fact_speaks_against_a_warning_of_a_look_alike_and_none_against_one_of_an_event(name: str) -> None:
+    truth, lookalike = SCENES[name]
+    assert KINDS[name].speaks_against(stream(20, **truth)) is None
+    assert KINDS[name].speaks_against(stream(20, **lookalike))
+
+
+UNDUE: dict[str, list[dict[str, Any]]] = {
+    "over_limit": [{"kmh": 15, "limit": limit(7)}, {"limit": Limit(None, LimitSource.NONE), "road_class": ""}],
+    "limit_falls": [{"kmh": 80, "next_limit": limit(50), "next_limit_distance_m": 1500.0, "limit": limit(80)}],
+    "weather_speed": [{"visibility": 800.0, "weather_code": 45, "kmh": 30}],
+    "lamps": [
+        {"visibility": 24.0, "weather_code": 45, "signals": UNLIT, "position": place}
+        for place in ((2.0, 48.3), (55.3, 25.2), (-73.97, 40.77))
+    ],
+    "high_beam": [{"signals": {LIGHTS.HIGH_BEAM.path: True}, "leader": vehicle(140.0)}],
+    "tunnel": [{"tunnel_distance_m": 600.0, "kmh": 50}],
+    "leader_close": [{"kmh": 20, "leader": vehicle(10.0, 20)}],
+    "leader_brakes": [{"leader": vehicle(30.0, 10, time_to_collision_s=4.0, drac_mps2=2.0)}],
+    "tractor": [{"kmh": 50, "limit": limit(50), "leader": vehicle(60.0, 25)}],
+    "belt": [{"kmh": 10, "signals": {SEAT.DRIVER_BELT.path: False}}],
+    "phone": [{"kmh": 10, "signals": {CALL.PHONE.path: "HAND"}}],
+    "wipers": [{"kmh": 0, "signals": {GLASS.WINDSHIELD_FILM.path: 0.4, BODY.FRONT_WIPER.path: "OFF"}}],
+}
+"""By kind, scenes in which a warning is true although nothing is due."""
+
+
+@pytest.mark.parametrize(("name", "scene"), [(name, scene) for name, scenes in UNDUE.items() for scene in scenes])
+def test_a_true_warning_is_never_false(name: str, scene: dict[str, Any]) -> None:
+    assert KINDS[name].speaks_against(stream(20, **scene)) is None
+
+
+def test_a_tyre_that_leaks_prepares_the_event_and_one_that_is_low_does_not() -> None:
+    """One leak, from the first loss that the sensor tells of to 200 kPa and below."""
+    drive = [moment(float(second), signals={TYRE.FRONT_LEFT.path: 250.0 - 0.7 * second}) for second in range(100)]
+    event, *others = found(drive, "tyre")
+    assert not others
+    assert event.observable_s < 20.0
+    assert event.obliged_s == pytest.approx(77.0, abs=1.0)
+    steady = [moment(float(second), signals={TYRE.FRONT_LEFT.path: 237.0}) for second in range(30)]
+    assert KINDS["tyre"].speaks_against(steady) == "the softest tyre has 237 kPa of 250, and keeps them"
 
 
 @pytest.mark.parametrize("name", KINDS)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.contracts import AlertKind
+from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import Judgement, judge, most_frequent
@@ -30,7 +30,7 @@ def drive(family: str) -> Recorded:
 
 
 def judged(drive: Recorded, acts: Iterable[WatchAct], events: Sequence[DriveEvent] | None = None) -> Judgement:
-    return judge(KINDS, drive.events if events is None else events, list(acts), {})
+    return judge(KINDS, drive.events if events is None else events, list(acts), {}, drive.against)
 
 
 def scored(drive: Recorded, acts: Iterable[WatchAct], events: Sequence[DriveEvent] | None = None) -> Score:
@@ -108,6 +108,34 @@ def test_who_alerts_by_rote_does_worse_than_nobody(drive: Recorded) -> None:
     assert scored(drive, (WatchAct(at_s, AlertKind.SPEED) for at_s in every(drive, 30.0))).value < 0.0
     likeliest = most_frequent(judged(drive, ()), KINDS)
     assert scored(drive, (WatchAct(at_s, likeliest) for at_s in every(drive, 30.0))).value < 0.0
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_against_each_act_that_is_charged_a_fact_speaks(drive: Recorded) -> None:
+    """Every kind of alert, stops and slow driving asked for, whenever facts are on record: each by itself."""
+    requests = [(PullOver(),), (SlowDown(20.0),)]
+    for at_s in drive.facts_s:
+        for act in (
+            *(WatchAct(at_s, alert) for alert in AlertKind),
+            *(WatchAct(at_s, requests=r) for r in requests),
+        ):
+            (found,) = judged(drive, (act,)).acts
+            meant = [kind for kind in KINDS.values() if kind.settles(act, None)]
+            facts = [drive.against(kind, at_s) for kind in meant]
+            assert found.worth.is_nuisance is (None not in facts), (found, facts)
+            assert bool(found.reason) is found.worth.is_nuisance
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_what_is_on_its_way_is_no_false_alarm(drive: Recorded) -> None:
+    """From the instant at which an event can be known, each of its alerts is at worst neutral."""
+    for event in drive.events:
+        if not event.lookalike:
+            for alert in KINDS[event.kind].alerts:
+                for at_s in {event.observable_s, event.obliged_s or event.observable_s}:
+                    (found,) = judged(drive, [WatchAct(at_s, alert)]).acts
+                    too_fast = alert is AlertKind.SPEED and event.value is not None
+                    assert not found.worth.is_nuisance or too_fast, (event, alert, found)
 
 
 @pytest.mark.parametrize("family", EVERY)

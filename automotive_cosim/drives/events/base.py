@@ -95,6 +95,11 @@ class EventKind(ABC):
     """Words one of which must be in what is said to the driver for that to settle it; none if saying never does."""
     writes: ClassVar[Mapping[str, Wanted]] = {}
     """Signals that settle it, by path, and which values do."""
+    lasts_s: ClassVar[float] = 60.0
+    """For how long before the obligation a warning prepares for it: a driver remembers for a minute, and what comes
+    slowly for longer."""
+    neutral: ClassVar[str]
+    """What makes a warning true although nothing is due, so that it costs nothing."""
 
     @abstractmethod
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
@@ -104,6 +109,21 @@ class EventKind(ABC):
             drive: the moments so far, at least one.
         """
         ...
+
+    @abstractmethod
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """The fact, known to the agent at the last moment of a drive, that speaks against a warning of this kind;
+        None if none does. ``speaks_against`` asks only while nothing is sighted."""
+        ...
+
+    def speaks_against(self, drive: Sequence[Moment]) -> str | None:
+        """The fact that speaks against a warning of this kind at the last moment of a drive.
+
+        None if it is true: something of the kind is there, comes, or may be there for all that is known.
+        """
+        if any(not sighting.lookalike for sighting in self.sight(drive)):
+            return None
+        return self.against(drive)
 
     def settles(self, act: WatchAct, value: float | None) -> bool:
         """Whether an act is one that is right for an event.

@@ -49,6 +49,7 @@ class LimitUnits(EventKind):
     about = "beyond a border the signs have another unit of speed than the car shows"
     lookalike = "a border beyond which the car already shows the unit of the signs"
     source = "our choice: told within 30 s, 670 m at 80 km/h, in which a driver meets the first sign"
+    neutral = "as long as the units differ"
     grace_s = 30.0
     alerts = frozenset[AlertKind]()
     says = ("mph", "miles", "km/h", "kilomet")
@@ -75,6 +76,11 @@ class LimitUnits(EventKind):
             written == wanted for path, written in act.writes if path == HMI.DISTANCE_UNIT.path
         )
 
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Signs in the unit of the display."""
+        signs, shown = drive[-1].context.speed_unit, shown_unit(drive[-1])
+        return f"signs in {signs}, and the car shows {shown}" if signs == shown else None
+
 
 class RuleChange(EventKind):
     """A country with another law on lamps, horn or phone, for the first time on this drive."""
@@ -83,6 +89,7 @@ class RuleChange(EventKind):
     about = "beyond a border the law on lamps, horn or phone is another"
     lookalike = "back in a country in which the car has been on this drive"
     source = "our choice: told within 50 s of the border"
+    neutral = "within a minute of the border"
     weight = 0.5
     grace_s = 48.0
     alerts = frozenset[AlertKind]()
@@ -101,6 +108,13 @@ class RuleChange(EventKind):
         changed = [text for text in _law(drive[-1].context, verified=True) if text not in told]
         if changed:
             yield Sighting(f"another law in {country}: {'; '.join(changed)}", country, due=True, hold_s=2.0)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No border, or one into a country that the driver comes from."""
+        crossed, country = crossing(drive), drive[-1].context.country
+        if crossed is None:
+            return "no border in the last minute"
+        return None if crossed.is_new else f"back in {country}"
 
 
 def _law(context: GeoContext, *, verified: bool) -> Iterator[str]:

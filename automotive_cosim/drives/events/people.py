@@ -18,6 +18,7 @@ ALONE_S = 15.0
 """Euro NCAP's protocol for child presence detection: a first warning within 15 s after the car has been locked."""
 WARM_C = 28.0
 """From here on the air of the parked car makes it worse; our choice."""
+SOON_H = 1 / 6
 BREAK_AFTER_H = 2.0
 """The Highway Code, rule 91: a break of at least 15 minutes after every two hours of driving."""
 
@@ -27,8 +28,10 @@ class Fatigue(EventKind):
 
     name = "fatigue"
     about = "the driver has been driving for two hours without a break"
-    lookalike = "more than one hour, but not two"
+    lookalike = "more than one hour, but ten minutes or more short of two"
     source = "The Highway Code, rule 91: after two hours; deadline: 120 s, the next lay-by"
+    neutral = "the last ten minutes before"
+    lasts_s = 600.0
     grace_s = 120.0
     alerts = frozenset({AlertKind.FATIGUE})
     requests = (PullOver,)
@@ -39,7 +42,16 @@ class Fatigue(EventKind):
         if driven is None or driven.value is None:
             return
         due = driven.value >= BREAK_AFTER_H
-        yield Sighting(driven.text, due=due, hold_s=5.0 if due else 0.0, lookalike=not due)
+        yield Sighting(
+            driven.text, due=due, hold_s=5.0 if due else 0.0, lookalike=driven.value < BREAK_AFTER_H - SOON_H
+        )
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """A shorter time at the wheel."""
+        driven = seen(drive[-1], SightKind.DRIVING_TIME)
+        if driven is None or driven.value is None:
+            return "less than an hour at the wheel"
+        return f"{driven.value:.1f} h at the wheel; a break is due after {BREAK_AFTER_H:.0f}"
 
 
 class PhoneUse(EventKind):
@@ -51,6 +63,7 @@ class PhoneUse(EventKind):
     source = (
         "Regulation (EU) 2023/2590: gaze away for 6 s at 20 to 50 km/h, for 3.5 s above; deadline: as long again"
     )
+    neutral = "in the hand below 20 km/h"
     weight = 1.5
     grace_s = 6.0
     alerts = frozenset({AlertKind.DISTRACTION})
@@ -67,6 +80,17 @@ class PhoneUse(EventKind):
         else:
             yield Sighting(f"the phone in the driver's hand at {kmh:.0f} km/h", due=True, hold_s=gaze_s(kmh))
 
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No phone in the hand, or a parked car."""
+        signals = drive[-1].signals
+        match signals[CALL.PHONE.path]:
+            case "HAND":
+                return "the car is parked" if signals[MOTION.GEAR.path] == "P" else None
+            case "CRADLE":
+                return "the phone is in its cradle"
+            case _:
+                return "the driver uses no phone"
+
 
 class LeftBehind(EventKind):
     """A child or a pet stays in the parked car without anybody who could help it."""
@@ -78,6 +102,7 @@ class LeftBehind(EventKind):
         "Euro NCAP, child presence detection: a warning within 15 s of leaving; deadline: the escalation, due 90 s "
         "after leaving"
     )
+    neutral = "the first 15 s after the driver has left"
     weight = 2.0
     grace_s = 75.0
     alerts = frozenset({AlertKind.VEHICLE})
@@ -97,3 +122,13 @@ class LeftBehind(EventKind):
         air_c = float(signals[HVAC.FORECAST.path])
         words = f"{' and '.join(alone)} alone in the parked car, {air_c:.0f} degrees in {MINUTES:.0f} min"
         yield Sighting(words, due=True, hold_s=ALONE_S, severity=max(1.0, air_c / WARM_C))
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """A driver who is there, or nobody left who needs care."""
+        signals = drive[-1].signals
+        if signals[OCCUPANT.DRIVER.occupied.path]:
+            return "the driver is in the car"
+        if signals[MOTION.GEAR.path] != "P":
+            return None
+        aboard = ", ".join(one.kind for one in seated_by(signals)) or "nobody"
+        return f"the driver has left; aboard: {aboard}"
