@@ -10,7 +10,7 @@ change is an event.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
@@ -21,13 +21,17 @@ from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import Judgement, facts_of, judge
 from automotive_cosim.drives.order import STANDING_ORDER
-from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed
+from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
 from automotive_cosim.interface.observe import Channel
 
+CHANGED = "something changed"
+"""What a result says of all that ends a wait; the readings say what it was."""
+READ_BACK = 20
+"""Moments that readings look back on for their trend."""
 TWIN_S = 120.0
 """How long a do-nothing copy is driven at most to see whether its event becomes an obligation."""
 
@@ -81,6 +85,8 @@ class Watch(Session):
     """By number of an event, when its obligation arose in its do-nothing copy."""
     changes: list[Noticed] = field(default_factory=list)
     """What has changed since the last observation."""
+    marked: tuple[str, ...] = ()
+    """Names of the readings that the present observation marks as changed."""
     waits: int = 0
     wakes: int = 0
     judgement: Judgement | None = None
@@ -107,6 +113,7 @@ class Watch(Session):
         begun: dict[str, Any] = beginning(world, STANDING_ORDER, conditions, (), listener)
         watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
+        watch._read()
         return watch
 
     @property
@@ -165,9 +172,23 @@ class Watch(Session):
 
     def _told(self, code: FeedbackCode, text: str) -> Feedback:
         self.wakes += self._is_woken
-        changed = [change.words for change in self.changes]
-        self.changes.clear()
+        changed = [CHANGED] if self._is_woken else []
         return Feedback(code, "; ".join([text, *changed] if text else changed))
+
+    def _proceed(
+        self, action: Action | None, feedback: Feedback, cost_s: float = 0.0, said: tuple[str, ...] = ()
+    ) -> None:
+        super()._proceed(action, feedback, cost_s, said)
+        self._read()
+
+    def _read(self) -> None:
+        """Adds what the car reads to the observation, and marks what has changed since the last one."""
+        self.marked = tuple(change.name for change in self.changes)
+        self.changes.clear()
+        vehicle = self.observation.vehicle
+        if vehicle is not None:
+            told = replace(vehicle, noticed=noticed(self.moments[-READ_BACK:], self.marked))
+            self.observation = replace(self.observation, vehicle=told)
 
     @property
     def _is_woken(self) -> bool:
@@ -196,7 +217,7 @@ class Watch(Session):
             left_s -= tick_s
 
     def _note(self, moment: Moment) -> None:
-        self.changes += self.alarm.see(moment)
+        self.changes += self.alarm.see(self.moments[-READ_BACK:])
         for event in self.tracker.see(self.moments):
             if not event.lookalike and event.obliged_s is None:
                 index = len(self.tracker.events) - 1 - self.tracker.events[::-1].index(event)

@@ -84,7 +84,7 @@ def test_target_is_an_index_or_a_point_never_both(kind: ActionType):
         ({"action_type": "click", "index": "1"}, "int"),
         ({"action_type": "click", "index": True}, "int"),
         ({"action_type": "click", "idx": 1}, "index"),
-        ({"action_type": "wait", "seconds": 0}, "1 to 10"),
+        ({"action_type": "wait", "seconds": 0}, "1 to 60"),
         ({"action_type": "answer", "text": "x" * 121}, "120"),
         ({"action_type": "request_reroute", "destination": "x" * 121}, "destination has 121"),
         ({"action_type": "open_app", "app_name": "x" * 121}, "app_name has 121"),

@@ -83,7 +83,7 @@ def drive(family: str, simulations: Simulations) -> Recorded:
         moments = [world.moment]
         while moments[-1].time_s < moments[0].time_s + script.duration_s:
             tracker.see(moments)
-            if any(change.wakes for change in alarm.see(moments[-1])):
+            if any(change.wakes for change in alarm.see(moments)):
                 wakes_s.append(moments[-1].time_s)
             if len(moments) % FACTS_S == 1:
                 facts_s.append(moments[-1].time_s)
