@@ -158,7 +158,9 @@ class ModelAgent:
             with_marks = _marked(seen)
             pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
         history = self._history[-WATCH_HISTORY:] if self._keeps_watch else self._history
-        text = prompt.turn(self._profile, seen, history, plan, self._recalled, bool(pictures))
+        text = prompt.turn(
+            self._profile, seen, history, plan, self._recalled, bool(pictures), on_watch=self._keeps_watch
+        )
         self._asking.note(StageName.PERCEIVE, seen, text)
         reply, asked = self._asking.ask(text, pictures)
         try:

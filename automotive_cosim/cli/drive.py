@@ -97,7 +97,7 @@ def _tell(console: Console, row: WatchRow) -> None:
     lines = [
         (
             event.observable_s,
-            f"{'bait ' if event.bait else 'event'}  {event.kind}: {event.words}",
+            f"{'lookalike ' if event.lookalike else 'event'}  {event.kind}: {event.words}",
             event.outcome.value,
         )
         for event in row.events

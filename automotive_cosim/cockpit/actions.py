@@ -45,14 +45,16 @@ TEXT_LIMIT = 120
 DISTANCE_LIMIT_PX = 8192
 """Longest drag, larger than any screen."""
 SECONDS_LIMIT = 10
-"""Longest ``wait``."""
+"""Longest ``wait`` that a task's agent is told of."""
+LONGEST_WAIT_S = 60
+"""Longest ``wait``, as an agent that watches over a drive is told."""
 LONGEST_NUMBER = 40
 """Characters of a number that comes as text."""
 LARGEST = 2**31 - 1
 """A number beyond it counts no element and no pixel."""
 RANGES: Mapping[str, tuple[int, int]] = {
     **dict.fromkeys(("index", "x", "y"), (-LARGEST, LARGEST)),
-    "seconds": (1, SECONDS_LIMIT),
+    "seconds": (1, LONGEST_WAIT_S),
     "distance_px": (1, DISTANCE_LIMIT_PX),
     "speed_kmh": (0, 300),
 }

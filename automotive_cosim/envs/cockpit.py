@@ -16,22 +16,9 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.situation import SituationFinder
-<<<<<<< HEAD
 from automotive_cosim.episode.specification import ACTION_COST_S, EpisodeSpec, SeedSource, SessionSetup
-=======
-from automotive_cosim.episode.specification import (
-    ACTION_COST_S,
-    Conditions,
-    EpisodeSpec,
-    SeedSource,
-    feedback_of,
-    language_of,
-    screen_of,
-    see_of,
-)
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.words import shown
->>>>>>> cases
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.scenarios import Scenario
@@ -114,14 +101,9 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         self._listener = listener
         self._seeds = SeedSource()
         self._episode: Episode | None = None
-<<<<<<< HEAD
-        self.render_mode = render_mode
+        self.render_mode = render_mode_of(render_mode, self.metadata)
         size = under.screen
         self.observation_space = spaces.observation_space(self._setup.given, size.width, size.height)
-=======
-        self.render_mode = render_mode_of(render_mode, self.metadata)
-        self.observation_space = spaces.observation_space(self._conditions.given, size.width, size.height)
->>>>>>> cases
         self.action_space = spaces.action_space(size.width, size.height)
 
     @property

@@ -33,14 +33,9 @@ from automotive_cosim.envs.cockpit import outcome, render_mode_of, traffic_seed
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
-<<<<<<< HEAD
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
-from automotive_cosim.errors import UserError
-=======
-from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
 from automotive_cosim.errors import ActionError, UserError
 from automotive_cosim.formats.words import shown
->>>>>>> cases
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.spaces import APPS, BOUNDS, OPTIONAL
 from automotive_cosim.tasking.draws import SEED_LIMIT

@@ -192,9 +192,9 @@ def _kinds(groups: dict[Contestant, list[WatchRow]]) -> Table:
         for mine in groups.values():
             events = [event for row in mine for event in row.events if event.kind == name]
             real = [event for event in events if event.outcome.counts]
-            baits = [event for event in events if event.bait]
-            met, left = sum(e.outcome.is_credited for e in real), sum(e.outcome == "avoided" for e in baits)
-            cells.append(f"{met}/{len(real)}, {left}/{len(baits)}" if events else "–")
+            lookalikes = [event for event in events if event.lookalike]
+            met, left = sum(e.outcome.is_credited for e in real), sum(e.outcome == "avoided" for e in lookalikes)
+            cells.append(f"{met}/{len(real)}, {left}/{len(lookalikes)}" if events else "–")
         if any(cell != "–" for cell in cells):
             lines.append((name, kind.about, *cells))
     return Table(

@@ -15,8 +15,8 @@ from automotive_cosim.contracts.given import Clock
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.plan import DrivePlan
 from automotive_cosim.drives.result import DriveResult, result_of
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
@@ -109,7 +109,7 @@ def run_watch(
     *,
     simulations: Simulations | None = None,
     watchers: Sequence[WatchWatcher] = (),
-    plan: DrivePlan | None = None,
+    plan: DriveScript | None = None,
 ) -> WatchRecord:
     """Runs a drive to its end and judges it.
 

@@ -105,7 +105,7 @@ def test_a_value_of_another_type_is_converted_where_nothing_is_lost(sent: dict[s
         ({"action_type": "answer", "text": ["a"]}, "str"),
         ({"action_type": "click", "index": True}, "int"),
         ({"action_type": "click", "idx": 1}, "index"),
-        ({"action_type": "wait", "seconds": 0}, "1 to 10"),
+        ({"action_type": "wait", "seconds": 0}, "1 to 60"),
         ({"action_type": "answer", "text": "x" * 121}, "120"),
         ({"action_type": "request_reroute", "destination": "x" * 121}, "destination has 121"),
         ({"action_type": "open_app", "app_name": "x" * 121}, "app_name has 121"),
