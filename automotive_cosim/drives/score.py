@@ -37,8 +37,8 @@ class Score:
     missed: int
     caused: int
     void: int
-    baits: int
-    baits_taken: int
+    lookalikes: int
+    lookalikes_taken: int
     acts: int
     false_alarms: int
     nuisances: int
@@ -111,8 +111,8 @@ def score(judgement: Judgement, driven_s: float) -> Score:
         missed=counts[EventOutcome.MISSED],
         caused=counts[EventOutcome.CAUSED],
         void=counts[EventOutcome.VOID],
-        baits=sum(event.bait for event in events),
-        baits_taken=counts[EventOutcome.TAKEN],
+        lookalikes=sum(event.lookalike for event in events),
+        lookalikes_taken=counts[EventOutcome.TAKEN],
         acts=sum(act.worth is not Worth.NEUTRAL for act in acts),
         false_alarms=sum(act.worth.is_false for act in acts),
         nuisances=sum(act.worth.is_nuisance for act in acts),

@@ -101,7 +101,7 @@ def import_map(
     """
     options = options or ImportOptions()
     options = replace(options, name=options.name or scenario_name(source), country=options.country.upper())
-    _check(options, out)
+    _check(options)
     tell = on_progress or (lambda _stage, _share: None)
     with folder.appearing(out, replaces=options.replace) as building:
         tell("reading the map", None)
@@ -149,11 +149,7 @@ def import_map(
     return report
 
 
-def _check(options: ImportOptions, out: Path) -> None:
-    if "," in str(out.absolute()):
-        raise ImportMapError(
-            f"{out.absolute()} has a comma, at which SUMO parts its lists of files; choose another --out"
-        )
+def _check(options: ImportOptions) -> None:
     if not re.fullmatch(r"\w[\w.-]*", options.name):
         raise ImportMapError(f"{options.name!r} is not a valid scenario name; use letters, digits, - and _")
     if options.country and options.country not in country_codes():
