@@ -169,7 +169,7 @@ def _timeline(usual: Weather, weather: Sequence[WeatherSpan]) -> tuple[WeatherAt
 
     def at(time_s: float) -> Weather:
         on = [span for span in weather if span.from_s <= time_s < span.to_s]
-        return max(on, key=lambda span: span.from_s).weather if on else usual
+        return max(on, key=lambda span: span.whole_from_s).weather if on else usual
 
     entries = [WeatherAt(time_s, at(time_s)) for time_s in edges_s]
     return tuple(_changing(entries))
