@@ -83,7 +83,7 @@ class Watch(Session):
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
-    _deeds: int = 0
+    _given: int = 0
 
     @classmethod
     def depart_with(
@@ -214,9 +214,9 @@ class Watch(Session):
         self.twins = kept
 
     def _note_acts(self) -> None:
-        deeds = self.world.cockpit.deeds
-        self.acts += acts_of(deeds[self._deeds :])
-        self._deeds = len(deeds)
+        given = self.world.cockpit.given
+        self.acts += acts_of(given[self._given :])
+        self._given = len(given)
 
     def _ended(self) -> End | None:
         end = super()._ended()
