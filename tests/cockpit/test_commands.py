@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from inspect import isabstract
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,22 +12,29 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.apps.map.commands import Guide
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.signals import CABIN, HVAC, LIGHTS, MEDIA, difference
+from automotive_cosim.cockpit.registry import apps
+from automotive_cosim.cockpit.signals import CABIN, HVAC, LIGHTS, MEDIA, MOTION, difference
+from automotive_cosim.cockpit.state import Command, Message, State
+from automotive_cosim.cockpit.widgets import Slider, Widget
 from automotive_cosim.contracts import (
     Alert,
     AlertKind,
     Answer,
+    Feedback,
     FeedbackCode,
     PullOver,
     Reroute,
+    RoadNetwork,
+    RouteOption,
     Severity,
     SlowDown,
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.episode.counterfactual import counterfactual, replayed
 
-from .conftest import middle, outside
+from .conftest import View, middle, outside
 
 ACCEPTED = Answer(True, "so it is")
 
@@ -155,3 +164,108 @@ def test_everything_done_again_commands_the_same(drive: Drive, seed: int) -> Non
 
 def press(cockpit: Cockpit, key: str) -> FeedbackCode:
     return cockpit.tap(*middle(next(each for each in cockpit.elements() if each.resource_id == shown_id(key)))).code
+
+
+# --- laws over all commands -----------------------------------------------------------------------------------
+
+ELSEWHERE = {"Ask", "AskDriver", "Pan"}
+"""Sent by a safety call, by an action and by a swipe, not by a widget's tap."""
+
+
+def classes(kind: type[Message]) -> Iterator[type[Message]]:
+    """Every class of messages."""
+    apps()
+    for each in kind.__subclasses__():
+        yield each
+        yield from classes(each)
+
+
+def sent(widget: Widget) -> Iterator[Message]:
+    """What touches of a widget send."""
+    for touch in ("on_tap", "on_hold", "on_double_tap", "on_enter"):
+        message = getattr(widget, touch, None)
+        if isinstance(message, Message):
+            yield message
+    if isinstance(widget, Slider):
+        yield widget.message_by(1)
+
+
+def offered(views: tuple[View, ...]) -> Iterator[tuple[State, Message]]:
+    """Every message that a widget of these views sends."""
+    for view in views:
+        for widget in view.cockpit.tree.walk():
+            if widget.usable:
+                yield from ((view.cockpit._state, message) for message in sent(widget))
+
+
+@pytest.fixture(scope="module")
+def everywhere(walker: Callable[[Cockpit], tuple[View, ...]], network: RoadNetwork) -> list[tuple[State, Message]]:
+    """Every message that the screens of a parked car offer, also with an alert, a caller, and during a call."""
+    parked = outside(speed_kmh=0.0)
+    other = RouteOption(("e6_5", "n7_5"), 900.0, 120.0, 10.0)
+    ahead = replace(parked.driving.ahead, alternatives=(other,))
+    parked = replace(parked, driving=replace(parked.driving, ahead=ahead))
+    calls = [Arrival("call", 1.0, "Ada Adler")]
+    cockpit = Cockpit(network, rng=np.random.default_rng(1), arrivals=calls, lookout=True)
+    cockpit.inject(MOTION.GEAR.path, "P")
+    cockpit.sense(parked, 0.0)
+    warned, ringing = cockpit.copy(), cockpit.copy()
+    warned.alert(Alert(AlertKind.SPEED, Severity.WARNING))
+    ringing.sense(outside(902.0, speed_kmh=0.0), 2.0)
+    talking = ringing.copy()
+    press(talking, "call.answer")
+    talking.open_app("phone")
+    also = tuple(
+        View(name, (), there) for name, there in (("warned", warned), ("ringing", ringing), ("talking", talking))
+    )
+    return list(offered((*walker(cockpit), *also)))
+
+
+def test_a_command_without_aims_or_effect_cannot_be_made() -> None:
+    commands = [each for each in classes(Command) if each.__module__.startswith("automotive_cosim.")]
+    assert len(commands) > 20
+    assert not [each for each in commands if isabstract(each)]
+
+    @dataclass(frozen=True, slots=True)
+    class Forgotten(Command):
+        def perform(self, state: State) -> Feedback:
+            return Feedback(FeedbackCode.OK, "")
+
+    with pytest.raises(TypeError, match="aims"):
+        Forgotten()  # type: ignore[abstract]
+
+
+@pytest.mark.slow
+def test_every_message_is_offered_somewhere(everywhere: list[tuple[State, Message]]) -> None:
+    known = {each.__name__ for each in classes(Message) if each.__module__.startswith("automotive_cosim.")}
+    assert {type(message).__name__ for _, message in everywhere} == known - ELSEWHERE - {"Command"}
+
+
+@pytest.mark.slow
+def test_only_a_command_commands_and_it_aims_at_what_it_commands(everywhere: list[tuple[State, Message]]) -> None:
+    """What it changes besides is coupled: by the car to a signal, or by the road, which has not replied yet."""
+    wrong = []
+    for state, message in everywhere:
+        before, there = state.commands(), state.copy()
+        aims = message.command.aims(state) if message.command is not None else frozenset()
+        there.perform(message)
+        changed = set(difference(before, there.commands()))
+        data = {key for key in changed if not key.startswith("Vehicle.")}
+        if not aims <= before.keys() or (changed and not aims) or (data and not data & aims and not there.pending):
+            wrong.append((message, aims, changed))
+    assert not wrong
+
+
+@pytest.mark.slow
+def test_what_is_given_once_more_commands_the_same(everywhere: list[tuple[State, Message]]) -> None:
+    wrong = []
+    for state, message in everywhere:
+        there, twin = state.copy(), state.copy()
+        there.perform(message)
+        for record in there.given[len(state.given) :]:
+            record.command.repeat(twin, record, record.aims)
+            wrong += [message] if difference(there.commands(), twin.commands()) else []
+            untouched = state.copy()
+            record.command.repeat(untouched, record, frozenset())
+            wrong += [message] if difference(state.commands(), untouched.commands()) else []
+    assert not wrong
