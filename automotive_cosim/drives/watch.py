@@ -91,7 +91,7 @@ class Watch(Session):
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
-    _deeds: int = 0
+    _given: int = 0
 
     @classmethod
     def depart_with(
@@ -244,9 +244,9 @@ class Watch(Session):
         return tracker.events
 
     def _note_acts(self) -> None:
-        deeds = self.world.cockpit.deeds
-        self.acts += acts_of(deeds[self._deeds :])
-        self._deeds = len(deeds)
+        given = self.world.cockpit.given
+        self.acts += acts_of(given[self._given :])
+        self._given = len(given)
 
     def _ended(self) -> End | None:
         end = super()._ended()
