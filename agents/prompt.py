@@ -16,9 +16,18 @@ from string import Template
 
 from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import AgentProfile
-from automotive_cosim.cockpit.actions import grammar, to_json
+from automotive_cosim.cockpit.actions import FIELDS, grammar, to_json
 from automotive_cosim.cockpit.restrictions import in_words
-from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Json, Observation, VehicleState
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    Element,
+    Feedback,
+    GpsFix,
+    Json,
+    Observation,
+    VehicleState,
+)
 from automotive_cosim.interface.observe import Channel
 
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable", "is_long_clickable")
@@ -46,6 +55,7 @@ def turn(
     plan: str = "",
     recalled: Sequence[str] = (),
     pictures: bool = False,
+    on_watch: bool = False,
 ) -> str:
     """The prompt of one turn of an agent.
 
@@ -56,13 +66,16 @@ def turn(
         plan: what it intended to do next when it last acted.
         recalled: what it remembers of earlier episodes, one line each.
         pictures: whether the screen is sent along, and the marked screen if there is a list.
+        on_watch: whether it watches over a drive, for which every agent has the same words.
     """
     given = profile.channels
-    feedback = observation.feedback
+    feedback, by_point = observation.feedback, Channel.ELEMENTS not in given
     return fill(
-        profile.name,
+        WATCH if on_watch else profile.name,
         {
-            "grammar": grammar(profile.actions, by_point=Channel.ELEMENTS not in given),
+            "grammar": _watch_grammar(profile, by_point)
+            if on_watch
+            else grammar(profile.actions, by_point=by_point),
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
@@ -78,12 +91,23 @@ def turn(
     )
 
 
+WATCH = "drive"
+"""The prompt of a watch over a drive."""
+UNASKED = frozenset({ActionType.STATUS})
+"""Actions that a watch has no use for."""
+WAITS = "wait until something changes, or for up to 60 seconds"
 PICTURES = (
     "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
     "The numbers are the indices below."
 )
 PICTURE = "One picture comes with this text: the screen, as wide and high in pixels as x and y count."
 BEFORE_AND_AFTER = "Two pictures come with this text: the screen before the action and after it."
+
+
+def _watch_grammar(profile: AgentProfile, by_point: bool) -> str:
+    """The actions of a watch, in which a wait ends when something changes."""
+    text = grammar(profile.actions - UNASKED, by_point=by_point)
+    return text.replace(FIELDS[ActionType.WAIT].about, WAITS)
 
 
 def look_back(
@@ -163,9 +187,9 @@ def _vehicle(vehicle: VehicleState | None) -> str:
         return "unknown"
     shown = {name: value for name, value in asdict(vehicle).items() if value is not None}
     shown["restrictions"] = in_words(vehicle.restrictions)
-    return "\n".join(
-        f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()
-    )
+    noticed = shown.pop("noticed", "")
+    lines = [f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()]
+    return "\n".join([*lines, *noticed.splitlines()])
 
 
 def _connectivity(observation: Observation) -> str:

@@ -20,7 +20,7 @@ from automotive_cosim.calibration.search import FitRound, SearchWorld, search
 from automotive_cosim.calibration.sites import Mapped, map_sites
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError
-from automotive_cosim.osm.network import Built
+from automotive_cosim.osm.network import entries, exits
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.gap import vehicle_types
@@ -170,7 +170,7 @@ class _Calibration:
             raise ScenarioError(f"{self.scenario.folder} has no demand to begin with; import a map, or add trips")
         free_s: defaultdict[str, float] = defaultdict(lambda: OTHER_EDGE_S)
         free_s |= {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
-        border = Built(network, signals=0, roundabouts=0)
+        edges = tuple(network.edges.values())
         world = SearchWorld(
             clock,
             self.configuration.net,
@@ -178,7 +178,7 @@ class _Calibration:
             vehicle_types(self.configuration, ["route-files"]),
             free_s,
             capacity,
-            (tuple(sorted(border.entries())), tuple(sorted(border.exits()))),
+            (tuple(sorted(entries(edges))), tuple(sorted(exits(edges)))),
             known,
             self.options.seed,
             partial(self._drive, clock, self.options.seed),

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.screens.notices import lit
+from automotive_cosim.cockpit.notices import lit
 from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, LIGHTS, OUTSIDE, SEAT, TYRE
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind, Telltale, sign_picture, symbol
 from automotive_cosim.contracts import Limit, LimitSource, Surroundings
