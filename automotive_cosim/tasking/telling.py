@@ -1,6 +1,6 @@
 """What a verdict says of an end state: what is, and what should be, in a reader's words.
 
-    fan speed is 30 %, should be 100 %
+fan speed is 30 %, should be 100 %
 """
 
 from __future__ import annotations
@@ -32,11 +32,12 @@ SEATS = {
     ("Mirrors", "DriverSide"): "driver's",
     ("Mirrors", "PassengerSide"): "passenger's",
 }
-GENERAL = frozenset(
-    "Vehicle ADAS Body Cabin Chassis Connectivity HMI HVAC Infotainment Powertrain Privacy Seating Station Row1 Row2 "
-    "Driver Passenger DriverSide PassengerSide Mirrors Door Lights AnyPosition Center Spotlight Backrest Equalizer Media "
-    "Played AmbientLight Wiping TractionBattery ChargingPort Transmission".split()
-)
+GENERAL = frozenset({
+    "Vehicle", "ADAS", "Body", "Cabin", "Chassis", "Connectivity", "HMI", "HVAC", "Infotainment", "Powertrain",
+    "Privacy", "Seating", "Station", "Row1", "Row2", "Driver", "Passenger", "DriverSide", "PassengerSide",
+    "Mirrors", "Door", "Lights", "AnyPosition", "Center", "Spotlight", "Backrest", "Equalizer", "Media", "Played",
+    "AmbientLight", "Wiping", "TractionBattery", "ChargingPort", "Transmission",
+})  # fmt: skip
 """Parts of a path that only say where the signal is filed."""
 FIELD_WORDS = ("Active", "Enabled", "Engaged", "On", "Position", "Mode", "Level", "Cooling", "SpeedSet")
 UNITS = {"percent": " %", "celsius": " °C", "degrees": "°"}

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, DeclineCall, Put, Show, TakeCall
-from automotive_cosim.cockpit.screens.notices import lit, wanting
+from automotive_cosim.cockpit.screens.notices import lit, lit_in_words, wanting
 from automotive_cosim.cockpit.screens.parts import speed, speed_unit, stepper, switch, temperature
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
 from automotive_cosim.cockpit.size import ScreenSize
@@ -169,7 +169,7 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             look=Look.PLAIN,
             on_tap=Back() if state.screen == "notifications" else Show("notifications"),
         ),
-        Telltales(rect=bar.lamps, key="status.telltales", description=say("Telltales"), lit=lit(state)),
+        Telltales(rect=bar.lamps, key="status.telltales", description=lit_in_words(state), lit=lit(state)),
         *_links(bar.links, state),
         *_motion(bar.motion, state),
     )

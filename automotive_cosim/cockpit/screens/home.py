@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.mapscene import ego
 from automotive_cosim.cockpit.messages import Set, Show, Skip
 from automotive_cosim.cockpit.screens import lookout
 from automotive_cosim.cockpit.screens.map import map_view, next_turn, sign_view, street
-from automotive_cosim.cockpit.screens.notices import NOTICED, lit
+from automotive_cosim.cockpit.screens.notices import NOTICED, lit, lit_in_words
 from automotive_cosim.cockpit.screens.outside import PHENOMENA
 from automotive_cosim.cockpit.screens.parts import (
     content,
@@ -154,7 +154,7 @@ def drive_card(rect: Rect, state: State) -> Widget:
             Telltales(
                 rect=lamps.left(LAMPS_WIDTH).middle(LAMPS_WIDTH, LAMPS_WIDTH),
                 key="home.telltales",
-                description=say("Telltales"),
+                description=lit_in_words(state),
                 lit=lit(state),
             ),
             heading(head, say("Range")),
