@@ -186,7 +186,7 @@ def _rear_window(page: Page) -> SkillDecision:
 
 # --- the table ----------------------------------------------------------------------------------------------
 
-_REAR_FOG = r"(rear fogs?\b|fog light at the back|red fog lamp)"
+_REAR_FOG = r"(rear fog(s|light)?\b|fog light at the back)"
 _FRONT_FOG = r"(front fogs?\b|fog lights at the front)"
 _HIGH_BEAM = r"((high|full|main) (beam|lights)|far lights|high lights|full headlights|\bbrights\b)"
 
@@ -209,11 +209,11 @@ SKILLS: tuple[Skill, ...] = (
             r"(the|give .*) limits?\b(?! disagrees)",
             r"give me one",
             r"\bpost(ed|s)\b",
-            r"\bsign says\b",
+            r"\bsign (says|gives)\b",
             r"read me mine",
             r"speed (for here|they want)",
             r"what.s allowed between",
-            r"how fast (in|one|is|i should)\b",
+            r"how fast (in|one|is|i should|may i)\b",
         ),
         _tell_limit,
     ),

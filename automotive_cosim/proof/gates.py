@@ -281,13 +281,13 @@ AIR = frozenset(
 )  # fmt: skip
 """What acts on nothing but the air of the cabin and, through it, on the glass."""
 FELT: Mapping[str, float] = {
-    HVAC.CABIN_TEMPERATURE.path: 0.3,
-    HVAC.CABIN_HUMIDITY.path: 1.0,
-    HVAC.CABIN_FINE_DUST.path: 1.0,
-    GLASS.WINDSHIELD_FOG.path: 0.05,
-    GLASS.REAR_FOG.path: 0.05,
+    HVAC.CABIN_TEMPERATURE.path: 0.05,
+    HVAC.CABIN_HUMIDITY.path: 0.2,
+    HVAC.CABIN_FINE_DUST.path: 0.2,
+    GLASS.WINDSHIELD_FOG.path: 0.01,
+    GLASS.REAR_FOG.path: 0.01,
 }
-"""The least change of a reading within ``EFFECT_S`` that somebody would notice; our choice."""
+"""The least change of a reading within ``EFFECT_S`` that is one; our choice."""
 EFFECT_S = 60.0
 
 
