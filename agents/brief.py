@@ -111,9 +111,9 @@ def vehicle(state: VehicleState) -> str:
     """The car's readings, without the lamps that are off."""
     shown = {name: value for name, value in asdict(state).items() if value is not None and value is not False}
     shown["restrictions"] = in_words(state.restrictions)
-    return "\n".join(
-        f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()
-    )
+    noticed = shown.pop("noticed", "")
+    lines = [f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()]
+    return "\n".join([*lines, *noticed.splitlines()])
 
 
 def _entry(element: Element, index: int | None) -> str:

@@ -59,7 +59,7 @@ class ModelAgent:
         """
         self._profile = profile.under(settings)
         self._asking = Asking(chat_model, settings)
-        if settings.see is See.PICTURE and not self._sees:
+        if settings.conditions.see is See.PICTURE and not self._sees:
             why = "it is shown no pictures" if chat_model.sees_pictures else f"{chat_model.name!r} sees none"
             raise UserError(
                 f"agent {profile.name!r} would see nothing: --see picture leaves it pictures alone, and {why}"
@@ -163,7 +163,9 @@ class ModelAgent:
             with_marks = _marked(seen)
             pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
         history = self._history[-WATCH_HISTORY:] if self._keeps_watch else self._history
-        text = prompt.turn(self._profile, seen, history, plan, self._recalled, bool(pictures))
+        text = prompt.turn(
+            self._profile, seen, history, plan, self._recalled, bool(pictures), on_watch=self._keeps_watch
+        )
         self._asking.note(StageName.PERCEIVE, seen, text)
         reply, asked = self._asking.ask(text, pictures)
         try:
@@ -173,9 +175,9 @@ class ModelAgent:
                     f"this agent has no action {understood.action.action_type}; choose one that the prompt names"
                 )
         except ActionError as error:
-            cut = "; the answer was cut off at its longest" if reply.finish == "length" else ""
-            self._asking.note(StageName.ACT, seen, f"{error}{cut}", reply, asked, len(pictures))
-            raise ActionError(f"{error}{cut}") from None
+            told = f"{error}{reply.ending}"
+            self._asking.note(StageName.ACT, seen, told, reply, asked, len(pictures))
+            raise ActionError(told) from None
         self._asking.note(StageName.INTERPRET, seen, understood.situation, reply, asked, len(pictures))
         self._asking.note(StageName.PLAN, seen, understood.plan)
         form = "" if understood.strict else " (read forgivingly)"

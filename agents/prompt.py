@@ -18,7 +18,7 @@ from automotive_cosim.agents import brief
 from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import AgentProfile
-from automotive_cosim.cockpit.actions import grammar, to_json
+from automotive_cosim.cockpit.actions import FIELDS, grammar, to_json
 from automotive_cosim.cockpit.restrictions import in_words
 from automotive_cosim.contracts import (
     Action,
@@ -30,7 +30,6 @@ from automotive_cosim.contracts import (
     Observation,
     VehicleState,
 )
-from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.interface.observe import Channel
 
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable", "is_long_clickable")
@@ -58,6 +57,7 @@ def turn(
     plan: str = "",
     recalled: Sequence[str] = (),
     pictures: bool = False,
+    on_watch: bool = False,
 ) -> str:
     """The prompt of one turn of an agent.
 
@@ -68,13 +68,14 @@ def turn(
         plan: what it intended to do next when it last acted.
         recalled: what it remembers of earlier episodes, one line each.
         pictures: whether the screen is sent along, and the marked screen if there is a list.
+        on_watch: whether it watches over a drive, for which every agent has the same words.
     """
     given = profile.channels
     is_listed, is_told = Channel.ELEMENTS in given, Channel.CONTEXT in given
     return fill(
-        "brief" if profile.brief else profile.name,
+        WATCH if on_watch else "brief" if profile.brief else profile.name,
         {
-            "grammar": (brief.actions if profile.brief else grammar)(profile.actions, by_point=not is_listed),
+            "grammar": _grammar(profile, by_point=not is_listed, on_watch=on_watch),
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
@@ -85,7 +86,7 @@ def turn(
             "vehicle": _vehicle(observation.vehicle, is_brief=profile.brief) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
-            "context": _context(profile, observation) if is_told else None,
+            "context": _context(profile, observation, on_watch=on_watch) if is_told else None,
             "weigh": PLACE_COUNTS if is_told else "",
             "memory": "\n".join(map(one_line, recalled)) or None,
         },
@@ -96,12 +97,24 @@ PLACE_COUNTS = (
     "Weigh what you know of the place against what the car is doing: the same act can be right in one place and "
     "wrong in another."
 )
+WATCH = "drive"
+"""The prompt of a watch over a drive."""
+UNASKED = frozenset({ActionType.STATUS})
+"""Actions that a watch has no use for."""
+WAITS = "wait until something changes, or for up to 60 seconds"
 PICTURES = (
     "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
     "The numbers are the indices below."
 )
 PICTURE = "One picture comes with this text: the screen, as wide and high in pixels as x and y count."
 BEFORE_AND_AFTER = "Two pictures come with this text: the screen before the action and after it."
+
+
+def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
+    """The actions; in a watch, a wait ends when something changes and nothing ends the watch."""
+    kinds = profile.actions - (UNASKED if on_watch else frozenset())
+    text = (brief.actions if profile.brief else grammar)(kinds, by_point=by_point)
+    return text.replace(FIELDS[ActionType.WAIT].about, WAITS) if on_watch else text
 
 
 def look_back(
@@ -173,10 +186,10 @@ def _elements(profile: AgentProfile, observation: Observation) -> str:
     return brief.told(observation.elements or ()) if profile.brief else elements(observation)
 
 
-def _context(profile: AgentProfile, observation: Observation) -> str:
+def _context(profile: AgentProfile, observation: Observation, *, on_watch: bool) -> str:
     """The geo-context; short only for who can ask for the rest, and not in a watch, where anything can matter."""
     text = observation.context or "unknown"
-    if profile.brief and ActionType.QUERY in profile.actions and observation.goal != STANDING_ORDER:
+    if profile.brief and ActionType.QUERY in profile.actions and not on_watch:
         return brief.context(text, driver_words(observation))
     return _lines(text)
 
@@ -212,9 +225,9 @@ def _vehicle(vehicle: VehicleState | None, *, is_brief: bool = False) -> str:
         return brief.vehicle(vehicle)
     shown = {name: value for name, value in asdict(vehicle).items() if value is not None}
     shown["restrictions"] = in_words(vehicle.restrictions)
-    return "\n".join(
-        f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()
-    )
+    noticed = shown.pop("noticed", "")
+    lines = [f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()]
+    return "\n".join([*lines, *noticed.splitlines()])
 
 
 def _connectivity(observation: Observation) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.signals import CALL, MEDIA, VOICE
 from automotive_cosim.tasking.checks import AllOf, AppDataHas, AppDataIs, Entered, EnteredOf, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap

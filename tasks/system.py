@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
-from automotive_cosim.cockpit.desk import NETWORKS
+from automotive_cosim.cockpit.apps.settings.state import NETWORKS
 from automotive_cosim.cockpit.signals import CABIN, HMI, LINK, MIRROR, SEAT, VOICE
 from automotive_cosim.cockpit.vehicle import LOCKS
 from automotive_cosim.tasking.checks import AllOf, AnyOf, AppDataIs, SignalIs, SignalLowered, SignalRaised

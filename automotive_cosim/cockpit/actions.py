@@ -7,10 +7,11 @@ model's prompt is generated from it (``grammar``), so the two cannot diverge.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from dataclasses import fields as dataclass_fields
 from enum import StrEnum
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.contracts import (
@@ -44,12 +45,16 @@ TEXT_LIMIT = 120
 DISTANCE_LIMIT_PX = 8192
 """Longest drag, larger than any screen."""
 SECONDS_LIMIT = 10
-"""Longest ``wait``."""
+"""Longest ``wait`` that a task's agent is told of."""
+LONGEST_WAIT_S = 60
+"""Longest ``wait``, as an agent that watches over a drive is told."""
+LONGEST_NUMBER = 40
+"""Characters of a number that comes as text."""
 LARGEST = 2**31 - 1
 """A number beyond it counts no element and no pixel."""
 RANGES: Mapping[str, tuple[int, int]] = {
     **dict.fromkeys(("index", "x", "y"), (-LARGEST, LARGEST)),
-    "seconds": (1, SECONDS_LIMIT),
+    "seconds": (1, LONGEST_WAIT_S),
     "distance_px": (1, DISTANCE_LIMIT_PX),
     "speed_kmh": (0, 300),
 }
@@ -412,21 +417,54 @@ def _example(kind: ActionType, takes: Takes, by_point: bool) -> str:
 
 
 def _field(name: str, value: Any) -> Any:
+    """The value of a field, converted where nothing is lost, as by AndroidWorld's ``JSONAction``: ``"3"`` is 3."""
     if name in _ENUMS:
         return _enum(_ENUMS[name], name, value)
     if name not in _TYPES:
         raise ActionError(str(UnknownNameError("action field", name, [*_TYPES, *_ENUMS])))
     expected = _TYPES[name]
-    if expected is float and type(value) is int:
-        return float(min(max(value, -LARGEST), LARGEST))  # beyond any range, and a float may not hold it
-    if type(value) is not expected or (expected is float and value != value):
+    if type(value) is expected and value == value:
+        return value
+    if (converted := _CONVERTED[expected](value)) is None:
         raise ActionError(f"{name} is {_kind(value)}; it must be {expected.__name__}")
-    return value
+    return converted
+
+
+def _whole(value: Any) -> int | None:
+    """A whole number from its text or from a float that holds one; beyond any range, the nearest bound of all."""
+    number = _real(value)
+    return int(number) if number is not None and number.is_integer() else None
+
+
+def _real(value: Any) -> float | None:
+    """A number from an int or its text; beyond any range, the nearest bound of all: a float may not hold it."""
+    if isinstance(value, str):
+        try:
+            value = float(value) if len(value) <= LONGEST_NUMBER else None
+        except ValueError:
+            return None
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    if isinstance(value, float) and not isfinite(value):
+        return None
+    return float(min(max(value, -LARGEST - 1), LARGEST + 1))
+
+
+def _words(value: Any) -> str | None:
+    return str(value) if isinstance(value, int | float) else None
+
+
+def _switch(value: Any) -> bool | None:
+    return {"true": True, "false": False}.get(value.casefold()) if isinstance(value, str) else None
+
+
+_CONVERTED: Mapping[type, Callable[[Any], Any]] = {int: _whole, float: _real, str: _words, bool: _switch}
+"""A value of another type as one of this type; None where it is none."""
 
 
 def _enum(kind: type[StrEnum], name: str, value: Any) -> Any:
-    if isinstance(value, str) and value in set(kind):
-        return kind(value)
+    if isinstance(value, str) and value.casefold() in set(kind):
+        return kind(value.casefold())
     raise ActionError(str(UnknownNameError(name, str(value)[:40], kind)))
 
 

@@ -13,12 +13,13 @@ from enum import Enum
 from typing import ClassVar, Literal
 
 from automotive_cosim.cockpit.camera import CameraScene
+from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.mapdraw import MapScene
-from automotive_cosim.cockpit.messages import Message, Set
 from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.cockpit.state import Message
 from automotive_cosim.cockpit.telltales import RoadSign, Telltale
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.contracts import Severity

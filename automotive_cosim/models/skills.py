@@ -114,13 +114,13 @@ def _watch_speed(page: Page) -> SkillDecision:
 
 
 TELLS: tuple[tuple[str, str], ...] = (
-    (r"belt: driver's belt open", "seat_belt"),
+    (r"belt: open: .*driver", "seat_belt"),
     (r"behind: blue light", "yield"),
     (r"breakdown: in \d{1,3} m", "move_over"),
     (r"(jam|roadworks): in \d{1,3} m", "traffic"),
-    (r"vehicle ahead: .* 0\.\d s", "distance"),
+    (r"vehicle ahead: .* time gap 0\.\d s", "distance"),
     (r"open: .*(trunk|flap)", "vehicle"),
-    (r"tyre: lowest 1\d\d kPa", "vehicle"),
+    (r"tyres: .*(left|right) 1\d\d\b", "vehicle"),
     (r"(glass|rain): .* [2-9]\d\.\d%", "visibility"),
     (r"weather: .*(snow|freezing|rime)", "slippery"),
     (r"driving time: [2-9]\.", "fatigue"),
@@ -130,7 +130,8 @@ TELLS: tuple[tuple[str, str], ...] = (
 
 def _keep_watch(page: Page) -> SkillDecision:
     """Tells what has just changed, if it is something to tell."""
-    changed = page.told.split("; ")
+    mark = " (changed)"
+    changed = [f"{name.removesuffix(mark)}: {words}" for name, words in page.car.items() if name.endswith(mark)]
     speed, limit = page.number("speed_kmh"), page.limit_kmh()
     too_fast = speed is not None and limit is not None and speed > limit + SPEEDING_MARGIN_KMH
     if too_fast and any(change.startswith(("speed: ", "limit: ")) for change in changed):

@@ -39,8 +39,8 @@ from functools import partial
 from itertools import product
 
 from automotive_cosim.agents.trivial import AlwaysAlert, AlwaysAsk, NoOp, PressEverything, Random
+from automotive_cosim.cockpit.apps.phone.person import PHOTO
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.screens.person import PHOTO
 from automotive_cosim.cockpit.signals import ACTUATORS, ADAS, GLASS, HVAC, named
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
@@ -190,7 +190,7 @@ def coupled(ground: Ground, right: Played) -> Wrong:
     changes nothing is skipped.
     """
     before, end = right.moments[:-1], right.moments[-1]
-    done = replayed(ground.episode.at_hand_over, right.deeds, before)
+    done = replayed(ground.episode.at_hand_over, right.given, before)
     for path in sorted(set(ACTUATORS) - ground.half.allowed_writes):
         car = done.copy()
         value = mutations.another_value(named(path), car.signals[named(path)])

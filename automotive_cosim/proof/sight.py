@@ -13,7 +13,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from automotive_cosim.cockpit.screens.notices import LOW_KPA, NOTICED, TYRES
+from automotive_cosim.cockpit.notices import LOW_KPA, NOTICED, TYRES
 from automotive_cosim.cockpit.signals import GLASS
 from automotive_cosim.contracts import BoundingBox, Element, Observation, VehicleState
 from automotive_cosim.contracts.ids import key_of
@@ -86,6 +86,7 @@ READINGS: Mapping[str, frozenset[Facet]] = {
         "leader_gap_m": {Facet.TRAFFIC},
         "leader_time_to_collision_s": {Facet.TRAFFIC},
         "aboard": {Facet.ABOARD},
+        "noticed": {Facet.TRAFFIC, Facet.CAR, Facet.WEATHER},
     }.items()
 }
 """What each reading follows from. In a tunnel no rain falls, and lamps on auto come on."""

@@ -60,8 +60,8 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     configuration = read_configuration(path)
     network = read_network(configuration.net)
     for name in INPUTS:
-        for file in filter(None, configuration.options.get(name, "").split(",")):
-            vet(Path(file))
+        for file in configuration.files.get(name, ()):
+            vet(file)
     place = NOWHERE if network.unplaced else Atlas().place(*middle(network.map))
     notes = []
     if network.unplaced and not to_be_moved:
@@ -113,7 +113,7 @@ def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
 
 def _overridden(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
     """What a run sets or leaves out whatever the configuration says."""
-    run = DEFAULTS | configuration.options | FIXED
+    run = DEFAULTS | dict(configuration.options) | FIXED
     run["step-length"] = f"{sumo.step_length_s:g}"
     if sumo.action_step_length_s != sumo.step_length_s:
         run["default.action-step-length"] = f"{sumo.action_step_length_s:g}"
@@ -138,10 +138,8 @@ def _about(network: Network, place: Place) -> str:
 
 
 def _has_demand(configuration: Configuration) -> bool:
-    if configuration.options.get("route-files"):
-        return True
-    files = configuration.options.get("additional-files", "").split(",")
-    return any(_has_travellers(Path(file.strip())) for file in files if file)
+    files = configuration.files
+    return "route-files" in files or any(map(_has_travellers, files.get("additional-files", ())))
 
 
 def _has_travellers(file: Path) -> bool:

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
-from automotive_cosim.cockpit.desk import REMEMBERED
+from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.tasking.binding import needs
 from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil, TypeText, Warn

@@ -17,7 +17,7 @@ from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.base import WarmUpProgress
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
-from automotive_cosim.traffic.options import Setup
+from automotive_cosim.traffic.options import SCRATCH, Setup
 
 TIMEOUT_S = 20.0
 """Wall time without a sign of life after which a simulation counts as hung; it gives one every second."""
@@ -79,7 +79,8 @@ class RemoteProcess:
         process._end.detach()
         process._end = weakref.finalize(process, _end, process._channel, popen)
         try:
-            network = process.call("load", setup, progress=progress, timeout_s=LOADING_LIMIT_S)
+            with tempfile.TemporaryDirectory(prefix=SCRATCH, ignore_cleanup_errors=True) as scratch:
+                network = process.call("load", setup, Path(scratch), progress=progress, timeout_s=LOADING_LIMIT_S)
         except TrafficError as error:
             process.close()
             raise TrafficError(f"{error}; it was loading or warming up {setup.scenario.config}") from None

@@ -10,6 +10,7 @@ from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, brief
 from automotive_cosim.agents.prompt import action_words, look_back, summary, turn
 from automotive_cosim.cockpit.actions import grammar, signatures
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GpsFix
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.geo.text import Line, within_budget
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import See
@@ -83,10 +84,10 @@ def test_what_an_agent_is_not_given_does_not_occur(agent, absent, observation):
         (AgentSettings(without=frozenset({AgentPart.GPS})), {"48.87", "estimate_position"}),
         (AgentSettings(without=frozenset({AgentPart.CONTEXT})), {"Avenue Foch", "query"}),
         (AgentSettings(without=frozenset({AgentPart.QUERIES})), {"query"}),
-        (AgentSettings(geo=GeoInput.NONE), {"48.87", "Avenue Foch", "query", "estimate_position"}),
-        (AgentSettings(geo=GeoInput.GPS), {"Avenue Foch", "query"}),
-        (AgentSettings(geo=GeoInput.CONTEXT), {"48.87", "estimate_position"}),
-        (AgentSettings(geo=GeoInput.IRRELEVANT), {"48.87", "query"}),
+        (AgentSettings(Conditions(GeoInput.NONE)), {"48.87", "Avenue Foch", "query", "estimate_position"}),
+        (AgentSettings(Conditions(GeoInput.GPS)), {"Avenue Foch", "query"}),
+        (AgentSettings(Conditions(GeoInput.CONTEXT)), {"48.87", "estimate_position"}),
+        (AgentSettings(Conditions(GeoInput.IRRELEVANT)), {"48.87", "query"}),
     ],
     ids=lambda value: "",
 )
@@ -123,7 +124,7 @@ def test_the_grammar_is_that_of_the_action_types(observation):
 @pytest.mark.parametrize("name", ["m3a", "asurada"])
 @pytest.mark.parametrize("profiles", [PROFILES, LONG], ids=["short", "long"])
 def test_with_the_picture_alone_no_list_is_spoken_of(name, profiles, observation):
-    profile = profiles[name].under(AgentSettings(see=See.PICTURE))
+    profile = profiles[name].under(AgentSettings(Conditions(see=See.PICTURE)))
     text = turn(profile, observation("x"), pictures=True)
     assert not re.search(r"\b(list|elements?|index)\b", text.partition("## What the driver said")[0])
 

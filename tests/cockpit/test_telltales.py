@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.screens.notices import NAMES, lit
+from automotive_cosim.cockpit.notices import NAMES, lit
 from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, LIGHTS, OUTSIDE, SEAT, TYRE
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind, Telltale, sign_picture, symbol
-from automotive_cosim.contracts import Limit, LimitSource, Surroundings
+from automotive_cosim.contracts import Element, Limit, LimitSource, Surroundings
 from automotive_cosim.contracts.ids import key_of
 
 CAUSES = {
@@ -46,7 +46,7 @@ def test_a_telltale_lights_up_on_the_picture_and_is_named_in_the_list(cockpit: C
     assert told == {f"Telltales: {', '.join(NAMES[each] for each in Telltale if each in expected)}"}
 
 
-def pictures(cockpit: Cockpit) -> list[object]:
+def pictures(cockpit: Cockpit) -> list[Element]:
     wanted = ("status.telltales", "home.telltales")
     return [each for each in cockpit.elements() if key_of(each.resource_id) in wanted]
 
@@ -77,9 +77,8 @@ def test_the_last_sign_is_the_one_passed_last(make: Callable[..., Cockpit], arou
         cockpit.sense(replace(around, driving=replace(around.driving, road=road)), 1.0)
         assert cockpit._state.last_sign == sign
         seen.append(next(e.content_description for e in cockpit.elements() if key_of(e.resource_id) == "home.sign"))
-    assert seen == [
-        f"Last sign: {sign}" for sign in ("Tunnel", "Tunnel", "Limit sign 30", "End of limit", "School zone")
-    ]
+    words = ("Tunnel", "Tunnel", "Limit sign 30", "End of limit", "School zone")
+    assert seen == [f"Last sign: {word}" for word in words]
 
 
 def test_without_the_camera_there_is_no_sign(make: Callable[..., Cockpit]) -> None:
