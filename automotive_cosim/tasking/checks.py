@@ -364,14 +364,19 @@ class AlertGiven:
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether there was exactly one alert since the start, of this kind."""
-        given = now.commands["alerts"][len(start.commands["alerts"]) :]
-        return len(given) == 1 and given[0]["kind"] == self.kind and self._advises(given[0]["speed_kmh"], now)
+        before = len(start.commands["alerts"])
+        given = now.commands["alerts"][before:]
+        if len(given) != 1 or given[0]["kind"] != self.kind:
+            return False
+        then = next((moment for moment in trace if len(moment.commands["alerts"]) > before), now)
+        return self._advises(given[0]["speed_kmh"], then)
 
-    def _advises(self, speed_kmh: float | None, now: Moment) -> bool:
+    def _advises(self, speed_kmh: float | None, then: Moment) -> bool:
+        """Whether that speed was right when it was advised."""
         if speed_kmh is None:
             return not self.must_advise
         if self.speed_kmh is None:
-            limit = binding_limit(now.context)
+            limit = binding_limit(then.context)
             return limit is None or speed_kmh < limit.kmh + 1.0
         return abs(speed_kmh - self.speed_kmh) < 1.0
 

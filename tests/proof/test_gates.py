@@ -258,7 +258,7 @@ def test_an_alert_that_takes_no_advice_is_seen(ground, monkeypatch):
     warned = changed(goal=AlertGiven(AlertKind.TUNNEL), moves=(Warn(AlertKind.TUNNEL),))
     stand = ground(warned)
     assert list(gates.optional(stand, stand.reference)) == []
-    monkeypatch.setattr(AlertGiven, "_advises", lambda self, speed_kmh, now: speed_kmh is None)
+    monkeypatch.setattr(AlertGiven, "_advises", lambda self, speed_kmh, then: speed_kmh is None)
     (wrong,) = gates.optional(stand, stand.reference)
     assert "speed_kmh" in wrong
 
