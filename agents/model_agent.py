@@ -136,8 +136,11 @@ class ModelAgent:
         has_waited = self._keeps_watch and last.action is not None and last.action.action_type is ActionType.WAIT
         lesson = self._reflect(last, now) if self._profile.reflects and not has_waited else ""
         done = prompt.action_words(last.action, last.seen)
-        line = prompt.summary(
-            len(self._history) + 1, last.action, now.feedback, prompt.target(last.action, last.seen), lesson
+        number = len(self._history) + 1
+        line = (
+            prompt.step(number, last.action, last.seen, now.feedback, lesson)
+            if self._profile.brief
+            else prompt.summary(number, last.action, now.feedback, prompt.target(last.action, last.seen), lesson)
         )
         self._done.append(done)
         self._history.append(line)
@@ -146,7 +149,9 @@ class ModelAgent:
     def _reflect(self, last: _Turn, now: Observation) -> str:
         screens = [_shown(last.seen), _shown(now)] if self._sees else []
         pictures = tuple(screen for screen in screens if screen is not None)
-        text = prompt.look_back(last.seen, last.action, now, last.plan, bool(pictures))
+        text = prompt.look_back(
+            last.seen, last.action, now, last.plan, bool(pictures), is_brief=self._profile.brief
+        )
         reply, asked = self._asking.ask(text, pictures)
         lesson = prompt.one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
         self._asking.note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))
@@ -167,7 +172,7 @@ class ModelAgent:
             understood = answer.read(reply.text)
             if understood.action.action_type not in self._profile.actions:
                 raise ActionError(
-                    f"this agent has no action {understood.action.action_type}; choose one of the list"
+                    f"this agent has no action {understood.action.action_type}; choose one that the prompt names"
                 )
         except ActionError as error:
             told = f"{error}{reply.ending}"

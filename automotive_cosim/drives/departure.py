@@ -14,6 +14,9 @@ from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
 
+ADVICE_S = 120.0
+"""How long a driver keeps to advice, and stops when asked to: our choice; a reason that lasts is told again."""
+
 
 def depart(script: DriveScript, simulations: Simulations, listener: Listener | None = None) -> CoSimulation:
     """The drive at its first instant; whoever takes it over must close it.
@@ -82,4 +85,6 @@ def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:
         at_schools=script.at_schools,
         halts=script.halts,
         incidents=script.incidents,
+        advice_s=ADVICE_S,
+        brakes_early=True,
     )

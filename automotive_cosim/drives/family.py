@@ -9,7 +9,7 @@ from enum import StrEnum
 import numpy as np
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.script import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DriveScript, Staged
 from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGINGS, TAKES_S, Setting, WeatherSpan
@@ -169,7 +169,7 @@ def _timeline(usual: Weather, weather: Sequence[WeatherSpan]) -> tuple[WeatherAt
 
     def at(time_s: float) -> Weather:
         on = [span for span in weather if span.from_s <= time_s < span.to_s]
-        return max(on, key=lambda span: span.from_s).weather if on else usual
+        return max(on, key=lambda span: span.whole_from_s).weather if on else usual
 
     entries = [WeatherAt(time_s, at(time_s)) for time_s in edges_s]
     return tuple(_changing(entries))

@@ -7,8 +7,8 @@ copy of the drive that was forked when the event became observable, with nobody 
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
@@ -24,6 +24,12 @@ WORSE = 1.25
 """Ratio of severities from which an event has become worse."""
 SELF_ENDED_S = 1.5
 """An event that was over earlier than this before its deadline had passed by itself: a tick and a half."""
+HOLD_S = 120.0
+"""For how long a request or a stop holds the car back (``departure.ADVICE_S``)."""
+AFTER_S = 60.0
+"""How long after that the drive is still another one because of it."""
+NEAR_S = 120.0
+"""The same event comes on both drives within this time."""
 CHANCE_S = 2.0
 """An event whose deadline comes sooner than this after its obligation arose could be met by nobody: one glance
 (NHTSA 2013)."""
@@ -54,6 +60,9 @@ class EventOutcome(StrEnum):
     """No right act."""
     CAUSED = "caused"
     """The agent's own doing: counts as missed, whatever it did then."""
+    EVADED = "evaded"
+    """It arose in the do-nothing run, but not here, because the agent held the car back for no reason: counts as
+    missed."""
     VOID = "void"
     """Nothing ever had to be done, or it passed by itself before the deadline, or came too suddenly for anybody."""
     AVOIDED = "avoided"
@@ -69,7 +78,8 @@ class EventOutcome(StrEnum):
     @property
     def counts(self) -> bool:
         """Whether recall counts it: an event in which something had to be done."""
-        return self.is_credited or self in (EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED)
+        failed = (EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED, EventOutcome.EVADED)
+        return self.is_credited or self in failed
 
 
 class Worth(StrEnum):
@@ -153,6 +163,8 @@ class JudgedAct:
     """The kind of event that it was about."""
     reason: str = ""
     """What speaks against it, of what the agent could know, if it is a nuisance."""
+    holds_s: float = 0.0
+    """For how long it holds the car back for no reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -204,6 +216,8 @@ def judge(
     due_anyway: Mapping[int, float | None],
     against: Against,
     at_start: Mapping[str, Any] | None = None,
+    untouched: Sequence[DriveEvent] = (),
+    hold_s: float = HOLD_S,
 ) -> Judgement:
     """What became of events, and what acts were.
 
@@ -215,13 +229,44 @@ def judge(
             when it became observable; None if it did not.
         against: the facts that speak against acts.
         at_start: the signals at departure; to set one back is no nuisance.
+        untouched: the events of the do-nothing run from departure, so that nobody gains by avoiding events.
+        hold_s: for how long a request holds the car back.
     """
     cases = [_Case(event, kinds[event.kind], due_anyway.get(index)) for index, event in enumerate(events)]
     for case in cases:
         case.caused = not case.event.lookalike and any(_contrary(case, act) for act in acts)
-    bench = _Bench(tuple(kinds.values()), cases, against, at_start or {})
+    bench = _Bench(tuple(kinds.values()), cases, against, at_start or {}, hold_s)
     judged = tuple(map(bench.act, acts))
-    return Judgement(tuple(map(_event, cases)), judged)
+    found = tuple(map(_event, cases))
+    return Judgement((*found, *_evaded(untouched, found, judged)), judged)
+
+
+def _evaded(
+    untouched: Sequence[DriveEvent], found: Sequence[JudgedEvent], acts: Sequence[JudgedAct]
+) -> Iterator[JudgedEvent]:
+    """The events of the do-nothing run that did not arise because the agent had held the car back for no reason."""
+    held = [(act.time_s, act.time_s + act.holds_s + AFTER_S) for act in acts if act.holds_s]
+    for event in untouched if held else ():
+        due_s = event.obliged_s
+        if event.lookalike or due_s is None or event.deadline_s is None or event.due_until_s is None:
+            continue
+        passed = event.deadline_s - due_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S
+        if passed or not any(from_s <= due_s <= until_s for from_s, until_s in held):
+            continue
+        same = (other.obliged_s or 0.0 for other in found if other.kind == event.kind and other.outcome.counts)
+        if any(abs(other_s - due_s) <= NEAR_S for other_s in same):
+            continue
+        yield JudgedEvent(
+            event.kind,
+            event.words,
+            False,
+            event.weight,
+            EventOutcome.EVADED,
+            event.observable_s,
+            due_s,
+            event.deadline_s,
+            event.last_s,
+        )
 
 
 def facts_of(drive: Sequence[Moment]) -> Against:
@@ -254,6 +299,8 @@ class _Bench:
     cases: Sequence[_Case]
     against: Against
     at_start: Mapping[str, Any]
+    hold_s: float
+    """For how long a request holds the car back."""
     written: set[str] = field(default_factory=set)
     """Signals that the agent has changed."""
     alerted_s: dict[AlertKind, float] = field(default_factory=dict)
@@ -263,6 +310,8 @@ class _Bench:
         """What an act was."""
         judged = self._judged(act)
         self.written |= {path for path, _ in act.writes}
+        if judged.worth.is_nuisance and act.holds_back:
+            judged = replace(judged, holds_s=self.hold_s)
         if act.alert is not None:
             self.alerted_s[act.alert] = act.time_s
         return judged

@@ -17,7 +17,7 @@ from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.reach import RADAR_M
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, TYRE, Signal
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.sky import drizzle, fog, rain, sleet
+from automotive_cosim.drives.sky import DENSE_FROM_S, DENSE_UNTIL_S, FOG_S, drizzle, fog_bank, rain, sleet
 from automotive_cosim.scenarios.incidents import AheadIncident, AnyIncident, BrakingLeader, EmergencyVehicle
 from automotive_cosim.traffic.base import DriverAt, HaltAt
 
@@ -29,6 +29,13 @@ class WeatherSpan:
     from_s: float
     to_s: float
     weather: Weather
+    begun_s: float | None = None
+    """When the whole began of which this is a part; None if it is whole."""
+
+    @property
+    def whole_from_s(self) -> float:
+        """When the whole began; of two that overlap, the later one counts."""
+        return self.from_s if self.begun_s is None else self.begun_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -190,13 +197,10 @@ def _high_beam(setting: Setting) -> Causes:
 
 def _fog_lamps(setting: Setting) -> Causes:
     """The rear fog lamp in clear air; as a look-alike, in fog as thick as it is for."""
-    on = CarChange(setting.at_s + (20.0 if setting.is_lookalike else 0.0), LIGHTS.REAR_FOG.path, True)
-    off = CarChange(setting.at_s + 100.0, LIGHTS.REAR_FOG.path, False)
-    weather = (
-        (WeatherSpan(setting.at_s, setting.at_s + SPAN_S, fog(setting.weather, 40.0)),)
-        if setting.is_lookalike
-        else ()
-    )
+    from_s, to_s = (DENSE_FROM_S + 2.0, DENSE_UNTIL_S - 2.0) if setting.is_lookalike else (0.0, 100.0)
+    on = CarChange(setting.at_s + from_s, LIGHTS.REAR_FOG.path, True)
+    off = CarChange(setting.at_s + to_s, LIGHTS.REAR_FOG.path, False)
+    weather = _bank(setting, 40.0) if setting.is_lookalike else ()
     return Causes(changes=(*_set(setting, (LIGHTS.SWITCH, "BEAM")), on, off), weather=weather)
 
 
@@ -223,14 +227,22 @@ def _wipers(setting: Setting) -> Causes:
     )
 
 
+def _bank(setting: Setting, visibility_m: float) -> tuple[WeatherSpan, ...]:
+    """A bank of fog that comes over minutes."""
+    steps = [(setting.at_s + after_s, weather) for after_s, weather in fog_bank(setting.weather, visibility_m)]
+    ends_s = [*(at_s for at_s, _ in steps[1:]), setting.at_s + FOG_S]
+    spans = zip(steps, ends_s, strict=True)
+    return tuple(WeatherSpan(at_s, end_s, weather, setting.at_s) for (at_s, weather), end_s in spans)
+
+
 def _weather_speed(setting: Setting) -> Causes:
     """A bank of dense fog that the driver takes no notice of; as a look-alike, mist."""
-    until_s = setting.at_s + SPAN_S
+    until_s = setting.at_s + FOG_S
     careless = (DriverAt(setting.at_s, "careless"), DriverAt(until_s, setting.driver))
     visibility_m = (
         1600.0 if setting.is_lookalike else float(round(setting.rng.uniform(14, 24)))
     )  # too little for 50 km/h
-    return Causes(moods=careless, weather=(WeatherSpan(setting.at_s, until_s, fog(setting.weather, visibility_m)),))
+    return Causes(moods=careless, weather=_bank(setting, visibility_m))
 
 
 def _slippery(setting: Setting) -> Causes:

@@ -602,5 +602,6 @@ class Alarm:
 
 def _risen(reading: Hashable, told: Hashable) -> Hashable:
     """A reading; the step of what was told before if it is no nearer, as in a queue."""
-    same = isinstance(reading, Step) and isinstance(told, Step) and reading.what == told.what
-    return told if same and reading.number <= told.number else reading  # type: ignore[union-attr]
+    if isinstance(reading, Step) and isinstance(told, Step) and reading.what == told.what:
+        return told if reading.number <= told.number else reading
+    return reading

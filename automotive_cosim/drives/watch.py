@@ -19,7 +19,7 @@ from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, spoken
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
-from automotive_cosim.drives.judge import Judgement, facts_of, judge
+from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
 from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
@@ -91,7 +91,7 @@ class Watch(Session):
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
-    _deeds: int = 0
+    _given: int = 0
 
     @classmethod
     def depart_with(
@@ -236,10 +236,17 @@ class Watch(Session):
                 twin.world.close()
         self.twins = kept
 
+    def _untouched(self) -> Sequence[DriveEvent]:
+        """The events of the do-nothing run from departure."""
+        tracker, drive = Tracker(KINDS), self.baseline_moments
+        for count in range(1, len(drive) + 1):
+            tracker.see(drive[max(0, count - BACK) : count])
+        return tracker.events
+
     def _note_acts(self) -> None:
-        deeds = self.world.cockpit.deeds
-        self.acts += acts_of(deeds[self._deeds :])
-        self._deeds = len(deeds)
+        given = self.world.cockpit.given
+        self.acts += acts_of(given[self._given :])
+        self._given = len(given)
 
     def _ended(self) -> End | None:
         end = super()._ended()
@@ -256,6 +263,12 @@ class Watch(Session):
         for twin in self.twins:
             self.due_anyway[twin.index] = twin.due_s
         self.judgement = judge(
-            KINDS, self.events, self.acts, self.due_anyway, facts_of(self.moments), self.moments[0].commands
+            KINDS,
+            self.events,
+            self.acts,
+            self.due_anyway,
+            facts_of(self.moments),
+            self.moments[0].commands,
+            self._untouched() if any(act.holds_back for act in self.acts) else (),
         )
         super()._finish(end)

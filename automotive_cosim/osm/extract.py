@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.formats.files import open_file
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
@@ -258,10 +259,10 @@ def _osmium() -> Any:
 
 def _head(source: Path) -> bytes:
     try:
-        with source.open("rb") as stream:
+        with open_file(source) as stream:
             return stream.read(4096)
     except OSError as error:
-        raise ImportMapError(f"{source}: {error.strerror}; give the path of an OSM extract") from error
+        raise ImportMapError(f"{source}: {error.strerror or error}; give the path of an OSM extract") from error
 
 
 class _UnreadableError(ImportMapError):

@@ -21,6 +21,7 @@ COLOURS = {
     EventOutcome.LATE: ORANGE,
     EventOutcome.MISSED: RED,
     EventOutcome.CAUSED: PURPLE,
+    EventOutcome.EVADED: PURPLE,
     EventOutcome.VOID: GREY,
     EventOutcome.AVOIDED: GREY,
     EventOutcome.TAKEN: RED,

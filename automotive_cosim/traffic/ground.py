@@ -37,13 +37,17 @@ AREAS_LIMIT = 20_000
 """Of more areas the largest are shown."""
 
 
-def read_mapped(configuration: Configuration) -> Network:
+def read_mapped(configuration: Configuration, read: Network | None = None) -> Network:
     """The network of a configuration with what is around its roads.
+
+    Args:
+        configuration: names the files.
+        read: the network without it, if it has been read.
 
     Raises:
         ScenarioError: a file is missing or invalid; a polygon with its line.
     """
-    network = read_network(configuration.net)
+    network = read or read_network(configuration.net)
     ground = read_ground(configuration, network.map)
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
 

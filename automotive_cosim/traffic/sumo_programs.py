@@ -59,8 +59,8 @@ def run(name: str, arguments: Sequence[str | Path], folder: Path | None = None) 
 
     Args:
         name: the program.
-        arguments: its options. A comma in a file's name parts two files, a colon a host from its port: name files
-            in a folder that anybody chose from within it.
+        arguments: its options. A comma in a file's name parts two files, and a colon a host from its port: name
+            files in a folder that anybody chose from within it.
         folder: where it runs; it can then write nowhere else, if the kernel can see to that.
 
     Returns:

@@ -21,7 +21,7 @@ from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
 from automotive_cosim.traffic.ground import read_mapped
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
-from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.network import Network, NetworkReader
 from automotive_cosim.traffic.options import Setup, command_line, copied, read_configuration, run_options
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
@@ -55,14 +55,16 @@ class World:
             SetupError: libsumo is missing or unsuitable.
         """
         scenario = setup.scenario
-        self._configuration = copied(read_configuration(scenario.config), scratch)
+        configuration = read_configuration(scenario.config)
+        reader = NetworkReader(configuration.net)
+        self._configuration = copied(configuration, scratch, reader)
         self._scenario = scenario
         self.step_s = scenario.sumo.step_length_s
         self.writes = setup.outputs is not None
         """Whether SUMO writes outputs, which are completed on closing."""
         self._sumo = load_library()
         with self._configuration.named_as_given():
-            self.network = self._read_network(setup)
+            self.network = self._mapped(reader.network(), setup)
             options = run_options(self._configuration, setup, self.network)
             with chdir(scratch):
                 start(self._sumo, command_line(options))
@@ -86,9 +88,10 @@ class World:
         self._sensor: Sensor | None = None
         self._is_watched = True
 
-    def _read_network(self, setup: Setup) -> Network:
+    def _mapped(self, roads: Network, setup: Setup) -> Network:
+        """The network with what is around it, at the scenario's place."""
         scenario = setup.scenario
-        network = read_mapped(self._configuration)
+        network = read_mapped(self._configuration, roads)
         if scenario.origin is not None:
             network = network.at(scenario.origin)
         if network.unplaced and scenario.has_place and not setup.allow_unprojected:

@@ -269,10 +269,50 @@ def test_each_nuisance_costs_the_same() -> None:
     assert one.value - two.value == pytest.approx(100.0 - one.value)
 
 
-def test_a_drive_without_events_is_won_by_silence() -> None:
-    assert score(judged(events=(LOOKALIKE,)), 600.0).value == 100.0
-    assert score(judged(warn(110.0), events=(LOOKALIKE,)), 600.0).value < 100.0
+def test_on_a_drive_without_events_nothing_can_be_gained() -> None:
+    assert score(judged(events=(LOOKALIKE,)), 600.0).value == 0.0
+    assert score(judged(warn(110.0), events=(LOOKALIKE,)), 600.0).value < 0.0
     assert score(judged(events=()), 600.0).recall is None
+
+
+def test_a_drive_without_events_changes_no_score_of_several() -> None:
+    """A drive and a pool of drives mean the same by their scores."""
+    good, empty = score(judged(warn(105.0)), 600.0), score(judged(events=(LOOKALIKE,)), 600.0)
+    assert together((good, empty, empty)).value == good.value == 100.0
+    assert together((empty, empty)).value == 0.0
+    one, four = (together([score(judged(warn(110.0), events=(LOOKALIKE,)), 600.0)] * n).value for n in (1, 4))
+    assert one == four < 0.0
+
+
+STOP = WatchAct(90.0, requests=(PullOver(),))
+
+
+def stopped(*acts: WatchAct) -> Judgement:
+    """A drive on which nothing arises, while the do-nothing run speeds."""
+    against = {"over_limit": "the car keeps the limit"}
+    return judge(KINDS, (), acts, {}, lambda kind, at_s: against.get(kind.name, "nothing"), {}, (SPEEDING,))
+
+
+def test_what_was_avoided_by_stopping_for_no_reason_is_missed() -> None:
+    (event,) = stopped(STOP).events
+    assert (event.kind, event.outcome) == ("over_limit", EventOutcome.EVADED)
+    assert not stopped().events
+    assert not stopped(replace(STOP, time_s=300.0)).events
+
+
+def test_a_stop_for_no_reason_costs_the_minutes_that_it_takes() -> None:
+    needless, two = score(stopped(STOP), 600.0), score(stopped(STOP, replace(STOP, time_s=100.0)), 600.0)
+    assert needless.held_s == 120.0
+    assert two.held_s == 130.0
+    assert needless.value < -100.0
+
+
+def test_an_event_that_comes_in_spite_of_the_stop_counts_once() -> None:
+    against = {"over_limit": "the car keeps the limit"}
+    found = judge(
+        KINDS, (SPEEDING,), (STOP,), {}, lambda kind, at_s: against.get(kind.name, "nothing"), {}, (SPEEDING,)
+    )
+    assert [event.outcome for event in found.events] == [EventOutcome.MISSED]
 
 
 def test_an_alert_of_any_kind_every_ten_seconds_falls_below_0() -> None:

@@ -152,10 +152,10 @@ def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(drive: Record
 
 
 @pytest.mark.parametrize("family", EVERY)
-def test_without_its_events_a_drive_is_won_by_silence(drive: Recorded) -> None:
+def test_without_its_events_nothing_is_gained_on_a_drive(drive: Recorded) -> None:
     lookalikes = [replace(event) for event in drive.events if event.lookalike]
-    assert scored(drive, (), lookalikes).value == 100.0
-    assert scored(drive, [WatchAct(drive.begun_s + 100.0, AlertKind.SPEED)], lookalikes).value < 100.0
+    assert scored(drive, (), lookalikes).value == 0.0
+    assert scored(drive, [WatchAct(drive.begun_s + 100.0, requests=(PullOver(),))], lookalikes).value <= 0.0
 
 
 def test_every_kind_comes_in_some_family_as_an_event_and_as_a_look_alike() -> None:

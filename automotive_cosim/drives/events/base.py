@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from automotive_cosim.contracts import AlertKind, RoadRequest, Severity
+from automotive_cosim.contracts import AlertKind, Cruise, PullOver, RoadRequest, Severity, SlowDown
 from automotive_cosim.cosim.moment import Moment
 
 Wanted = Callable[[Any], bool]
@@ -60,6 +60,18 @@ class WatchAct:
     """Signals and app data that it commanded, with their values; None for app data."""
     said: str = ""
     """Words spoken to the driver."""
+
+    @property
+    def holds_back(self) -> bool:
+        """Whether it makes the car stop or drive slowly, or tells the driver to."""
+        slows = any(isinstance(request, SlowDown | PullOver | Cruise) for request in self.requests)
+        return slows or (self.alert is not None and self.speed_kmh is not None) or self.stops
+
+    @property
+    def stops(self) -> bool:
+        """Whether it makes the car stop."""
+        is_red = self.alert is AlertKind.VEHICLE and self.severity is Severity.CRITICAL
+        return is_red or any(isinstance(request, PullOver) for request in self.requests)
 
     @property
     def words(self) -> str:
