@@ -15,7 +15,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import Actor, play
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import Hash, Step
@@ -25,7 +25,7 @@ from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
 
-CONDITIONS = Conditions(ALL - {Channel.SCREENSHOT})
+SETUP = SessionSetup(ALL - {Channel.SCREENSHOT})
 """Every channel except the screenshot, which shows what the elements list."""
 
 
@@ -112,7 +112,7 @@ class Ground:
         """
         spec = EpisodeSpec(task.id, half_name, scenario, seed=seed)
         hand_over = SituationFinder(spec, simulations, task=task).find(SeedSource(seed).next())
-        return cls(task, half_name, seed, Episode.take_over(hand_over, CONDITIONS))
+        return cls(task, half_name, seed, Episode.take_over(hand_over, SETUP))
 
     @property
     def instance(self) -> Instance:

@@ -86,6 +86,7 @@ READINGS: Mapping[str, frozenset[Facet]] = {
         "leader_gap_m": {Facet.TRAFFIC},
         "leader_time_to_collision_s": {Facet.TRAFFIC},
         "aboard": {Facet.ABOARD},
+        "noticed": {Facet.TRAFFIC, Facet.CAR, Facet.WEATHER},
     }.items()
 }
 """What each reading follows from. In a tunnel no rain falls, and lamps on auto come on."""

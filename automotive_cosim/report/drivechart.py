@@ -21,6 +21,7 @@ COLOURS = {
     EventOutcome.LATE: ORANGE,
     EventOutcome.MISSED: RED,
     EventOutcome.CAUSED: PURPLE,
+    EventOutcome.EVADED: PURPLE,
     EventOutcome.VOID: GREY,
     EventOutcome.AVOIDED: GREY,
     EventOutcome.TAKEN: RED,
@@ -33,7 +34,7 @@ MARKS = {
     "repeat": ("s", ORANGE),
     "false": ("X", RED),
 }
-"""Marker of an act by how it was judged; acts on bait and wrong acts count as false."""
+"""Marker of an act by how it was judged; acts on look-alikes and wrong acts count as false."""
 LEAST_S = 6.0
 """Shortest bar that can be seen."""
 ROW_IN, SPEED_IN = 0.24, 1.7
@@ -101,9 +102,9 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> 
             length_s,
             left=event.observable_s,
             height=0.62,
-            color="none" if event.bait else colour,
+            color="none" if event.lookalike else colour,
             edgecolor=colour,
-            hatch="////" if event.bait else None,
+            hatch="////" if event.lookalike else None,
             alpha=0.45 if event.outcome in (EventOutcome.VOID, EventOutcome.AVOIDED) else 0.75,
             linewidth=0.8,
         )

@@ -1,4 +1,4 @@
-"""The plan of a drive: everything that is drawn before it departs. It is data, and is written as JSON."""
+"""The script of a drive: everything that is drawn before it departs. It is data, and is written as JSON."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ LONGEST_S = 1800.0
 APART_S = 45.0
 """Minimum time between two things that are staged."""
 QUIET_S = 300.0
-"""Minimum length of the spell in which nothing is staged."""
+"""Minimum length of the span in which nothing is staged."""
 
 
 @dataclass(frozen=True, slots=True)
 class Staged:
-    """One thing that the plan stages. It helps readers of a plan; no judge reads it, because what counts is found
-    on the drive itself."""
+    """One thing that the script stages. It helps readers of a script; no judge reads it, because what counts is
+    found on the drive itself."""
 
     kind: str
     """Kind of event, such as ``belt``."""
     at_s: float
     """Seconds after departure."""
-    is_bait: bool
+    is_lookalike: bool
     """Whether it only looks like that kind."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class DrivePlan:
-    """One drive, by name and number: the same plan and the same actions give the same trace. Times are simulated
+class DriveScript:
+    """One drive, by name and number: the same script and the same actions give the same trace. Times are simulated
     seconds after departure."""
 
     family: str
@@ -88,13 +88,13 @@ class DrivePlan:
     """From when to when nothing is staged."""
 
 
-def plan_json(plan: DrivePlan) -> str:
-    """The plan as JSON; ``read_plan`` reads it."""
-    return json.dumps(json.loads(as_json(asdict(plan))), indent=1)
+def script_json(script: DriveScript) -> str:
+    """The script as JSON; ``read_script`` reads it."""
+    return json.dumps(json.loads(as_json(asdict(script))), indent=1)
 
 
-def read_plan(text: str, source: str = "the plan of the drive") -> DrivePlan:
-    """A plan from its JSON.
+def read_script(text: str, source: str = "the script of the drive") -> DriveScript:
+    """A script from its JSON.
 
     Raises:
         UserError: it is not one; the message says what is wrong where.
@@ -103,4 +103,4 @@ def read_plan(text: str, source: str = "the plan of the drive") -> DrivePlan:
         values = json.loads(text)
     except ValueError:
         values = text
-    return checked(DrivePlan, values, lambda steps: (source, dotted(steps)))
+    return checked(DriveScript, values, lambda steps: (source, dotted(steps)))
