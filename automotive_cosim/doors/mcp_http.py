@@ -21,6 +21,8 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from automotive_cosim.service.own_names import is_own, own_names
 
+NOT_ITS_OWN = TransportSecuritySettings(enable_dns_rebinding_protection=False)
+"""``Guarded`` asks for more."""
 MOST_BYTES = 2**20
 """Longest request; an action has some hundred bytes."""
 
@@ -33,13 +35,13 @@ def serve_http(server: MCPServer[Any], host: str, port: int, token: str) -> None
     """
     app = server.streamable_http_app(
         max_request_body_size=MOST_BYTES,
-        transport_security=TransportSecuritySettings(enable_dns_rebinding_protection=False),  # see Guarded
+        transport_security=NOT_ITS_OWN,
     )
     uvicorn.run(Guarded(app, host, port, token), host=host, port=port, log_level="warning")
 
 
 class Guarded:
-    """An application that answers only requests with the token that name this server and come from no other site."""
+    """An application that answers only requests that name this server, have its token and come from no other site."""
 
     def __init__(self, app: ASGIApp, host: str, port: int, token: str) -> None:
         """Guards an application that listens there."""
