@@ -72,7 +72,7 @@ def test_an_alert_that_asks_for_no_speed_may_advise_any_that_is_allowed(
     limit_kmh: float | None, advised_kmh: float | None, is_right: bool
 ):
     start, now = alerted(), alerted({"kind": AlertKind.YIELD, "speed_kmh": advised_kmh})
-    limit = NO_LIMIT if limit_kmh is None else Limit(limit_kmh / KMH_PER_MPS, LimitSource.SIGN)
+    limit = NO_LIMIT if limit_kmh is None else Limit(limit_kmh / KMH_PER_MPS, LimitSource.POSTED)
     now.driving = SimpleNamespace(road=SimpleNamespace(limit=limit))
     assert AlertGiven(AlertKind.YIELD).holds(start, now, [now]) is is_right
 
