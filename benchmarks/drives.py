@@ -36,7 +36,7 @@ from automotive_cosim.drives.script import APART_S, Staged
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.loop import play
-from automotive_cosim.episode.specification import Conditions
+from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
@@ -99,8 +99,8 @@ class Kept:
 def played(who: str, family: str, seed: int, simulations: Simulations) -> Kept:
     """One drive by one watcher."""
     script, agent = FAMILIES[family].draw(seed), WATCHERS[who]()
-    conditions = Conditions(max_steps=STEPS, max_sim_s=script.duration_s, channels=agent.channels)
-    with closing(Watch.depart_with(depart(script, simulations), conditions)) as watch:
+    setup = SessionSetup(max_steps=STEPS, max_sim_s=script.duration_s, channels=agent.channels)
+    with closing(Watch.depart_with(depart(script, simulations), setup)) as watch:
         agent.reset(watch.goal)
         play(watch, agent)
         assert watch.judgement is not None

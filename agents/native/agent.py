@@ -87,9 +87,10 @@ class NativeAgent:
             if len(found) > MOST_ACTIONS:
                 raise ActionError(f"the answer has {len(found)} actions; at most {MOST_ACTIONS} are allowed")
         except ActionError as error:
-            self._problem = f"It could not be carried out: {prompt.one_line(str(error))}"
-            self._asking.note(StageName.ACT, observation, str(error), reply, asked, 1)
-            raise
+            told = f"{error}{reply.ending}"
+            self._problem = f"It could not be carried out: {prompt.one_line(told)}"
+            self._asking.note(StageName.ACT, observation, told, reply, asked, 1)
+            raise ActionError(told) from None
         self._problem = ""
         self._asking.note(StageName.INTERPRET, observation, reply.text, reply, asked, 1)
         self._left.extend(found)

@@ -143,6 +143,15 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+def _confinement() -> Finding:
+    from automotive_cosim.traffic.confinement import version
+
+    if version():
+        return Finding("confinement", Health.OK, "SUMO can write only to its scratch folder (Landlock)")
+    found = "this kernel keeps no process from writing; SUMO's files are still checked and copied"
+    return Finding("confinement", Health.LIMITED, found, "for scenarios of others use Linux 5.13 or newer")
+
+
 def _memory() -> Finding:
     try:
         lines = Path("/proc/meminfo").read_text(encoding="ascii").splitlines()
@@ -198,6 +207,7 @@ CHECKS: tuple[Callable[[], Finding], ...] = (
     _sumo,
     _fonts,
     _processes,
+    _confinement,
     _memory,
     _disk,
     _ports,

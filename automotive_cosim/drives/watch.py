@@ -25,7 +25,7 @@ from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
-from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
+from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.interface.observe import Channel
 
 CHANGED = "something changed"
@@ -95,26 +95,26 @@ class Watch(Session):
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
-    _deeds: int = 0
+    _given: int = 0
 
     @classmethod
     def depart_with(
         cls,
         world: CoSimulation,
-        conditions: Conditions,
+        setup: SessionSetup,
         listener: Listener | None = None,
     ) -> Self:
         """The watch that begins at the present moment of a drive, and takes it over.
 
         Args:
             world: the running drive.
-            conditions: the agent's input, and the duration as ``max_sim_s``.
+            setup: the agent's input, and the duration as ``max_sim_s``.
             listener: notified of every second that passes.
 
         Raises:
             TrafficError: the traffic simulation failed.
         """
-        begun: dict[str, Any] = beginning(world, STANDING_ORDER, conditions, (), listener)
+        begun: dict[str, Any] = beginning(world, STANDING_ORDER, setup, (), listener)
         watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
         watch._read()
@@ -209,13 +209,13 @@ class Watch(Session):
         return any(change.wakes for change in self.changes)
 
     def _left_s(self) -> float:
-        most_s = self.conditions.max_sim_s
+        most_s = self.setup.max_sim_s
         return float("inf") if most_s is None else most_s - self.seconds
 
     def _channels(self, action: Action | None) -> frozenset[Channel]:
         """After a wait there is no picture: an agent that wants one looks at a screen."""
         waited = action is not None and action.action_type is ActionType.WAIT
-        return self.conditions.given - {Channel.SCREENSHOT} if waited else self.conditions.given
+        return self.setup.given - {Channel.SCREENSHOT} if waited else self.setup.given
 
     def _advance(self, duration_s: float) -> None:
         """Advances second by second, together with the copies."""
@@ -262,21 +262,21 @@ class Watch(Session):
         return tracker.events
 
     def _note_acts(self) -> None:
-        deeds = self.world.cockpit.deeds
-        self.acts += acts_of(deeds[self._deeds :])
-        self._deeds = len(deeds)
+        given = self.world.cockpit.given
+        self.acts += acts_of(given[self._given :])
+        self._given = len(given)
 
     def _ended(self) -> End | None:
         end = super()._ended()
         if end is End.DECLARED:
-            most_s = self.conditions.max_sim_s
+            most_s = self.setup.max_sim_s
             self.declared = self.reason = None
             end = End.WATCH_OVER if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
         return End.WATCH_OVER if end is End.OUT_OF_TIME else end
 
     def _finish(self, end: End) -> None:
         """An agent that stops acting leaves the rest of the drive to itself."""
-        if end not in (End.DRIVE_ENDED, End.WATCH_OVER) and self.conditions.max_sim_s is not None:
+        if end not in (End.DRIVE_ENDED, End.WATCH_OVER) and self.setup.max_sim_s is not None:
             self.unwatched_from_s = round(self.seconds, 1)
             self._advance(max(0.0, self._left_s()))
         for twin in self.twins:

@@ -74,12 +74,12 @@ class SituationFinder:
         """
         spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
-        if self.task.needs_picture and spec.see is See.TREE:
+        if self.task.needs_picture and spec.conditions.see is See.TREE:
             raise UserError(f"{self.task.id} needs the picture, which see = tree withholds; give picture or both")
         half = self.task.half(spec.half)
         start = half.start
-        if spec.language is not Language.ENGLISH:
-            speech(self.task, spec.language)
+        if spec.conditions.language is not Language.ENGLISH:
+            speech(self.task, spec.conditions.language)
         self.scenario: Scenario = open_scenario(
             spec.scenario or start.scenario,
             origin=start.origin if spec.origin is None and spec.scenario is None else spec.origin,
@@ -144,7 +144,7 @@ class SituationFinder:
             draws.number,
             content,
             held_out=self._spec.held_out,
-            language=self._spec.language,
+            language=self._spec.conditions.language,
         )
 
     def _trips(self, half: Half, draws: Draws) -> tuple[Trip, ...]:
@@ -176,8 +176,8 @@ class SituationFinder:
     def _couple(self, traffic: Traffic, half: Half, plan: EgoPlan, draws: Draws) -> CoSimulation:
         start = half.start
         signals = start.signals
-        if self._spec.language is not Language.ENGLISH:
-            signals = {HMI.LANGUAGE.path: str(self._spec.language), **signals}
+        if self._spec.conditions.language is not Language.ENGLISH:
+            signals = {HMI.LANGUAGE.path: str(self._spec.conditions.language), **signals}
         cockpit = Cockpit(
             traffic.network,
             rng=draws.rng(Purpose.CONTENT),
@@ -187,7 +187,7 @@ class SituationFinder:
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,
-            size=self._spec.screen,
+            size=self._spec.conditions.screen,
         )
         world = couple(
             traffic,

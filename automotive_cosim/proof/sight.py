@@ -13,7 +13,7 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from automotive_cosim.cockpit.screens.notices import LOW_KPA, NOTICED, TYRES
+from automotive_cosim.cockpit.notices import LOW_KPA, NOTICED, TYRES
 from automotive_cosim.cockpit.signals import GLASS
 from automotive_cosim.contracts import BoundingBox, Element, Observation, VehicleState
 from automotive_cosim.contracts.ids import key_of

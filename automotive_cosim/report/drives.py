@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from automotive_cosim.drives.score import Score, together
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.drivechart import timeline_chart
-from automotive_cosim.report.results import seen_and_told
+from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.report.templates import render
@@ -37,43 +36,12 @@ Figure = Callable[[Sequence[WatchRow]], float | None]
 """A figure of several drives together; None if there is nothing to divide by."""
 
 
-@dataclass(frozen=True, slots=True)
-class WatchedBy:
-    """An agent and its conditions: one row of the tables."""
-
-    agent: str
-    model: str
-    geo: str
-    clock: str
-    latency_s: float
-    see: str
-    feedback: str
-    screen: str
-
-    @property
-    def label(self) -> str:
-        """Agent and conditions in words."""
-        parts = [self.agent if self.model == "none" else f"{self.agent} ({self.model})"]
-        parts += [f"geo {self.geo}"] if self.geo != "full" else []
-        parts += seen_and_told(self.see, self.feedback, self.screen)
-        parts += [f"{self.clock} clock"] if self.clock != "fixed" else []
-        parts += [f"latency {self.latency_s:g} s"] if self.latency_s else []
-        return ", ".join(parts)
-
-
-def watcher_of(row: WatchRow) -> WatchedBy:
-    """The agent and the conditions of a drive."""
-    return WatchedBy(
-        row.agent, row.model, str(row.geo), str(row.clock), row.latency_s, row.see, row.feedback, row.screen
-    )
-
-
-def grouped(rows: Iterable[WatchRow]) -> dict[WatchedBy, list[WatchRow]]:
+def grouped(rows: Iterable[WatchRow]) -> dict[Contestant, list[WatchRow]]:
     """The judged drives of each watcher, the best first."""
-    found: dict[WatchedBy, list[WatchRow]] = {}
+    found: dict[Contestant, list[WatchRow]] = {}
     for row in rows:
         if row.score is not None:
-            found.setdefault(watcher_of(row), []).append(row)
+            found.setdefault(contestant(row), []).append(row)
     return dict(sorted(found.items(), key=lambda entry: -whole(entry[1]).value))
 
 
@@ -205,7 +173,7 @@ def tables(rows: Sequence[WatchRow]) -> list[Table]:
     return [table for table in (_watchers(groups), _kinds(groups), _families(groups), _errors(rows)) if table.rows]
 
 
-def _watchers(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+def _watchers(groups: dict[Contestant, list[WatchRow]]) -> Table:
     lines: tuple[TableRow, ...] = tuple(
         (
             each.label,
@@ -229,7 +197,7 @@ def _watchers(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
     )
 
 
-def _kinds(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+def _kinds(groups: dict[Contestant, list[WatchRow]]) -> Table:
     """Events met of each kind, and look-alikes left alone."""
     lines = []
     for name, kind in KINDS.items():
@@ -252,7 +220,7 @@ def _kinds(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
     )
 
 
-def _families(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+def _families(groups: dict[Contestant, list[WatchRow]]) -> Table:
     families = dict.fromkeys(row.family for mine in groups.values() for row in mine)
     lines = []
     for family in families:
@@ -299,7 +267,7 @@ def write_drives(folder: Path) -> Path:
             drawn = timeline_chart(row, _read(timeline))
             write_whole(folder / "plots" / f"{row.id}.svg", drawn[0].replace("currentColor", INK))
             if len(plots) < SHOWN:
-                plots[row.id] = (f"{row.family}, seed {row.seed}: {watcher_of(row).label}", *drawn)
+                plots[row.id] = (f"{row.family}, seed {row.seed}: {contestant(row).label}", *drawn)
         page = folder / "report.html"
         write_whole(
             page,

@@ -10,8 +10,8 @@ from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
-from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Element, Json
+from automotive_cosim.contracts.given import Clock
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.result import DriveResult, result_of
@@ -19,12 +19,11 @@ from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watch import Watch
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
-from automotive_cosim.episode.specification import Clock, End
-from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import Channel, See
+from automotive_cosim.episode.specification import End
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.models.base import ModelReply
 from automotive_cosim.run.episode import Replayed, Timed
@@ -40,13 +39,8 @@ class WatchSetup:
     seed: int = 0
     agent: str = ""
     model: str = "none"
-    geo: GeoInput = GeoInput.FULL
-    clock: Clock = Clock.FIXED
-    latency_s: float = 0.0
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
     repeat: int = 0
-    see: See = See.BOTH
-    feedback: FeedbackDetail = FeedbackDetail.QUIET
-    screen: ScreenSize = ScreenSize.STANDARD
     scenario: str = ""
     """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
 
@@ -86,13 +80,8 @@ def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
         season=family.season,
         agent=setup.agent,
         model=setup.model,
-        geo=setup.geo,
-        clock=setup.clock,
-        latency_s=setup.latency_s,
+        conditions=setup.conditions,
         repeat=setup.repeat,
-        see=setup.see,
-        feedback=setup.feedback,
-        screen=setup.screen,
     )
 
 
@@ -139,7 +128,7 @@ def run_watch(
     listener = Listeners(watchers)
     if setup.scenario and plan is None:
         plan = elsewhere(family_named(setup.family).draw(setup.seed), setup.scenario)
-    spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback, setup.screen)
+    spec = DriveSpec(setup.family, setup.seed, setup.conditions)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
         watch = spec.begin(own, agent.channels, listener, plan)
@@ -169,13 +158,13 @@ class _Meter:
 
     def thought_s(self) -> float:
         """Simulated seconds of the last answer."""
-        seconds = self._setup.latency_s
+        seconds = self._setup.conditions.latency_s
         agent = self._agent
         if isinstance(agent, Replayed):
             seconds = agent.thought_s
-        elif self._setup.clock is Clock.MODEL and isinstance(agent, Timed):
+        elif self._setup.conditions.clock is Clock.MODEL and isinstance(agent, Timed):
             seconds += agent.answer_s
-        elif self._setup.clock is Clock.MODEL and isinstance(agent, Thinker):
+        elif self._setup.conditions.clock is Clock.MODEL and isinstance(agent, Thinker):
             seconds += sum(stage.reply.seconds for stage in agent.stages if stage.reply is not None)
         seconds = round(seconds, 1)
         self._thought_s += seconds

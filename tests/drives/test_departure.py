@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.signals import CABIN, CALL, MOTION, OCCUPANT, SEAT
 from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, SightKind, Weather

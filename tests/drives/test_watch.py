@@ -29,7 +29,7 @@ from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm, noticed
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS, AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.loop import Actor, play
-from automotive_cosim.episode.specification import Conditions, End
+from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import limit, moment, vehicle
@@ -46,7 +46,7 @@ def begin(simulations: Simulations) -> Iterator[Begin]:
 
     def departed(seconds: float = FOR_S, channels: frozenset[Channel] = READS) -> Watch:
         world = depart(FAMILIES[FAMILY].draw(SEED), simulations)
-        watches.append(Watch.depart_with(world, Conditions(channels, max_steps=10_000, max_sim_s=seconds)))
+        watches.append(Watch.depart_with(world, SessionSetup(channels, max_steps=10_000, max_sim_s=seconds)))
         return watches[-1]
 
     yield departed
@@ -61,7 +61,7 @@ def departures(simulations: Simulations) -> Iterator[Begin]:
 
     def departed() -> Watch:
         world = depart(FAMILIES[FAMILY].draw(SEED), simulations)
-        watches.append(Watch.depart_with(world, Conditions(READS, max_steps=10_000, max_sim_s=FOR_S)))
+        watches.append(Watch.depart_with(world, SessionSetup(READS, max_steps=10_000, max_sim_s=FOR_S)))
         return watches[-1]
 
     yield departed

@@ -16,7 +16,7 @@ from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import Conditions, End, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import sha256
@@ -24,7 +24,7 @@ from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic, spoken_s
 from automotive_cosim.tasks import CATALOGUE
 
 SPEC = EpisodeSpec("hvac_fan_max", scenario="grid")
-BLIND = Conditions(frozenset({Channel.ELEMENTS}))
+BLIND = SessionSetup(frozenset({Channel.ELEMENTS}))
 WAIT = Action(ActionType.WAIT, seconds=1)
 WARN = Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED)
 DONE = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
@@ -47,7 +47,7 @@ class Acts:
 def begin(simulations) -> Iterator[Callable[..., Episode]]:
     begun: list[Episode] = []
 
-    def begin_(conditions: Conditions = BLIND, listener: Listener | None = None, seed: int = 0) -> Episode:
+    def begin_(conditions: SessionSetup = BLIND, listener: Listener | None = None, seed: int = 0) -> Episode:
         hand_over = SituationFinder(SPEC, simulations, listener=listener).find(SeedSource(seed).next())
         begun.append(Episode.take_over(hand_over, conditions, listener))
         return begun[-1]

@@ -28,6 +28,8 @@ class Map:
     nodes: dict[str, tuple[float, float]] = field(default_factory=dict)
     node_tags: dict[str, Mapping[str, str]] = field(default_factory=dict)
     ways: list[tuple[Sequence[str], Mapping[str, str]]] = field(default_factory=list)
+    relations: list[tuple[Sequence[tuple[str, str]], Mapping[str, str]]] = field(default_factory=list)
+    """Members by role and name of a node, or number of a way; tags."""
 
     def way(self, nodes: str, **tags: str) -> None:
         """A road along named nodes; ``__`` in a key stands for ``:``."""
@@ -49,6 +51,14 @@ class Map:
         for number, (nodes, tags) in enumerate(self.ways, start=100):
             refs = "".join(f'<nd ref="{numbers[node]}"/>' for node in nodes)
             lines.append(f'<way id="{number}" version="1">{refs}{_tags(tags)}</way>')
+        for number, (members, tags) in enumerate(self.relations, start=1):
+            rows = "".join(
+                f'<member type="node" ref="{numbers[ref]}" role="{role}"/>'
+                if ref in numbers
+                else f'<member type="way" ref="{ref}" role="{role}"/>'
+                for role, ref in members
+            )
+            lines.append(f'<relation id="{number}" version="1">{rows}{_tags(tags)}</relation>')
         return "\n".join([*lines, "</osm>", ""])
 
 

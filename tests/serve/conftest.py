@@ -14,7 +14,6 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.row import as_json
 from automotive_cosim.serve.play import Game
@@ -159,7 +158,7 @@ def write_evaluation(
     rows = [
         EpisodeRow(
             id=name, task="road_speed_80_in_50", half="first", pair="", dimension=Dimension.DRIVING_ALIGNMENT,
-            module=Module.ROAD, scenario="grid", agent=agent, model=model, geo=GeoInput("full"),
+            module=Module.ROAD, scenario="grid", agent=agent, model=model,
             seed=seed, repeat=0, success=ok, steps=3, sim_seconds=6.0, parts=PartsHeld(ok, True, True, True, True),
         )
         for seed, (name, ok) in enumerate(zip(("one", "two"), won, strict=True))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
-from automotive_cosim.cockpit.screens.notices import NOTICED
+from automotive_cosim.cockpit.notices import NOTICED
 from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.cosim.moment import Moment
