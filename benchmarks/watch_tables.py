@@ -36,7 +36,7 @@ from automotive_cosim.drives.score import Score, score, together
 from automotive_cosim.drives.wakes import WAKES, Alarm
 from automotive_cosim.drives.watch import CHANGED, Watch
 from automotive_cosim.episode.loop import play
-from automotive_cosim.episode.specification import Conditions
+from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
@@ -276,8 +276,8 @@ STRATEGIES: Mapping[str, Callable[[], Strategy]] = {
 def played(strategy: Strategy, family: str, seed: int, simulations: Simulations) -> Score:
     """One drive."""
     script = FAMILIES[family].draw(seed)
-    conditions = Conditions(max_steps=10**6, max_sim_s=script.duration_s, channels=strategy.channels)
-    with closing(Watch.depart_with(depart(script, simulations), conditions)) as watch:
+    setup = SessionSetup(max_steps=10**6, max_sim_s=script.duration_s, channels=strategy.channels)
+    with closing(Watch.depart_with(depart(script, simulations), setup)) as watch:
         play(watch, strategy)
         assert watch.judgement is not None
         return score(watch.judgement, watch.seconds)
