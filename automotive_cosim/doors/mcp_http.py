@@ -41,12 +41,7 @@ def serve_http(server: MCPServer[Any], host: str, port: int, token: str) -> None
 
 
 class Guarded:
-<<<<<<< HEAD
-    """An application that answers only requests that name this server, have its token and come from no other
-    site."""
-=======
     """An application that answers requests that name this server, have its token and come from no other site."""
->>>>>>> trust
 
     def __init__(self, app: ASGIApp, host: str, port: int, token: str) -> None:
         """Guards an application that listens there."""

@@ -65,12 +65,7 @@ def test_another_token_in_the_header_is_refused(given):
 
 
 @over(["", "evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:80", f"127.0.0.1.evil.example:{PORT}",
-<<<<<<< HEAD
-       f"127.0.0.1:{PORT}@evil.example", f"evil.example#127.0.0.1:{PORT}", f"10.0.0.1:{PORT}",
-       "127.0.0.1:x"])  # fmt: skip
-=======
        f"{OWN}@evil.example", f"evil.example#{OWN}", f"10.0.0.1:{PORT}", "127.0.0.1:x"])  # fmt: skip
->>>>>>> trust
 def test_a_name_that_is_not_the_servers_is_refused_with_the_token_too(name):
     assert status({"host": name} | BEARER) == 421
 
