@@ -33,6 +33,9 @@ from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, LibSumo, load_library, start
 
+SEARCHING_TYPE = "automotive_cosim.search"
+"""A vehicle type that no vehicle has."""
+
 INSERTION_LIMIT_S = 300.0
 """Limit of the simulated time that the ego waits for a gap to enter the traffic."""
 
@@ -121,6 +124,18 @@ class World:
             self._notice(sampling=(steps - step) * self.step_s <= max(3 * MEMORY_S, WINDOW_S))
         if progress is not None:
             progress(total_s, total_s)
+
+    def prepare_copies(self) -> None:
+        """Makes SUMO build its router's table of all edges, which copies of this process then share.
+
+        The type of the search neither deviates in speed nor carries a device, so no random number is drawn.
+        """
+        sumo = self._sumo
+        sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
+        sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
+        sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
+        edge = next(iter(self.network.edges))
+        sumo.find_route(edge, edge, SEARCHING_TYPE)
 
     def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoDrive:
         """Inserts the ego and runs until it is on the road; ``beat`` is called after every step.
