@@ -36,9 +36,6 @@ roundabouts fill up with cars side by side that each need the other's lane."""
 ROUNDS = 20
 """How often to redraw trips that are too short."""
 
-ONE_PERIOD_S = 10**6
-"""Contraction hierarchies hold for one period of weights; on empty roads there is no other."""
-
 PARTS = 100
 """So many edges are asked for the part of the network around them, at most; most are in the largest."""
 
@@ -241,8 +238,7 @@ def fastest_ways(
             "--ignore-errors",
             "--no-warnings",
             "--no-step-log",
-            "--routing-algorithm=CH",
-            f"--weight-period={ONE_PERIOD_S}",
+            "--routing-algorithm=astar",
         ),
         folder=scratch,
     )
