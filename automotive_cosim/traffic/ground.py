@@ -17,7 +17,9 @@ from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_d
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.mirror import mirrored
 from automotive_cosim.traffic.network import Network, Shape, quantity, read_network
 from automotive_cosim.traffic.options import Configuration
 
@@ -49,6 +51,18 @@ def read_mapped(configuration: Configuration) -> Network:
     network = read_network(configuration.net)
     ground = read_ground(configuration, network.map)
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
+
+
+def network_of(scenario: Scenario, configuration: Configuration) -> Network:
+    """The network of a scenario as it drives: on its side of the road, and at its place.
+
+    Raises:
+        ScenarioError: a file is missing or invalid.
+    """
+    network = read_mapped(configuration)
+    if scenario.mirrored:
+        network = mirrored(network)
+    return network if scenario.origin is None else network.at(scenario.origin, scenario.language)
 
 
 def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[GroundArea, ...]:

@@ -16,6 +16,7 @@ from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import random_traffic
+from automotive_cosim.traffic.mirror import write_mirrored
 from automotive_cosim.traffic.network import read_network, root_of
 from automotive_cosim.traffic.redraw import redraw
 from automotive_cosim.traffic.vetting import vet
@@ -177,6 +178,8 @@ def run_options(configuration: Configuration, setup: Setup, scratch: Path) -> di
     for name in INPUTS:
         if files := options.get(name):
             options[name] = ",".join(str(vet(Path(file), scratch)) for file in files.split(","))
+    if setup.scenario.mirrored:
+        options["net-file"] = str(write_mirrored(Path(options["net-file"]), scratch / "mirrored.net.xml"))
     sumo = setup.scenario.sumo
     step_s = sumo.step_length_s
     if sumo.redraws_trips:

@@ -19,7 +19,7 @@ from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
-from automotive_cosim.traffic.ground import read_mapped
+from automotive_cosim.traffic.ground import network_of
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
 from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
@@ -52,9 +52,7 @@ class World:
         """
         scenario = setup.scenario
         configuration = read_configuration(scenario.config)
-        self.network = read_mapped(configuration)
-        if scenario.origin is not None:
-            self.network = self.network.at(scenario.origin)
+        self.network = network_of(scenario, configuration)
         if self.network.unplaced and scenario.has_place and not setup.allow_unprojected:
             raise ScenarioError(
                 f"{configuration.net.name} {self.network.unplaced}, so it has no position on earth; build "
