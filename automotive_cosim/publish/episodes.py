@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
+from automotive_cosim.formats.files import CHUNK_BYTES, opened
 from automotive_cosim.interface.trace import SAID, Step, plain, sha256
 from automotive_cosim.publish.problems import Problem, differences
 from automotive_cosim.report.page import element
@@ -29,14 +30,18 @@ from automotive_cosim.tasking.dialogue import dialogue, questions
 from automotive_cosim.tasking.instance import Instance, phrased
 
 ROWS = "episodes.jsonl"
+STEP_BYTES, SPARE_STEPS = 2**20, 4
+"""Bytes that a step may have in a trace, on average: a full screen has 40 kB, a question to a model 100 kB."""
+SECOND_BYTES, SPARE_S = 2**15, 120.0
+"""The same for a second of the agent's drive and of the baseline run; a dense city has 10 kB. The last answer may
+take an episode beyond its limit."""
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
-    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "screen", "language", "split",
+    "conditions", "seed", "repeat", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen", "language",
-    "seed", "traffic_seed",
+    "task", "half", "scenario", "agent", "model", "conditions", "seed", "traffic_seed",
     "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
     "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
@@ -75,12 +80,33 @@ def check_episode(folder: Path, job: EpisodeJob, row: EpisodeRow) -> tuple[Probl
         row: its row.
     """
     try:
+        if large := _too_large(folder, job, row):
+            return (large,)
         return tuple(_problems(folder, job, row))
     except (
         CosimError, OSError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RecursionError,
+        MemoryError,
     ) as error:  # fmt: skip
         why = str(error) if isinstance(error, CosimError) else f"{type(error).__name__}: {error}"
         return (Problem(f"traces/{row.id}", "", f"cannot be checked: {why}"),)
+
+
+def _too_large(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Problem | None:
+    """The first file of an episode that is larger than its plan allows."""
+    steps = job.setup.max_steps or job.task.max_steps
+    for path, most in (
+        (trace_file(folder, row.id), STEP_BYTES * (steps + SPARE_STEPS)),
+        (judged_file(folder, row.id), SECOND_BYTES * (job.limits.sim_s + SPARE_S)),
+    ):
+        if path.is_file():
+            left = most
+            with opened(path) as file:
+                while left >= 0 and (chunk := file.read(CHUNK_BYTES)):
+                    left -= len(chunk)
+            if left < 0:
+                where = path.relative_to(folder).as_posix()
+                return Problem(where, "", f"unpacks to over {most / 1e6:.0f} MB, which the plan does not allow")
+    return None
 
 
 def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Problem]:
@@ -189,7 +215,7 @@ def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
     """The row's fields about questions; empty for a row that was written before they were counted."""
     if row.questions is None:
         return {}
-    half = Instance(job.task, row.half, judged.goal, judged.parameters, language=row.language).half
+    half = Instance(job.task, row.half, judged.goal, judged.parameters, language=row.conditions.language).half
     texts = (asked["text"] for asked in questions(judged.trace[0], judged.trace[-1]))
     return questioned(dialogue(texts, half.topics, half.needed_topics, half.neutral))
 
@@ -215,7 +241,7 @@ def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) 
 
 def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Iterator[Problem]:
     """Problems with the phrasing: it must be one of the task's, and held out or not as the row says."""
-    said = phrased(job.task, row.half, judged.parameters, row.language)
+    said = phrased(job.task, row.half, judged.parameters, row.conditions.language)
     if judged.goal not in said:
         yield Problem(file, "goal", f"is {judged.goal!r}, which is not a phrasing of {row.task}")
     elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):

@@ -27,7 +27,7 @@ import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
-from automotive_cosim.run.former import without_mode
+from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.record import STAMPED, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
 from automotive_cosim.run.versions import installed
@@ -136,7 +136,8 @@ def read_rows(folder: Path, kind: type[R]) -> dict[str, R]:
     path = folder / "episodes.jsonl"
     if not path.is_file():
         return rows
-    *lines, _cut = path.read_bytes().split(b"\n")
+    with files.open_file(path) as file:
+        *lines, _cut = file.read().split(b"\n")
     for number, line in enumerate(lines, start=1):
         try:
             row = from_line(kind, line)
@@ -171,7 +172,7 @@ def read_manifest(folder: Path) -> Json:
         )
     if not isinstance(manifest.get("plan"), dict):
         raise UserError(f"{path} has no plan; give a results folder as `automotive-cosim eval` wrote it")
-    return manifest | {"plan": without_mode(manifest["plan"], str(path))}
+    return manifest | {"plan": plan_values(manifest["plan"], str(path))}
 
 
 def read_evaluation(folder: Path) -> Json:
@@ -209,8 +210,7 @@ def read_trace(folder: Path, episode: str) -> list[Json]:
     """
     path = trace_file(folder, episode)
     try:
-        with files.opened(path) as file:
-            lines = [files.parse_json(line) for line in file]
+        lines = files.read_json_lines(path)
         if not lines or not all(isinstance(line, dict) for line in lines):
             raise ValueError("it has no steps")
         return lines

@@ -11,7 +11,7 @@ from automotive_cosim.scenarios import Ego, Scenario
 from automotive_cosim.scenery.foreign import foreign_scenario
 from automotive_cosim.scenery.relocation import at_home, relocated
 from automotive_cosim.scenery.routes import chosen_trips
-from automotive_cosim.traffic import ground
+from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.network import Network, root_of
 from automotive_cosim.traffic.options import read_configuration
 
@@ -61,7 +61,7 @@ def network_of(scenario: Scenario) -> Network:
     Raises:
         ScenarioError: it cannot be read.
     """
-    return ground.network_of(scenario, read_configuration(scenario.config))
+    return placed(read_mapped(read_configuration(scenario.config)), scenario)
 
 
 def _opened(name: str | Path, *, to_be_moved: bool) -> Scenario:

@@ -78,7 +78,7 @@ class _OnTask:
         spec = self.spec
         hand_over = SituationFinder(spec, simulations, listener=listener).find(SeedSource(spec.seed).next())
         try:
-            return Episode.take_over(hand_over, spec.conditions(channels))
+            return Episode.take_over(hand_over, spec.session(channels))
         except BaseException:
             hand_over.world.close()
             raise
@@ -266,7 +266,7 @@ class EpisodeService:
                         running.used_s = self._clock()
                     return
         raise UserError(
-            f"no episode {episode_id!r}: finished, failed, or idle for {self._limits.idle_s:g} s; start another"
+            f"no episode {episode_id[:40]!r}: finished, failed, or idle for {self._limits.idle_s:g} s; start one"
         )
 
     def _drop(self, episode_id: str) -> None:

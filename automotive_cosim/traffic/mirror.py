@@ -16,7 +16,7 @@ from xml.sax.saxutils import quoteattr
 from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.xml import scan
-from automotive_cosim.traffic.network import Network, Shape, read_network
+from automotive_cosim.traffic.network import Network, Shape
 
 SHAPES = frozenset(("shape", "customShape", "outlineShape"))
 """Attributes with positions: "x,y" or "x,y,z", separated by spaces."""
@@ -39,14 +39,18 @@ def mirrored(network: Network) -> Network:
     return replace(network, edges=edges, map=image)
 
 
-def write_mirrored(net: Path, target: Path) -> Path:
-    """Writes the image of a network's file, for SUMO, and returns its path.
+def write_mirrored(net: Path, target: Path, image: RoadNetwork) -> None:
+    """Writes the image of a network's file, for SUMO.
+
+    Args:
+        net: the network.
+        target: where to write.
+        image: the image as ``mirrored`` has it.
 
     Raises:
-        ScenarioError: the file is not a network.
+        ScenarioError: the file is not XML.
     """
-    roads = read_network(net).map
-    sum_m, lefthand = _sum_m(roads), "false" if roads.left_hand else "true"
+    sum_m, lefthand = _sum_m(image), "true" if image.left_hand else "false"
     with target.open("w", encoding="utf-8") as file:
 
         def start(name: str, attributes: dict[str, str], line: int) -> None:
@@ -59,7 +63,6 @@ def write_mirrored(net: Path, target: Path) -> Path:
             file.write(f"</{name}>\n")
 
         scan(net, start, end, error=ScenarioError, what="a SUMO network")
-    return target
 
 
 def _changed(element: str, key: str, value: str, sum_m: float) -> str:
