@@ -8,9 +8,9 @@ from enum import StrEnum
 from pathlib import Path
 
 from automotive_cosim.contracts import ActionType
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.observe import Channel, See
+from automotive_cosim.interface.observe import Channel
 
 
 class AgentPart(StrEnum):
@@ -21,6 +21,9 @@ class AgentPart(StrEnum):
     QUERIES = "queries"
     SCREEN = "screen"
     """The screenshots; the list of elements stays."""
+    BREVITY = "brevity"
+    """The short prompt, which tells what an action takes once and of the screen what changed. Without it, the agent
+    gets every element as a JSON object and, to reflect, both lists: the prompt of version 0.2."""
     REFLECTION = "reflection"
     MEMORY = "memory"
 
@@ -38,22 +41,12 @@ def parts(names: Iterable[str]) -> frozenset[AgentPart]:
     return frozenset(map(AgentPart, chosen))
 
 
-def geo_input(name: str) -> GeoInput:
-    """A geo control by name.
-
-    Raises:
-        UnknownNameError: there is no such control.
-    """
-    if name not in set(GeoInput):
-        raise UnknownNameError("geo control", name, GeoInput)
-    return GeoInput(name)
-
-
 @dataclass(frozen=True, slots=True)
 class AgentSettings:
     """How to run an agent. An agent ignores the settings that it has no use for."""
 
-    geo: GeoInput = GeoInput.FULL
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
+    """What it is given; see ``episode.conditions``."""
     without: frozenset[AgentPart] = frozenset()
     memory: Path | None = None
     """SQLite file with what worked in earlier episodes; None, the default, keeps episodes independent."""
@@ -61,10 +54,9 @@ class AgentSettings:
     """Seed of an agent that acts randomly."""
     most_tokens: int = 2_000_000
     """An episode's budget of tokens, for questions and answers together."""
-    most_seconds: float = 1800.0
-    """An episode's budget of time to wait for the model."""
-    see: See = See.BOTH
-    """How it sees the screen."""
+    most_seconds: float = 14_400.0
+    """An episode's budget of time to wait for the model: hours, for a slow one that is asked hundreds of times on a
+    drive of thirty minutes."""
 
     def __post_init__(self) -> None:
         if self.most_tokens <= 0 or self.most_seconds <= 0:
@@ -86,17 +78,19 @@ class AgentProfile:
     actions: frozenset[ActionType] = SCREEN_ALONE
     """Actions that its prompt offers; anything else is refused."""
     reflects: bool = True
+    brief: bool = True
+    """Whether its prompt is the short one."""
     remembers: bool = False
     """Whether it can remember what worked from one episode to the next."""
 
     def under(self, settings: AgentSettings) -> AgentProfile:
         """The profile without what the settings take away."""
         without = settings.without
-        lost = set(settings.geo.withheld | settings.see.withheld)
+        lost = set(settings.conditions.geo.withheld | settings.conditions.see.withheld)
         lost |= {channel for part, channel in _CHANNELS.items() if part in without}
         channels = self.channels - lost
         actions = set(self.actions)
-        if AgentPart.QUERIES in without or not settings.geo.answers or Channel.CONTEXT not in channels:
+        if AgentPart.QUERIES in without or not settings.conditions.geo.answers or Channel.CONTEXT not in channels:
             actions.discard(ActionType.QUERY)
         if Channel.GPS not in channels:
             actions.discard(ActionType.ESTIMATE_POSITION)
@@ -104,6 +98,7 @@ class AgentProfile:
             self,
             channels=channels,
             actions=frozenset(actions),
+            brief=self.brief and AgentPart.BREVITY not in without,
             reflects=self.reflects and AgentPart.REFLECTION not in without,
             remembers=self.remembers and AgentPart.MEMORY not in without and settings.memory is not None,
         )

@@ -8,7 +8,9 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, number, print_json, whole_number
+from automotive_cosim.cli.conditions import given, takes_conditions
+from automotive_cosim.cli.options import AsJson, print_json, whole_number
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     from automotive_cosim.run.watch_row import WatchRow
 
 
+@takes_conditions()
 def drive(
     name: Annotated[str, typer.Argument(help="Family of drives; --list lists them.")] = "",
     seed: Annotated[
@@ -33,23 +36,6 @@ def drive(
     ] = "",
     agent: Annotated[str, typer.Option(help="Agent; `agents` lists them.")] = "rule-perfect",
     model: Annotated[str, typer.Option(help="Model for the agent.")] = "rules",
-    clock: Annotated[
-        str,
-        typer.Option(help="Whether the seconds that the model takes pass on the road: fixed (no) or model (yes)."),
-    ] = "fixed",
-    latency: Annotated[
-        float,
-        typer.Option(help="Simulated seconds to add to every answer.", metavar="SECONDS", parser=number(0, 600)),
-    ] = 0.0,
-    see: Annotated[str, typer.Option(help="How the agent sees the screen: tree, picture or both.")] = "both",
-    feedback: Annotated[
-        str,
-        typer.Option(
-            help="What the agent is told about its last action: quiet (the control, and whether it worked) or "
-            "verbose (also what changed in the car)."
-        ),
-    ] = "quiet",
-    screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
     out: Annotated[
         Path | None,
         typer.Option(
@@ -58,12 +44,12 @@ def drive(
     ] = None,
     list_them: Annotated[bool, typer.Option("--list", help="List the families of drives and exit.")] = False,
     as_json: AsJson = False,
+    **conditions: str | None,
 ) -> None:
     """Run one drive of ten to thirty minutes, in which an agent keeps watch."""
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.families import FAMILIES
-    from automotive_cosim.episode.specification import clock_of, feedback_of, screen_of, see_of
     from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.row import as_json as row_json
     from automotive_cosim.run.watch import WatchSetup, run_watch
@@ -81,18 +67,14 @@ def drive(
         raise UserError(f"drive needs the name of a family, such as {next(iter(FAMILIES))}; --list lists them")
     if out is not None and (out / "row.json").exists():
         raise UserError(f"{out} holds the results of a drive; give --out another folder")
-    sees, told, size = see_of(see), feedback_of(feedback), screen_of(screen)
-    player = make_agent(agent, model, AgentSettings(seed=seed, see=sees))
+    under = Conditions.named(given(conditions))
+    player = make_agent(agent, model, AgentSettings(under, seed=seed))
     setup = WatchSetup(
         name,
         seed,
         player.name,
         player.model,
-        clock=clock_of(clock),
-        latency_s=latency,
-        see=sees,
-        feedback=told,
-        screen=size,
+        under,
         scenario=scenario,
     )
     recorders = [] if out is None else [DriveRecorder(out, setup, player)]
@@ -115,13 +97,15 @@ def _tell(console: Console, row: WatchRow) -> None:
     lines = [
         (
             event.observable_s,
-            f"{'bait ' if event.bait else 'event'}  {event.kind}: {event.words}",
+            f"{'look-alike' if event.lookalike else 'event'}  {event.kind}: {event.words}",
             event.outcome.value,
         )
         for event in row.events
     ]
     lines += [
-        (act.time_s, f"  act  {act.words}", act.worth.value) for act in row.acts if act.worth is not Worth.NEUTRAL
+        (act.time_s, f"  act  {act.words}", f"{act.worth}: {act.reason}" if act.reason else str(act.worth))
+        for act in row.acts
+        if act.worth is not Worth.NEUTRAL
     ]
     for time_s, words, became in sorted(lines):
         console.print(
@@ -136,3 +120,8 @@ def _tell(console: Console, row: WatchRow) -> None:
         f"{row.steps} steps in {found.driven_s / 60:.0f} min",
         soft_wrap=True,
     )
+    if row.unwatched_from_s is not None:
+        minutes, seconds = divmod(int(row.unwatched_from_s), 60)
+        console.print(
+            f"Nobody watched from {minutes}:{seconds:02d} on: {row.agent_error or row.end}", soft_wrap=True
+        )

@@ -25,9 +25,11 @@ from automotive_cosim.cli.batches import (
     time_left,
     words,
 )
+from automotive_cosim.cli.conditions import takes_conditions, values_of
 from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, number, whole_number
 from automotive_cosim.cli.watches import watch
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
+from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
@@ -43,6 +45,7 @@ GRID_EPISODE_S, GRID_WARM_UP_S = 0.5, 2.0
 """The same on the small grid."""
 
 
+@takes_conditions(lists=True)
 def evaluate(
     plan_file: Annotated[
         Path | None,
@@ -95,56 +98,7 @@ def evaluate(
         bool, typer.Option("--everywhere", help="Also run tasks in scenarios that they do not list.")
     ] = False,
     seeds: Annotated[str | None, typer.Option(help="Seeds, as in 0-4 or 0,3,7.", show_default="0")] = None,
-    geo: Annotated[
-        str | None,
-        typer.Option(
-            help="Geo controls, separated by commas: full, gps, context, wrong, irrelevant, none.",
-            show_default="full",
-        ),
-    ] = None,
-    see: Annotated[
-        str | None,
-        typer.Option(
-            help="How the agent sees the screen, separated by commas: tree, picture, both.", show_default="both"
-        ),
-    ] = None,
-    feedback: Annotated[
-        str | None,
-        typer.Option(
-            help="What the agent is told about its last action, separated by commas: quiet, verbose.",
-            show_default="quiet",
-        ),
-    ] = None,
-    screen: Annotated[
-        str | None,
-        typer.Option(
-            help="Size of the screen, separated by commas: 1280x720, 1920x720, 1080x1920.", show_default="1280x720"
-        ),
-    ] = None,
-    language: Annotated[
-        str | None,
-        typer.Option(
-            help="What the driver speaks and the car shows, separated by commas: en, fr, de, ja. Tasks without "
-            "phrasings in one of them are left out.",
-            show_default="en",
-        ),
-    ] = None,
     mode: NoMode = None,
-    clock: Annotated[
-        str | None,
-        typer.Option(
-            help="Whether the seconds that a model takes pass on the road: fixed (no) or model (yes).",
-            show_default="fixed",
-        ),
-    ] = None,
-    latency: Annotated[
-        str | None,
-        typer.Option(
-            help="Simulated seconds to add to every answer, as in 0,1,3,10.",
-            metavar="SECONDS",
-            show_default="0",
-        ),
-    ] = None,
     repeats: Annotated[
         int | None,
         typer.Option(
@@ -204,6 +158,7 @@ def evaluate(
     ] = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
+    **conditions: str | None,
 ) -> None:
     """Run agents over tasks, scenarios and seeds, or over drives. Rerun the command to resume."""
     from automotive_cosim.cli.console import Console
@@ -218,15 +173,13 @@ def evaluate(
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
-    named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "geo": geo}
-    named |= {"see": see, "feedback": feedback, "screen": screen, "language": language}
+    named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
     values |= {"suite": suite} if suite is not None else {}
     values |= {"split": split} if split is not None else {}
-    values |= {"clock": clock} if clock is not None else {}
-    values |= {"latency": [number(0, 600)(text) for text in words("latency", latency)]} if latency else {}
+    values |= values_of(conditions)
     values |= {"repeats": repeats} if repeats is not None else {}
     values |= {"held_out": True} if held_out else {}
     values |= {"everywhere": True} if everywhere else {}
@@ -326,14 +279,12 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         table.add_row("not for tree", f"{counted(len(beyond), 'task')} that need the picture")
     if unspoken := plan.unspoken():
         table.add_row(
-            "left out", f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.language)}"
+            "left out",
+            f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.languages)}",
         )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
-    table.add_row("geo controls", ", ".join(plan.geo))
-    table.add_row("screen", f"{', '.join(plan.screen)}, as {', '.join(plan.see)}")
-    table.add_row("feedback", ", ".join(plan.feedback))
-    table.add_row("language", ", ".join(plan.language))
-    table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
+    for each in TABLE:
+        table.add_row(each.words.heading.lower(), ", ".join(map(each.told, lists_of(plan)[each.name])))
     table.add_row("repeats", str(plan.repeats))
     table.add_row("phrasings", "held out" if plan.held_out else "any")
     table.add_row("split", "development and test" if plan.split == "both" else plan.split)

@@ -8,7 +8,9 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, lon_lat, number, whole_number
+from automotive_cosim.cli.conditions import given, takes_conditions
+from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, lon_lat, whole_number
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import InfrastructureError, UserError
 
 HEADLINE = (
@@ -25,19 +27,26 @@ HEADLINE = (
     "trace_sha256",
     "end",
     "error",
-    "geo",
-    "see",
-    "feedback",
-    "screen",
-    "language",
     "tokens_in",
     "tokens_out",
     "cost_usd",
 )
 
 
+DEFAULT_TASK = "road_speed_80_in_50"
+ANYWHERE = "hvac_fan_max"
+"""The default task in other places than its own: it comes about wherever a car drives, the other one only where the
+right limit is posted."""
+
+
+@takes_conditions()
 def run(
-    task: Annotated[str, typer.Option(help="Id of the task; `tasks list` lists them.")] = "road_speed_80_in_50",
+    task: Annotated[
+        str | None,
+        typer.Option(
+            help="Id of the task; `tasks list` lists them.", show_default=f"{DEFAULT_TASK}, elsewhere {ANYWHERE}"
+        ),
+    ] = None,
     half: Annotated[str, typer.Option(help="Half of a pair: first or second.")] = "first",
     agent: Annotated[
         str, typer.Option(help="Agent; `agents` lists them; package.module:Class is one of your own.")
@@ -48,27 +57,11 @@ def run(
     ] = "rules",
     tasks_from: TasksFrom = None,
     mode: NoMode = None,
-    geo: Annotated[
-        str,
-        typer.Option(help="What the agent is told about the place: full, gps, context, wrong, irrelevant or none."),
-    ] = "full",
-    see: Annotated[str, typer.Option(help="How the agent sees the screen: tree, picture or both.")] = "both",
-    feedback: Annotated[
-        str,
-        typer.Option(
-            help="What the agent is told about its last action: quiet (the control, and whether it worked) or "
-            "verbose (also what changed in the car)."
-        ),
-    ] = "quiet",
-    screen: Annotated[str, typer.Option(help="Size of the screen: 1280x720, 1920x720 or 1080x1920.")] = "1280x720",
-    language: Annotated[
-        str, typer.Option(help="What the driver speaks and the car shows: en, fr, de or ja.")
-    ] = "en",
     without: Annotated[
         str,
         typer.Option(
             help="Parts of the agent to switch off, separated by commas: "
-            "gps, context, queries, screen, reflection, memory."
+            "gps, context, queries, screen, brevity, reflection, memory."
         ),
     ] = "",
     memory: Annotated[
@@ -84,14 +77,6 @@ def run(
             help="Total time to wait for the model, in seconds.", metavar="N", parser=whole_number(1, 10**6)
         ),
     ] = 1800,
-    clock: Annotated[
-        str,
-        typer.Option(help="Whether the seconds that the model takes pass on the road: fixed (no) or model (yes)."),
-    ] = "fixed",
-    latency: Annotated[
-        float,
-        typer.Option(help="Simulated seconds to add to every answer.", metavar="SECONDS", parser=number(0, 600)),
-    ] = 0.0,
     scenario: Annotated[
         str | None,
         typer.Option(
@@ -135,16 +120,16 @@ def run(
             help="Play a file of actions, one JSON object per line, instead of an agent.", show_default=False
         ),
     ] = None,
+    **conditions: str | None,
 ) -> None:
     """Run one episode: a task, an agent, a seed.
 
     Without options, a car in Paris drives at 80 km/h where 50 is posted, and the agent is to warn the driver.
     """
     from automotive_cosim.agents import AgentSettings, make_agent
-    from automotive_cosim.agents.settings import geo_input, parts
+    from automotive_cosim.agents.settings import parts
     from automotive_cosim.cli.console import Console
     from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.episode.specification import clock_of, feedback_of, language_of, screen_of, see_of
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -155,11 +140,11 @@ def run(
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
     off = parts(name.strip() for name in without.split(",") if name.strip())
-    sees, told, size = see_of(see), feedback_of(feedback), screen_of(screen)
-    settings = AgentSettings(geo_input(geo), off, memory, seed, most_tokens, float(most_seconds), sees)
+    under = Conditions.named(given(conditions))
+    settings = AgentSettings(under, off, memory, seed, most_tokens, float(most_seconds))
     player = read_script(actions) if actions else make_agent(agent, model, settings)
     setup = EpisodeSetup(
-        task,
+        task or _default_task(half, scenario, bool(from_place or to_place)),
         half,
         scenario,
         origin=lon_lat(origin) if origin else None,
@@ -167,18 +152,12 @@ def run(
         from_place=from_place,
         to_place=to_place,
         seed=seed,
-        geo=settings.geo,
+        conditions=under,
         agent=player.name,
         model=player.model,
         without=tuple(sorted(off)),
-        clock=clock_of(clock),
-        latency_s=latency,
-        see=sees,
-        feedback=told,
-        screen=size,
-        language=language_of(language),
     )
-    setup.conditions(frozenset(player.channels))
+    setup.session(frozenset(player.channels))
     folder = out or default_folder(setup)
     check_folder(folder, force=force)
     recorder = Recorder(folder, setup, {"actions": str(actions) if actions else None, "out": str(folder)})
@@ -196,8 +175,20 @@ def run(
         write_page(folder)
     if as_json:
         whole = result.as_json()
-        typer.echo(json.dumps({name: whole[name] for name in HEADLINE} | {"out": str(folder)}))
+        told = {name: whole[name] for name in HEADLINE} | under.as_json()
+        typer.echo(json.dumps(told | {"out": str(folder)}))
     elif recorder.begun:
         typer.echo(f"Recorded in {folder}; open {folder / 'summary.html'}")
     if result.error is not None:
         raise InfrastructureError(result.error)
+
+
+def _default_task(half: str, scenario: str | None, on_another_way: bool) -> str:
+    """The task without ``--task``; it is said if it is not the usual one."""
+    from automotive_cosim.tasks import CATALOGUE
+
+    own = CATALOGUE[DEFAULT_TASK].half(half).start.scenario
+    if half != "first" or (scenario in (None, own) and not on_another_way):
+        return DEFAULT_TASK
+    typer.echo(f"no --task is given: {ANYWHERE}, which comes about on any road", err=True)
+    return ANYWHERE

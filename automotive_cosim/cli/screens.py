@@ -19,8 +19,9 @@ def screens(
 ) -> None:
     """Draw every screen by day and by night, as it is at the start of a drive."""
     from automotive_cosim.cockpit.signals import HMI
+    from automotive_cosim.episode.conditions import Conditions
     from automotive_cosim.episode.situation import SituationFinder
-    from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, screen_of
+    from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
     from automotive_cosim.errors import UserError
     from automotive_cosim.report.contactsheet import contact_sheet, pictures
     from automotive_cosim.traffic.fork import Simulations
@@ -30,7 +31,9 @@ def screens(
             f"{out} is not a picture format that can be written; give --out a name ending in .webp, .png or .jpg"
         )
     with closing(Simulations()) as simulations:
-        finder = SituationFinder(EpisodeSpec(scenario=scenario, screen=screen_of(screen)), simulations)
+        finder = SituationFinder(
+            EpisodeSpec(scenario=scenario, conditions=Conditions.named({"screen": screen})), simulations
+        )
         with closing(finder.find(SeedSource(0).next()).world) as world:
             cockpit = world.cockpit
     cockpit.inject(HMI.LANGUAGE.path, language)

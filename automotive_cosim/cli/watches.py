@@ -12,6 +12,7 @@ import typer
 
 from automotive_cosim.cli.batches import ProgressView, check_prices, tell_stopped, time_left
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError, UserError
 
 if TYPE_CHECKING:
@@ -95,10 +96,8 @@ def _announce(console: Console, plan: WatchPlan, folder: Path) -> None:
     if plan.scenarios:
         table.add_row("scenarios", ", ".join(plan.scenarios))
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
-    table.add_row("geo controls", ", ".join(plan.geo))
-    table.add_row("screen", f"{', '.join(plan.screen)}, as {', '.join(plan.see)}")
-    table.add_row("feedback", ", ".join(plan.feedback))
-    table.add_row("clock", f"{plan.clock}; latency {', '.join(f'{each:g}' for each in plan.latency)} s")
+    for each in TABLE:
+        table.add_row(each.words.heading.lower(), ", ".join(map(each.told, lists_of(plan)[each.name])))
     table.add_row("repeats", str(plan.repeats))
     table.add_row("runs", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}")
     table.add_row("folder", str(folder))

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from enum import StrEnum
 from functools import lru_cache
 from gettext import GNUTranslations
 from importlib.resources import files
@@ -18,23 +17,10 @@ from typing import Any, TypeVar
 
 from automotive_cosim.cockpit.widgets import Field, Row, Tile, Widget
 from automotive_cosim.contracts import Feedback
+from automotive_cosim.contracts.given import Language as Language
 from automotive_cosim.contracts.text import Quantity, Text
 
 W = TypeVar("W", bound=Widget)
-
-
-class Language(StrEnum):
-    """The languages of car and driver, by the codes of ``HMI.LANGUAGE``."""
-
-    ENGLISH = "en"
-    FRENCH = "fr"
-    GERMAN = "de"
-    JAPANESE = "ja"
-
-    @property
-    def words(self) -> str:
-        """Its name in English: ``French``."""
-        return self.name.capitalize()
 
 
 _COMMON = ("text", "description", "disabled", "locked")

@@ -16,9 +16,10 @@ from inspect_ai.scorer import Metric, SampleScore, Score, Scorer, Target, metric
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.inspect_play import conditions_of, outcome_of, played, seeds_of, words
-from automotive_cosim.doors.shared import drive_spec
+from automotive_cosim.doors.inspect_play import outcome_of, played, seeds_of, words
+from automotive_cosim.doors.shared import conditions_of, takes_conditions
 from automotive_cosim.drives.result import DriveOutcome
+from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.watch import WatchSetup, judged_row, planned_row
@@ -37,32 +38,27 @@ SCORES = {
 """The figures of the report that have intervals."""
 
 
+@takes_conditions
 def _drives(
     families: str | list[str] = "all",
     seeds: int | str | list[int] = 0,
-    geo: str = "full",
     pictures: bool = True,
-    see: str = "both",
-    feedback: str = "quiet",
-    screen: str = "1280x720",
+    **conditions: str,
 ) -> Task:
     """Drives of ten to thirty minutes, on which the model keeps watch.
 
     Args:
         families: of drives, patterns, scenarios, seasons or ``all``, separated by commas.
         seeds: one, or several separated by commas; each draws its own drive.
-        geo: what the agent is told about its place.
         pictures: whether it sees the screen.
-        see: how it sees the screen: ``tree``, ``picture`` or ``both``.
-        feedback: what it is told about its last action: ``quiet`` or ``verbose``.
-        screen: size of the screen: ``1280x720``, ``1920x720`` or ``1080x1920``.
+        conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``.
     """
-    given = conditions_of(geo, see, feedback, screen)
+    conditions_of(conditions)
     samples = [
         Sample(
             id=f"{family}-seed{seed}",
             input="The driver speaks at departure.",
-            metadata={"family": family, "seed": seed, **given},
+            metadata={"family": family, "seed": seed, "conditions": conditions},
         )
         for family in families_named(tuple(words(families)))
         for seed in seeds_of(seeds)
@@ -74,9 +70,13 @@ def _watcher(pictures: bool = True) -> Solver:
     """Plays a sample's drive. A model that stops acting, or meets a limit, leaves the rest of it to itself."""
 
     async def solve(state: TaskState, generate: Generate) -> TaskState:
-        return await played(state, generate, drive_spec(**state.metadata), INSTRUCTIONS, pictures)
+        return await played(state, generate, _spec(state.metadata), INSTRUCTIONS, pictures)
 
     return solve
+
+
+def _spec(named: Json) -> DriveSpec:
+    return DriveSpec(named["family"], named["seed"], conditions_of(named["conditions"]))
 
 
 def _figure(name: str) -> Metric:

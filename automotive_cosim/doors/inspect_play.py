@@ -14,11 +14,10 @@ from inspect_ai.model import ChatMessageSystem, ChatMessageUser, Content, Conten
 from inspect_ai.solver import Generate, TaskState
 from inspect_ai.tool import ToolDef, ToolError
 
-from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.shared import shared_service
-from automotive_cosim.episode.specification import EpisodeSpec, feedback_of, screen_of, see_of
+from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service import EpisodeService
@@ -45,20 +44,6 @@ def seeds_of(given: int | str | list[int]) -> list[int]:
     if not all(number.isdecimal() for number in numbers):
         raise UserError(f"seeds are {', '.join(numbers)}; give whole numbers from 0, separated by commas")
     return [int(number) for number in numbers]
-
-
-def conditions_of(geo: str, see: str, feedback: str, screen: str) -> dict[str, str]:
-    """The conditions of a sample, as its metadata.
-
-    Raises:
-        UnknownNameError: there is no such word.
-    """
-    return {
-        "geo": str(geo_input(geo)),
-        "see": str(see_of(see)),
-        "feedback": str(feedback_of(feedback)),
-        "screen": str(screen_of(screen)),
-    }
 
 
 async def played(

@@ -15,10 +15,11 @@ from inspect_ai.dataset import MemoryDataset, Sample
 from inspect_ai.scorer import Metric, SampleScore, Score, Scorer, Target, mean, metric, scorer
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
+from automotive_cosim.contracts import Json
 from automotive_cosim.doors.inspect_drives import drives
-from automotive_cosim.doors.inspect_play import conditions_of, outcome_of, played, seeds_of, words
-from automotive_cosim.doors.shared import episode_spec
-from automotive_cosim.episode.specification import language_of
+from automotive_cosim.doors.inspect_play import outcome_of, played, seeds_of, words
+from automotive_cosim.doors.shared import conditions_of, takes_conditions
+from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.stats import Interval, wilson
 from automotive_cosim.run.plan import choose
@@ -36,16 +37,13 @@ is the driver's to say. End with a `status` action: `complete` when it is done, 
 to do nothing, `infeasible` when it must not or cannot be done."""
 
 
+@takes_conditions
 def _cockpit(
     tasks: str | list[str] = "all",
     seeds: int | str | list[int] = 0,
     scenario: str | None = None,
-    geo: str = "full",
     pictures: bool = True,
-    see: str = "both",
-    feedback: str = "quiet",
-    screen: str = "1280x720",
-    language: str = "en",
+    **conditions: str,
 ) -> Task:
     """The tasks at the cockpit.
 
@@ -53,16 +51,11 @@ def _cockpit(
         tasks: ids, patterns, modules, tags, ``general``, ``safety`` or ``all``, separated by commas.
         seeds: one, or several separated by commas.
         scenario: in place of the tasks' own.
-        geo: what the agent is told about its place.
         pictures: whether it sees the screen.
-        see: how it sees the screen: ``tree``, ``picture`` or ``both``.
-        feedback: what it is told about its last action: ``quiet`` or ``verbose``.
-        screen: size of the screen: ``1280x720``, ``1920x720`` or ``1080x1920``.
-        language: what the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``; tasks without
-            phrasings in it are left out.
+        conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``; tasks without phrasings in the
+            ``language`` are left out.
     """
-    spoken = language_of(language)
-    given = {"scenario": scenario} | conditions_of(geo, see, feedback, screen) | {"language": str(spoken)}
+    spoken = conditions_of(conditions).language
     chosen = [CATALOGUE[each] for each in choose(words(tasks))]
     said = [each for each in chosen if spoken in each.languages]
     if not said:
@@ -73,7 +66,7 @@ def _cockpit(
         Sample(
             id=f"{each.id}-{half}-seed{seed}",
             input="The driver speaks when the situation arises.",
-            metadata={"task": each.id, "half": half, "seed": seed, **given},
+            metadata={"task": each.id, "half": half, "seed": seed, "scenario": scenario, "conditions": conditions},
         )
         for each in said
         for half in each.halves
@@ -86,9 +79,14 @@ def _driver(pictures: bool = True) -> Solver:
     """Plays a sample's episode, in which the model acts until it declares, stops acting or meets a limit."""
 
     async def solve(state: TaskState, generate: Generate) -> TaskState:
-        return await played(state, generate, episode_spec(**state.metadata), INSTRUCTIONS, pictures)
+        return await played(state, generate, _spec(state.metadata), INSTRUCTIONS, pictures)
 
     return solve
+
+
+def _spec(named: Json) -> EpisodeSpec:
+    under = conditions_of(named["conditions"])
+    return EpisodeSpec(named["task"], named["half"], named["scenario"], seed=named["seed"], conditions=under)
 
 
 def _end(of: Callable[[Interval], float]) -> Metric:

@@ -21,8 +21,9 @@ from pydantic import Field
 from automotive_cosim import __version__
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.shared import episode_spec
+from automotive_cosim.doors.shared import conditions_of, takes_conditions
 from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose
@@ -94,6 +95,7 @@ class CockpitTools:
         return _result({"tasks": [{"id": task.id, "halves": list(task.halves)} for task in chosen]})
 
     @_told
+    @takes_conditions
     def start(
         self,
         context: Context[Any, Any],
@@ -101,20 +103,13 @@ class CockpitTools:
         half: Annotated[str, Field(description="first, or second for a task with two halves.")] = "first",
         seed: Annotated[int, Field(description="The same seed and actions give the same trace.", ge=0)] = 0,
         scenario: Annotated[str | None, Field(description="A scenario in place of the task's own.")] = None,
-        geo: Annotated[str, Field(description="full, gps, context, wrong, irrelevant or none.")] = "full",
-        see: Annotated[str, Field(description="How to see the screen: tree, picture or both.")] = "both",
-        feedback: Annotated[str, Field(description="What to be told of an action: quiet or verbose.")] = "quiet",
-        screen: Annotated[
-            str, Field(description="Size of the screen: 1280x720, 1920x720 or 1080x1920.")
-        ] = "1280x720",
-        language: Annotated[str, Field(description="What the driver speaks: en, fr, de or ja.")] = "en",
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
+        **conditions: str,
     ) -> CallToolResult:
         """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit."""
-        seen = {"geo": geo, "see": see, "feedback": feedback, "screen": screen, "language": language}
-        spec = episode_spec(task=task, half=half, scenario=scenario, seed=seed, **seen)
+        spec = EpisodeSpec(task, half, scenario, seed=seed, conditions=conditions_of(conditions))
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

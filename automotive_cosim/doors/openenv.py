@@ -18,7 +18,8 @@ from pydantic import Field
 
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.shared import episode_spec, shared_service
+from automotive_cosim.doors.shared import conditions_of, shared_service
+from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service import EpisodeTurn
@@ -69,6 +70,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         task: str = "road_speed_80_in_50",
         half: str = "first",
         pictures: bool = True,
+        scenario: str | None = None,
         **conditions: Any,
     ) -> CarObservation:
         """Drives to a task's hand-over; the episode before it is given up.
@@ -79,17 +81,15 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
             task: id of the task.
             half: ``first`` or ``second``.
             pictures: whether the agent sees the screen.
-            conditions: ``scenario``, ``geo``, ``see`` and ``feedback``, as in ``automotive-cosim run``.
+            scenario: in place of the task's own.
+            conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``.
 
         Raises:
             UserError: something of that does not exist.
             InfrastructureError: the road failed.
         """
         self.close()
-        unknown = conditions.keys() - {"scenario", "geo", "see", "feedback"}
-        if unknown:
-            raise UserError(f"reset takes no {', '.join(sorted(unknown))}; give task, half, seed and conditions")
-        spec = episode_spec(task=task, half=half, seed=seed or 0, **conditions)
+        spec = EpisodeSpec(task, half, scenario, seed=seed or 0, conditions=conditions_of(conditions))
         turn = self._service.start(spec, ALL if pictures else ALL - {Channel.SCREENSHOT})
         self._episode_id = turn.episode_id
         self._state = CarState(episode_id=episode_id, task=task, half=half, seed=spec.seed)

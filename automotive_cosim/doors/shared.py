@@ -1,22 +1,19 @@
-"""What several doors share: one service for a whole process, and specifications from plain words."""
+"""What several doors share: one service for a whole process, and conditions from plain words."""
 
 from __future__ import annotations
 
+import inspect
+from collections.abc import Callable, Mapping
 from functools import cache
-from typing import Any
+from typing import Annotated, Any, TypeVar
 
-from automotive_cosim.agents.settings import geo_input
-from automotive_cosim.contracts import Json
-from automotive_cosim.drives.specification import DriveSpec
-from automotive_cosim.episode.specification import (
-    EpisodeSpec,
-    feedback_of,
-    language_of,
-    screen_of,
-    see_of,
-)
+from pydantic import Field
+
+from automotive_cosim.episode.conditions import INPUTS, Condition, Conditions
+from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.service import EpisodeService, ServiceLimits
 
+F = TypeVar("F", bound=Callable[..., Any])
 LIMITS = ServiceLimits(episodes=1000, idle_s=86_400.0)
 """For hosts that limit their episodes themselves, and end each."""
 
@@ -27,29 +24,34 @@ def shared_service() -> EpisodeService:
     return EpisodeService(limits=LIMITS)
 
 
-def episode_spec(**words: Any) -> EpisodeSpec:
-    """An episode of a task, with its conditions in words.
+def takes_conditions(function: F) -> F:
+    """Lists the words behind a function's ``**conditions`` one by one, for hosts that read signatures.
 
-    Args:
-        words: fields of ``EpisodeSpec``; ``geo``, ``see``, ``feedback``, ``screen`` and ``language`` as text.
+    A door has all conditions but those about speed: who acts through it takes the time that it takes.
+    """
+    signature = inspect.signature(function, eval_str=True)
+    own = [each for each in signature.parameters.values() if each.kind is not inspect.Parameter.VAR_KEYWORD]
+    any_function: Any = function
+    any_function.__signature__ = signature.replace(parameters=[*own, *map(_parameter, INPUTS)])
+    any_function.__annotations__ = {
+        name: kind for name, kind in function.__annotations__.items() if name != "conditions"
+    } | {each.name: str for each in INPUTS}
+    return function
+
+
+def conditions_of(words: Mapping[str, str]) -> Conditions:
+    """The conditions of a door, in words.
 
     Raises:
-        UnknownNameError: there is no such condition.
+        UserError: there is no such condition or value.
     """
-    return EpisodeSpec(**_typed(words))
+    for name in words:
+        if name not in {each.name for each in INPUTS}:
+            raise UnknownNameError("condition", name, [each.name for each in INPUTS])
+    return Conditions.named(words)
 
 
-def drive_spec(**words: Any) -> DriveSpec:
-    """A drive, with its conditions in words, as ``episode_spec``."""
-    return DriveSpec(**_typed(words))
-
-
-def _typed(words: Json) -> Json:
-    kinds = {
-        "geo": geo_input,
-        "see": see_of,
-        "feedback": feedback_of,
-        "screen": screen_of,
-        "language": language_of,
-    }
-    return words | {name: kind(words[name]) for name, kind in kinds.items() if name in words}
+def _parameter(each: Condition) -> inspect.Parameter:
+    told = f"{each.help.removesuffix('.')}: {', '.join(each.choices)}."
+    kind = Annotated[str, Field(description=told)]
+    return inspect.Parameter(each.name, inspect.Parameter.KEYWORD_ONLY, default=str(each.default), annotation=kind)

@@ -10,15 +10,18 @@ is no ``start``: a model does not choose its task. Needs the package ``verifiers
 import asyncio
 from collections.abc import Callable, Iterator
 from contextlib import closing
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import verifiers.v1 as vf
 from mcp.server.mcpserver.exceptions import ToolError
 from mcp_types import CallToolResult, TextContent
+from pydantic import create_model
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.mcp import ActionArgument, CockpitTools
-from automotive_cosim.doors.shared import episode_spec
+from automotive_cosim.doors.shared import conditions_of
+from automotive_cosim.episode.conditions import INPUTS
+from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import CosimError, InfrastructureError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose
@@ -41,8 +44,8 @@ class CockpitData(vf.TaskData):
     task: str
     half: str
     seed: int
-    conditions: dict[str, Any]
-    """``scenario``, ``geo``, ``see`` and ``feedback``."""
+    scenario: str | None
+    conditions: dict[str, str]
     pictures: bool
 
 
@@ -66,7 +69,8 @@ class CockpitToolset(vf.Toolset[vf.ToolsetConfig, CockpitState]):
         channels = ALL if task.pictures else ALL - {Channel.SCREENSHOT}
         self._tools, self._episode_id, self._failed = CockpitTools(service), "", ""
         try:
-            spec = episode_spec(task=task.task, half=task.half, seed=task.seed, **task.conditions)
+            under = conditions_of(task.conditions)
+            spec = EpisodeSpec(task.task, task.half, task.scenario, seed=task.seed, conditions=under)
             self._episode_id = (await asyncio.to_thread(service.start, spec, channels)).episode_id
         except CosimError as error:
             self._failed = str(error)
@@ -121,17 +125,25 @@ class CockpitTask(vf.Task[CockpitData, CockpitState]):
         return {name: float(part["ok"]) for name, part in verdict["parts"].items()}
 
 
-class CockpitConfig(vf.TasksetConfig):
-    """Which episodes there are."""
+if TYPE_CHECKING:
+
+    class ConditionWords(vf.TasksetConfig):
+        """A word for each condition."""
+
+else:
+    ConditionWords = create_model(
+        "ConditionWords", __base__=vf.TasksetConfig, **{each.name: (str, str(each.default)) for each in INPUTS}
+    )
+
+
+class CockpitConfig(ConditionWords):
+    """Which episodes there are, under which conditions."""
 
     tasks: str = "all"
     """Ids, patterns, modules, tags, ``general``, ``safety`` or ``all``, separated by commas."""
     suite: str = "standard"
     seeds: tuple[int, ...] = (0,)
     scenario: str | None = None
-    geo: str = "full"
-    see: str = "both"
-    feedback: str = "quiet"
     pictures: bool = True
     """Whether the model sees the screen."""
 
@@ -146,11 +158,12 @@ class CockpitTaskset(vf.Taskset[CockpitTask, CockpitConfig]):
             UserError: something of the config does not exist.
         """
         config = self.config
-        named = {"scenario": config.scenario, "geo": config.geo, "see": config.see, "feedback": config.feedback}
+        words = config.model_dump(include={each.name for each in INPUTS})
+        under = conditions_of(words)
         for each in choose((word.strip() for word in config.tasks.split(",")), config.suite):
             for half in CATALOGUE[each].halves:
                 for seed in config.seeds:
-                    episode_spec(task=each, half=half, seed=seed, **named).check()
+                    EpisodeSpec(each, half, config.scenario, seed=seed, conditions=under).check()
                     name = f"{each}-{half}-seed{seed}"
                     yield CockpitTask(
                         CockpitData(
@@ -159,7 +172,8 @@ class CockpitTaskset(vf.Taskset[CockpitTask, CockpitConfig]):
                             task=each,
                             half=half,
                             seed=seed,
-                            conditions=named,
+                            scenario=config.scenario,
+                            conditions=words,
                             pictures=config.pictures,
                         ),
                         config.task,

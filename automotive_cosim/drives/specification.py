@@ -4,17 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.plan import DrivePlan
 from automotive_cosim.drives.result import DriveOutcome, result_of
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.watch import Watch
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import Conditions
-from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import ALL, Channel, See
+from automotive_cosim.episode.specification import SessionSetup
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.traffic.fork import Simulations
 
 MOST_STEPS = 100_000
@@ -28,21 +26,15 @@ class DriveSpec:
     family: str
     """Id of the family that it is drawn from."""
     seed: int = 0
-    geo: GeoInput = GeoInput.FULL
-    """What the agent is told about its place."""
-    see: See = See.BOTH
-    """How the agent sees the screen."""
-    feedback: FeedbackDetail = FeedbackDetail.QUIET
-    """What it is told about its last action."""
-    screen: ScreenSize = ScreenSize.STANDARD
-    """Size of the car's screen."""
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
+    """What the agent is given, and at what speed."""
 
     def begin(
         self,
         simulations: Simulations,
         channels: frozenset[Channel] = ALL,
         listener: Listener | None = None,
-        plan: DrivePlan | None = None,
+        script: DriveScript | None = None,
     ) -> Watch:
         """Departs; the caller closes the watch.
 
@@ -50,25 +42,17 @@ class DriveSpec:
             simulations: warm traffic, shared with others.
             channels: what the agent wants to see.
             listener: notified of progress.
-            plan: used instead of the family's plan for the seed.
+            script: used instead of the family's script for the seed.
 
         Raises:
             UserError: something in the specification does not exist.
             InfrastructureError: no gap opened for the car, or the traffic simulation failed.
         """
-        drive = plan or family_named(self.family).draw(self.seed)
-        conditions = Conditions(
-            channels,
-            self.geo,
-            MOST_STEPS,
-            drive.duration_s,
-            see=self.see,
-            feedback=self.feedback,
-            screen=self.screen,
-        )
+        drive = script or family_named(self.family).draw(self.seed)
+        setup = SessionSetup(channels, self.conditions, MOST_STEPS, drive.duration_s)
         world = depart(drive, simulations, listener)
         try:
-            return Watch.depart_with(world, conditions, listener)
+            return Watch.depart_with(world, setup, listener)
         except BaseException:
             world.close()
             raise

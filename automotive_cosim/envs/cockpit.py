@@ -10,27 +10,17 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.cockpit.actions import check, parse
-from automotive_cosim.cockpit.language import Language
-from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Action
 from automotive_cosim.envs.pool import POOL
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import (
-    ACTION_COST_S,
-    Conditions,
-    EpisodeSpec,
-    SeedSource,
-    feedback_of,
-    language_of,
-    screen_of,
-    see_of,
-)
+from automotive_cosim.episode.specification import ACTION_COST_S, EpisodeSpec, SeedSource, SessionSetup
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.words import shown
 from automotive_cosim.interface import spaces
-from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import ALL, Channel, See
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.tasking.task import Task
@@ -71,56 +61,39 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         from_place: str = "",
         to_place: str = "",
         channels: Iterable[str] = ALL,
-        geo: str = GeoInput.FULL,
-        see: str = See.BOTH,
-        feedback: str = FeedbackDetail.QUIET,
-        screen: str = ScreenSize.STANDARD,
-        language: str = Language.ENGLISH,
         held_out: bool = False,
         max_steps: int | None = None,
         action_cost_s: float = ACTION_COST_S,
         render_mode: str | None = None,
         simulations: Simulations | None = None,
         listener: Listener | None = None,
+        **conditions: str,
     ) -> None:
         """Makes an environment for one task; nothing runs before ``reset``.
 
         Args:
             task: a task or its id.
-            half, scenario, origin, gps, from_place, to_place, language, held_out: as in ``EpisodeSpec``.
-            channels, geo, see, feedback, screen, max_steps, action_cost_s: as in ``Conditions``.
+            half, scenario, origin, gps, from_place, to_place, held_out: as in ``EpisodeSpec``.
+            channels, max_steps, action_cost_s: as in ``SessionSetup``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
             listener: told of progress.
+            conditions: ``geo``, ``see``, ``feedback``, ``screen`` and ``language``, as in ``Conditions``.
 
         Raises:
-            UnknownNameError: no such task, half or scenario.
+            UnknownNameError: no such task, half, scenario or condition.
             ScenarioError: the scenario cannot be read, or has no such route.
             UserError: ``origin`` is not a position on earth, or ``see`` leaves nothing of the screen,
                 or the driver has no words for the task in that language.
         """
         given = None if isinstance(task, str) else task
         name = task if isinstance(task, str) else task.id
+        under = Conditions.named(conditions)
         spec = EpisodeSpec(
-            name,
-            half,
-            scenario,
-            origin,
-            gps,
-            from_place,
-            to_place,
-            held_out=held_out,
-            language=language_of(language),
+            name, half, scenario, origin, gps, from_place, to_place, held_out=held_out, conditions=under
         )
-        self._conditions = Conditions(
-            frozenset(map(Channel, channels)),
-            GeoInput(geo),
-            max_steps,
-            action_cost_s=action_cost_s,
-            see=see_of(see),
-            feedback=feedback_of(feedback),
-            screen=(size := screen_of(screen)),
-        )
+        wanted = frozenset(map(Channel, channels))
+        self._setup = SessionSetup(wanted, under, max_steps, action_cost_s=action_cost_s)
         self._leave: Callable[[], object] | None = None
         if simulations is None:
             simulations, self._leave = POOL.join(self)
@@ -128,8 +101,9 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         self._listener = listener
         self._seeds = SeedSource()
         self._episode: Episode | None = None
-        self.render_mode = render_mode
-        self.observation_space = spaces.observation_space(self._conditions.given, size.width, size.height)
+        self.render_mode = render_mode_of(render_mode, self.metadata)
+        size = under.screen
+        self.observation_space = spaces.observation_space(self._setup.given, size.width, size.height)
         self.action_space = spaces.action_space(size.width, size.height)
 
     @property
@@ -164,7 +138,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             self._seeds = SeedSource(seed)
         self._seeds.traffic = traffic_seed(options, self._seeds.traffic)
         hand_over = self._finder.find(self._seeds.next())
-        self._episode = Episode.take_over(hand_over, self._conditions, self._listener)
+        self._episode = Episode.take_over(hand_over, self._setup, self._listener)
         return self._encoded(), self._info()
 
     def step(self, action: Action | Mapping[str, Any] | str) -> StepResult:
@@ -191,7 +165,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             self._leave()
 
     def _encoded(self) -> dict[str, Any]:
-        return spaces.encode(self.episode.observation, self._conditions.given)
+        return spaces.encode(self.episode.observation, self._setup.given)
 
     def _info(self) -> dict[str, Any]:
         episode = self.episode
@@ -211,8 +185,28 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
 
 def traffic_seed(options: Mapping[str, Any] | None, own: int) -> int:
-    """The traffic that the options of a ``reset`` ask for, or else its own."""
-    return int((options or {}).get("traffic_seed", own)) % SEED_LIMIT
+    """The traffic that the options of a ``reset`` ask for, or else its own.
+
+    Raises:
+        UserError: it is not a whole number.
+    """
+    given = (options or {}).get("traffic_seed")
+    if given is None:
+        return own % SEED_LIMIT
+    if isinstance(given, bool) or not isinstance(given, int | np.integer):
+        raise UserError(f"traffic_seed is {shown(given)}; it must be a whole number")
+    return int(given) % SEED_LIMIT
+
+
+def render_mode_of(mode: str | None, metadata: Mapping[str, Any]) -> str | None:
+    """The render mode, checked.
+
+    Raises:
+        UnknownNameError: there is none of that name.
+    """
+    if mode is not None and mode not in metadata["render_modes"]:
+        raise UnknownNameError("render mode", str(mode), metadata["render_modes"])
+    return mode
 
 
 def outcome(episode: Episode) -> tuple[float, bool, bool]:

@@ -14,7 +14,7 @@ from automotive_cosim.episode.counterfactual import counterfactual
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.situation import HandOver
-from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
+from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import Verdict, judge
@@ -36,16 +36,16 @@ class Episode(Session):
     """What the driver may still say by himself."""
 
     @classmethod
-    def take_over(cls, hand_over: HandOver, conditions: Conditions, listener: Listener | None = None) -> Episode:
+    def take_over(cls, hand_over: HandOver, setup: SessionSetup, listener: Listener | None = None) -> Episode:
         """The episode that begins at a hand-over, and takes over its drive.
 
         Raises:
             TrafficError: the traffic simulation failed.
         """
         instance, world = hand_over.instance, hand_over.world
-        if conditions.max_steps is None:
-            conditions = replace(conditions, max_steps=instance.task.max_steps)
-        begun: dict[str, Any] = beginning(world, instance.goal, conditions, hand_over.drive, listener)
+        if setup.max_steps is None:
+            setup = replace(setup, max_steps=instance.task.max_steps)
+        begun: dict[str, Any] = beginning(world, instance.goal, setup, hand_over.drive, listener)
         return cls(
             **begun,
             instance=instance,
@@ -67,11 +67,11 @@ class Episode(Session):
             max_steps: limit of the branch, counted from the hand-over; None keeps the episode's.
         """
         self._check_open()
-        conditions = self.conditions if max_steps is None else replace(self.conditions, max_steps=max_steps)
+        setup = self.setup if max_steps is None else replace(self.setup, max_steps=max_steps)
         return replace(
             self,
             world=self.world.branch(),
-            conditions=conditions,
+            setup=setup,
             moments=list(self.moments),
             steps=list(self.steps),
             hashed=self.hashed.copy(),
@@ -104,7 +104,7 @@ class Episode(Session):
     def counterfactual(self) -> Mapping[str, Any]:
         """What would be commanded now, had the agent given only the commands that belong to the goal."""
         return counterfactual(
-            self.at_hand_over, self.world.cockpit.deeds, self.moments, self.instance.half.allowed_writes
+            self.at_hand_over, self.world.cockpit.given, self.moments, self.instance.half.allowed_writes
         )
 
     def _reply(self, question: str) -> str:

@@ -26,7 +26,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import ROUNDING_S, Conditions, End
+from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.reckoning import Roads
@@ -45,7 +45,7 @@ class Session:
     """The running co-simulation; closing the session ends its drive."""
     goal: str
     """What the driver says."""
-    conditions: Conditions
+    setup: SessionSetup
     drive: tuple[Moment, ...]
     """The drive from departure to the beginning, included, for the virtual sensor and reports."""
     listener: Listener
@@ -80,7 +80,7 @@ class Session:
         cls,
         world: CoSimulation,
         goal: str,
-        conditions: Conditions,
+        setup: SessionSetup,
         drive: Sequence[Moment] = (),
         listener: Listener | None = None,
     ) -> Self:
@@ -89,11 +89,11 @@ class Session:
         Args:
             world: the running co-simulation, which the session takes over.
             goal: what the driver says.
-            conditions: the agent's input and limits.
+            setup: the agent's input, conditions and limits.
             drive: moments from departure to now, if known.
             listener: notified of every second that passes.
         """
-        return cls(**beginning(world, goal, conditions, drive, listener))
+        return cls(**beginning(world, goal, setup, drive, listener))
 
     # --- the loop -----------------------------------------------------------------------------------------
 
@@ -180,9 +180,9 @@ class Session:
 
     def _performed(self, action: Action) -> Feedback:
         """The cockpit's feedback to an action; an agent without a list has no index to name."""
-        is_listed = Channel.ELEMENTS in self.conditions.given
+        is_listed = Channel.ELEMENTS in self.setup.given
         elements = self.elements if is_listed else ()
-        if self.conditions.feedback is FeedbackDetail.VERBOSE:
+        if self.setup.conditions.feedback is FeedbackDetail.VERBOSE:
             return self.world.perform(action, elements)
         name = control(action, self.world.cockpit, elements, by_name=is_listed)
         return quiet(self.world.perform(action, elements), name, self.world.cockpit)
@@ -191,8 +191,8 @@ class Session:
         """The virtual sensor's answer to a query and its seconds; None for any other action."""
         if action.action_type is not ActionType.QUERY:
             return None
-        given = self.conditions.given
-        if Channel.CONTEXT not in given or not self.conditions.geo.answers:
+        given = self.setup.given
+        if Channel.CONTEXT not in given or not self.setup.conditions.geo.answers:
             return Feedback(FeedbackCode.REFUSED, "this car has no service to ask"), 0.0
         known = self.shown.moments([*self.drive, *self.moments])
         if self._roads is None and self.network.projection is not None:
@@ -230,12 +230,12 @@ class Session:
     def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Feedback:
         """Lets an action's time pass, and returns what the agent is told of its result."""
         waited_s = action.seconds if action and action.action_type is ActionType.WAIT else None
-        self._advance(self.conditions.action_cost_s * (waited_s or 1) + cost_s)
+        self._advance(self.setup.action_cost_s * (waited_s or 1) + cost_s)
         return feedback
 
     def _channels(self, action: Action | None) -> frozenset[Channel]:
         """The channels of the observation after an action."""
-        return self.conditions.given
+        return self.setup.given
 
     def _advance(self, duration_s: float) -> None:
         self.moments += self._heard(self.world.advance(duration_s))
@@ -245,9 +245,9 @@ class Session:
             return End.DRIVE_ENDED
         if self.declared is not None:
             return End.DECLARED
-        if self.conditions.max_steps is not None and len(self.steps) > self.conditions.max_steps:
+        if self.setup.max_steps is not None and len(self.steps) > self.setup.max_steps:
             return End.OUT_OF_STEPS
-        most_s = self.conditions.max_sim_s
+        most_s = self.setup.max_sim_s
         return End.OUT_OF_TIME if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
 
     def _finish(self, end: End) -> None:
@@ -260,18 +260,18 @@ class Session:
 
 
 def beginning(
-    world: CoSimulation, goal: str, conditions: Conditions, drive: Sequence[Moment], listener: Listener | None
+    world: CoSimulation, goal: str, setup: SessionSetup, drive: Sequence[Moment], listener: Listener | None
 ) -> dict[str, Any]:
-    """The fields of a session that begins now, on the screen that the conditions ask for."""
+    """The fields of a session that begins now, on the screen that its conditions ask for."""
     first = world.moment
-    world.cockpit.fit(conditions.screen)
-    told = shown(conditions.geo, Geo(), drive[0] if drive else first)
+    world.cockpit.fit(setup.conditions.screen)
+    told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
-    elements, observation = _seen(world, goal, conditions.given, told, first.time_s, feedback)
+    elements, observation = _seen(world, goal, setup.given, told, first.time_s, feedback)
     return {
         "world": world,
         "goal": goal,
-        "conditions": conditions,
+        "setup": setup,
         "drive": tuple(drive),
         "listener": listener or Listener(),
         "shown": told,

@@ -16,7 +16,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import EpisodeSpec, Seeds
-from automotive_cosim.errors import TriggerNotReachedError, UserError
+from automotive_cosim.errors import NoRoomError, TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.interface.observe import See
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
@@ -74,12 +74,12 @@ class SituationFinder:
         """
         spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
-        if self.task.needs_picture and spec.see is See.TREE:
+        if self.task.needs_picture and spec.conditions.see is See.TREE:
             raise UserError(f"{self.task.id} needs the picture, which see = tree withholds; give picture or both")
         half = self.task.half(spec.half)
         start = half.start
-        if spec.language is not Language.ENGLISH:
-            speech(self.task, spec.language)
+        if spec.conditions.language is not Language.ENGLISH:
+            speech(self.task, spec.conditions.language)
         self.scenario: Scenario = open_scenario(
             spec.scenario or start.scenario,
             origin=start.origin if spec.origin is None and spec.scenario is None else spec.origin,
@@ -111,8 +111,15 @@ class SituationFinder:
         self._listener.loading(self.scenario)
         trips, waits_s = self._trips(half, draws), WAITS_S[:1] if half.start.parked else WAITS_S
         with self._simulations.held(self.scenario, seeds.traffic, self._warming) as simulation:
+            full: dict[Trip, NoRoomError] = {}
             for trip, wait_s in product(trips, waits_s):
-                plan, traffic = self._depart(simulation, half, trip, draws, wait_s)
+                if trip in full:
+                    continue
+                try:
+                    plan, traffic = self._depart(simulation, half, trip, draws, wait_s)
+                except NoRoomError as error:
+                    full[trip] = error
+                    continue
                 try:
                     drive = self._drive_up(_Drive.begun(self._couple(traffic, half, plan, draws)), half)
                     if drive is not None:
@@ -121,6 +128,8 @@ class SituationFinder:
                     traffic.close()
                     raise
                 traffic.close()
+        if len(full) == len(trips):
+            raise full[trips[0]]
         trigger = half.trigger
         raise TriggerNotReachedError(
             f"task {self.task.id!r}: {trigger.condition} did not hold for {trigger.for_s:g} s within "
@@ -144,7 +153,7 @@ class SituationFinder:
             draws.number,
             content,
             held_out=self._spec.held_out,
-            language=self._spec.language,
+            language=self._spec.conditions.language,
         )
 
     def _trips(self, half: Half, draws: Draws) -> tuple[Trip, ...]:
@@ -176,8 +185,8 @@ class SituationFinder:
     def _couple(self, traffic: Traffic, half: Half, plan: EgoPlan, draws: Draws) -> CoSimulation:
         start = half.start
         signals = start.signals
-        if self._spec.language is not Language.ENGLISH:
-            signals = {HMI.LANGUAGE.path: str(self._spec.language), **signals}
+        if self._spec.conditions.language is not Language.ENGLISH:
+            signals = {HMI.LANGUAGE.path: str(self._spec.conditions.language), **signals}
         cockpit = Cockpit(
             traffic.network,
             rng=draws.rng(Purpose.CONTENT),
@@ -187,7 +196,7 @@ class SituationFinder:
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,
-            size=self._spec.screen,
+            size=self._spec.conditions.screen,
         )
         world = couple(
             traffic,

@@ -1,26 +1,21 @@
-"""The specification of an episode, the conditions that it is played under, its seeds and its end."""
+"""The specification of an episode, what its session begins with, its seeds and its end."""
 
 from __future__ import annotations
 
 from dataclasses import asdict, dataclass
 from enum import StrEnum
-from typing import Annotated, TypeVar
+from typing import Annotated
 
 import numpy as np
 from annotated_types import Ge, Gt
 
-from automotive_cosim.cockpit.language import Language
-from automotive_cosim.cockpit.size import ScreenSize
-from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.formats.annotations import Latitude, Longitude, OneOf
+from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.annotations import Latitude, Longitude
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
-from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import ALL, Channel, See
+from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.tasking.draws import SEED_LIMIT
-
-Named = TypeVar("Named", bound=StrEnum)
 
 ACTION_COST_S = 1.0
 """Simulated seconds per action: about the time of a person's tap (NHTSA 2013 counts glances of up to 2 s)."""
@@ -28,39 +23,24 @@ ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""
 
 
-class Clock(StrEnum):
-    """What an agent's answer costs on the road, besides the action itself."""
-
-    FIXED = "fixed"
-    """The same for every answer, by default nothing."""
-    MODEL = "model"
-    """The seconds that the model really took, in addition."""
-
-
 SCREEN = frozenset({Channel.SCREENSHOT, Channel.ELEMENTS})
 _AS = {Channel.SCREENSHOT: "its picture", Channel.ELEMENTS: "its list of elements"}
 
 
 @dataclass(frozen=True, slots=True)
-class Conditions:
-    """The agent's input and limits."""
+class SessionSetup:
+    """What a session begins with, besides the car and the driver's words."""
 
     channels: frozenset[Channel] = ALL
-    """Channels that the agent wants; ``geo`` and ``see`` may withhold some of them."""
-    geo: GeoInput = GeoInput.FULL
-    """What the agent is told about its place."""
+    """Channels that the agent wants; the conditions may withhold some of them."""
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
+    """What the agent is given, and at what speed."""
     max_steps: int | None = None
-    """Actions after which the episode is cut off; None takes the task's own limit (``Suite.max_steps``)."""
+    """Actions after which the session is cut off; None takes the task's own limit (``Suite.max_steps``)."""
     max_sim_s: float | None = None
-    """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
+    """Simulated seconds from the beginning after which it is cut off; None leaves that to ``max_steps``."""
     action_cost_s: float = ACTION_COST_S
     """Simulated seconds per action; a ``wait`` takes as many for each of its seconds."""
-    see: See = See.BOTH
-    """How the agent sees the screen."""
-    feedback: FeedbackDetail = FeedbackDetail.QUIET
-    """What it is told about its last action."""
-    screen: ScreenSize = ScreenSize.STANDARD
-    """Size of the car's screen."""
 
     def __post_init__(self) -> None:
         """Refuses to blind the agent.
@@ -71,14 +51,14 @@ class Conditions:
         if self.channels & SCREEN and not self.given & SCREEN:
             (only,) = self.channels & SCREEN
             raise UserError(
-                f"the agent sees the screen only as {_AS[only]}, which --see {self.see} withholds; "
+                f"the agent sees the screen only as {_AS[only]}, which --see {self.conditions.see} withholds; "
                 f"choose another agent, or --see {'tree' if only is Channel.ELEMENTS else 'picture'} or both"
             )
 
     @property
     def given(self) -> frozenset[Channel]:
         """The channels that the agent gets."""
-        return self.channels - self.geo.withheld - self.see.withheld
+        return self.channels - self.conditions.geo.withheld - self.conditions.see.withheld
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,22 +84,14 @@ class EpisodeSpec:
     held_out: bool = False
     """Whether the driver says the task's held-out phrasing (``tasking.instance.Instance.held_out``); otherwise any
     phrasing is drawn."""
-    geo: Annotated[GeoInput, OneOf(GeoInput, "geo control")] = GeoInput.FULL
-    """What the agent is told about its place."""
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
+    """What the agent is given, and at what speed."""
     max_steps: Annotated[int, Ge(1)] | None = None
     """Actions after which the episode is cut off; None takes the task's own limit, 20 or in the hard suite 40."""
     max_sim_s: Annotated[float, Gt(0)] | None = None
     """Simulated seconds from the hand-over after which it is cut off; None leaves that to ``max_steps``."""
     action_cost_s: Annotated[float, Gt(0)] = ACTION_COST_S
     """Simulated seconds per action."""
-    see: Annotated[See, OneOf(See, "way to see the screen")] = See.BOTH
-    """How the agent sees the screen."""
-    feedback: Annotated[FeedbackDetail, OneOf(FeedbackDetail, "kind of feedback")] = FeedbackDetail.QUIET
-    """What it is told about its last action."""
-    screen: Annotated[ScreenSize, OneOf(ScreenSize, "size of the screen")] = ScreenSize.STANDARD
-    """Size of the car's screen."""
-    language: Annotated[Language, OneOf(Language, "language")] = Language.ENGLISH
-    """What the driver speaks, and the car shows."""
 
     def check(self) -> None:
         """Tries the values; whether there is such a task or scenario is found out where those are looked up.
@@ -129,73 +101,13 @@ class EpisodeSpec:
         """
         checked(type(self), asdict(self), lambda steps: ("the episode", dotted(steps)))
 
-    def conditions(self, channels: frozenset[Channel] = ALL) -> Conditions:
-        """The conditions for an agent that wants these channels.
+    def session(self, channels: frozenset[Channel] = ALL) -> SessionSetup:
+        """What a session begins with, for an agent that wants these channels.
 
         Raises:
             UserError: it could see nothing of the screen.
         """
-        return Conditions(
-            channels,
-            self.geo,
-            self.max_steps,
-            self.max_sim_s,
-            self.action_cost_s,
-            self.see,
-            self.feedback,
-            self.screen,
-        )
-
-
-def _named(kind: type[Named], what: str, name: str) -> Named:
-    if name not in set(kind):
-        raise UnknownNameError(what, name, kind)
-    return kind(name)
-
-
-def clock_of(name: str) -> Clock:
-    """The clock by name.
-
-    Raises:
-        UnknownNameError: there is none.
-    """
-    return _named(Clock, "clock", name)
-
-
-def see_of(name: str) -> See:
-    """The way to see the screen by name.
-
-    Raises:
-        UnknownNameError: there is none.
-    """
-    return _named(See, "way to see the screen", name)
-
-
-def feedback_of(name: str) -> FeedbackDetail:
-    """The kind of feedback by name.
-
-    Raises:
-        UnknownNameError: there is none.
-    """
-    return _named(FeedbackDetail, "kind of feedback", name)
-
-
-def screen_of(name: str) -> ScreenSize:
-    """The size of the screen by name.
-
-    Raises:
-        UnknownNameError: there is none.
-    """
-    return _named(ScreenSize, "size of the screen", name)
-
-
-def language_of(name: str) -> Language:
-    """The language by its code.
-
-    Raises:
-        UnknownNameError: there is none.
-    """
-    return _named(Language, "language", name)
+        return SessionSetup(channels, self.conditions, self.max_steps, self.max_sim_s, self.action_cost_s)
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,12 +5,8 @@ The dialect is draft 7, which editors know best. Local times have a pattern, as 
 
 from __future__ import annotations
 
-import ast
-import inspect
 from dataclasses import is_dataclass
 from functools import cache
-from itertools import pairwise
-from textwrap import dedent
 from typing import Any
 
 from pydantic import TypeAdapter, with_config
@@ -18,6 +14,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.formats.docs import field_docs, prose
 
 
 @cache
@@ -76,7 +73,7 @@ class _Draft7(GenerateJsonSchema):
 class _Documented(_Draft7):
     def dataclass_schema(self, schema: core_schema.DataclassSchema) -> JsonSchemaValue:
         made = super().dataclass_schema(schema)
-        made["description"] = _prose(made.get("description", ""))
+        made["description"] = prose(made.get("description", ""))
         for base in reversed(schema["cls"].__mro__):
             if is_dataclass(base):
                 for name, text in field_docs(base).items():
@@ -92,19 +89,3 @@ class _WithoutNull(_Documented):
     def default_schema(self, schema: core_schema.WithDefaultSchema) -> JsonSchemaValue:
         made = super().default_schema(schema)
         return {name: value for name, value in made.items() if name != "default" or value is not None}
-
-
-def field_docs(cls: type) -> dict[str, str]:
-    """The docstrings below the fields of a class, each on one line."""
-    (body,) = ast.parse(dedent(inspect.getsource(cls))).body
-    assert isinstance(body, ast.ClassDef)
-    docs = {}
-    for node, below in pairwise(body.body):
-        match node, below:
-            case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(text))):
-                docs[name] = _prose(text)
-    return docs
-
-
-def _prose(text: str) -> str:
-    return " ".join(text.replace("``", "`").split())

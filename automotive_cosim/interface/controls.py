@@ -16,7 +16,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from itertools import cycle, islice
 from typing import Protocol
 from zoneinfo import ZoneInfo
@@ -33,38 +32,11 @@ from automotive_cosim.contracts import (
     RoadHere,
     Weather,
 )
+from automotive_cosim.contracts.given import PLACE as PLACE
+from automotive_cosim.contracts.given import GeoInput as GeoInput
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.interface.observe import Channel, context_text
-
-PLACE = frozenset({Channel.GPS, Channel.CONTEXT})
-
-
-class GeoInput(StrEnum):
-    """What an agent is told about its place; see the module's table."""
-
-    FULL = "full"
-    GPS = "gps"
-    CONTEXT = "context"
-    WRONG = "wrong"
-    IRRELEVANT = "irrelevant"
-    NONE = "none"
-
-    @property
-    def withheld(self) -> frozenset[Channel]:
-        """Channels that it takes away."""
-        kept = {
-            GeoInput.GPS: {Channel.GPS},
-            GeoInput.CONTEXT: {Channel.CONTEXT},
-            GeoInput.IRRELEVANT: {Channel.CONTEXT},
-            GeoInput.NONE: set[Channel](),
-        }
-        return PLACE - kept.get(self, PLACE)
-
-    @property
-    def answers(self) -> bool:
-        """Whether the virtual sensor may be asked."""
-        return Channel.CONTEXT not in self.withheld and self is not GeoInput.IRRELEVANT
+from automotive_cosim.interface.observe import context_text
 
 
 class Shown(Protocol):

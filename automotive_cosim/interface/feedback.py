@@ -11,23 +11,15 @@ alone, a control without letters on it is not named.
 
 from __future__ import annotations
 
-from enum import StrEnum
-
 from automotive_cosim.cockpit.actions import FIELDS, point
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.widgets import Field, Slider, Widget
 from automotive_cosim.contracts import Action, ActionType, Element, Feedback, FeedbackCode
+from automotive_cosim.contracts.given import FeedbackDetail as FeedbackDetail
 from automotive_cosim.contracts.text import say
 
 DONE, UNCHANGED = say("done"), say("nothing changed")
 _OUTCOMES = {FeedbackCode.OK: DONE, FeedbackCode.NO_EFFECT: UNCHANGED}
-
-
-class FeedbackDetail(StrEnum):
-    """How much an agent is told about its last action; see the module's table."""
-
-    QUIET = "quiet"
-    VERBOSE = "verbose"
 
 
 def control(action: Action, cockpit: Cockpit, elements: tuple[Element, ...], *, by_name: bool) -> str:

@@ -2,45 +2,13 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
-
 from automotive_cosim.contracts import Element, Feedback, Observation
+from automotive_cosim.contracts.given import ALL as ALL
+from automotive_cosim.contracts.given import Channel as Channel
+from automotive_cosim.contracts.given import See as See
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.text import BUDGET_TOKENS, within_budget
-
-
-class Channel(StrEnum):
-    """Channels that can be withheld from an agent; goal, time and feedback never are."""
-
-    SCREENSHOT = "screenshot"
-    ELEMENTS = "elements"
-    VEHICLE = "vehicle"
-    GPS = "gps"
-    CONNECTIVITY = "connectivity"
-    CONTEXT = "context"
-
-
-ALL = frozenset(Channel)
-
-
-class See(StrEnum):
-    """How an agent sees the screen."""
-
-    BOTH = "both"
-    TREE = "tree"
-    """As the list of elements."""
-    PICTURE = "picture"
-    """As the picture: no list, no ids, no descriptions; an action has to give a point."""
-
-    @property
-    def withheld(self) -> frozenset[Channel]:
-        """Channels that it takes away."""
-        return {
-            See.BOTH: frozenset[Channel](),
-            See.TREE: frozenset({Channel.SCREENSHOT}),
-            See.PICTURE: frozenset({Channel.ELEMENTS}),
-        }[self]
 
 
 def observe(

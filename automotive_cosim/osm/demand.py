@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gzip
 import math
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.errors import ImportMapError
-from automotive_cosim.osm.network import Built
+from automotive_cosim.osm.network import Built, entries, exits
 from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
@@ -112,8 +113,8 @@ def _ends(start: Edge, goal: Edge) -> str:
 def _pairs(built: Built, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:
     """Start and goal of each trip as indices of edges, (n, 2); n is less than count on a map too small for them."""
     edges = built.edges
-    start_weights = _weights(edges, built.entries())
-    goal_weights = _weights(edges, built.exits())
+    start_weights = _weights(edges, entries(edges))
+    goal_weights = _weights(edges, exits(edges))
     middles = np.array([edge.shape_m[len(edge.shape_m) // 2] for edge in edges])
     distance_m = min(MIN_TRIP_M, 0.2 * float(np.hypot(*np.ptp(middles, axis=0))))
     found = np.empty((0, 2), dtype=np.int64)
@@ -164,15 +165,16 @@ def fastest_ways(
     ok, printed = run(
         "duarouter",
         (
-            f"--net-file={net_file}",
-            f"--route-files={asked}",
-            f"--output-file={routed}",
+            f"--net-file={os.path.relpath(net_file, scratch)}",
+            f"--route-files={asked.name}",
+            f"--output-file={routed.name}",
             "--ignore-errors",
             "--no-warnings",
             "--no-step-log",
             "--routing-algorithm=CH",
             f"--weight-period={ONE_PERIOD_S}",
         ),
+        folder=scratch,
     )
     if not ok:
         raise ImportMapError(f"SUMO's duarouter cannot route on this map: {first_error(printed)}")

@@ -9,13 +9,13 @@ from typing import Any
 
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
-from automotive_cosim.cockpit.messages import Deed
+from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import Actor, play
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import ActionError, OutOfBudgetError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import Hash, Step
@@ -25,7 +25,7 @@ from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
 
-CONDITIONS = Conditions(ALL - {Channel.SCREENSHOT})
+SETUP = SessionSetup(ALL - {Channel.SCREENSHOT})
 """Every channel except the screenshot, which shows what the elements list."""
 
 
@@ -38,7 +38,7 @@ class Played:
     baseline: tuple[Moment, ...]
     counterfactual: Mapping[str, Any]
     """What would be commanded at the end, had only the commands that belong to the goal been given."""
-    deeds: tuple[Deed, ...]
+    given: tuple[CommandRecord, ...]
     """What was commanded, in order."""
     steps: tuple[Step, ...]
     stuck: str = ""
@@ -112,7 +112,7 @@ class Ground:
         """
         spec = EpisodeSpec(task.id, half_name, scenario, seed=seed)
         hand_over = SituationFinder(spec, simulations, task=task).find(SeedSource(seed).next())
-        return cls(task, half_name, seed, Episode.take_over(hand_over, CONDITIONS))
+        return cls(task, half_name, seed, Episode.take_over(hand_over, SETUP))
 
     @property
     def instance(self) -> Instance:
@@ -221,7 +221,7 @@ def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> P
         tuple(episode.moments),
         episode.baseline_moments,
         episode.counterfactual,
-        episode.world.cockpit.deeds,
+        episode.world.cockpit.given,
         tuple(episode.steps),
         stopping.stuck,
     )

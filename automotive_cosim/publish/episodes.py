@@ -37,12 +37,11 @@ SECOND_BYTES, SPARE_S = 2**15, 120.0
 take an episode beyond its limit."""
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
-    "geo", "seed", "repeat", "clock", "latency_s", "see", "feedback", "screen", "language", "split",
+    "conditions", "seed", "repeat", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (
-    "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen", "language",
-    "seed", "traffic_seed",
+    "task", "half", "scenario", "agent", "model", "conditions", "seed", "traffic_seed",
     "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
     "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
@@ -216,7 +215,7 @@ def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
     """The row's fields about questions; empty for a row that was written before they were counted."""
     if row.questions is None:
         return {}
-    half = Instance(job.task, row.half, judged.goal, judged.parameters, language=row.language).half
+    half = Instance(job.task, row.half, judged.goal, judged.parameters, language=row.conditions.language).half
     texts = (asked["text"] for asked in questions(judged.trace[0], judged.trace[-1]))
     return questioned(dialogue(texts, half.topics, half.needed_topics, half.neutral))
 
@@ -242,7 +241,7 @@ def _end_problems(job: EpisodeJob, row: EpisodeRow, judged: Judged, steps: int) 
 
 def _phrasing_problems(file: str, job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Iterator[Problem]:
     """Problems with the phrasing: it must be one of the task's, and held out or not as the row says."""
-    said = phrased(job.task, row.half, judged.parameters, row.language)
+    said = phrased(job.task, row.half, judged.parameters, row.conditions.language)
     if judged.goal not in said:
         yield Problem(file, "goal", f"is {judged.goal!r}, which is not a phrasing of {row.task}")
     elif row.held_out is not (judged.goal == said[-1]) or (job.setup.held_out and not row.held_out):

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
@@ -29,7 +30,7 @@ from automotive_cosim.run.store import cannot_write
 from automotive_cosim.run.versions import minor
 
 COLUMNS = (
-    "Agent", "Model", "Input", "Geo", "Sees", "Feedback", "Screen", "Language", "Clock", *DIMENSIONS.values(),
+    "Agent", "Model", "Input", *(each.words.heading for each in TABLE), *DIMENSIONS.values(),
     "Safety pairs", "All episodes", "Bundle",
 )  # fmt: skip
 
@@ -158,23 +159,16 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
             (
                 each.method,
                 each.base_model,
-                input_of(Contestant(each.agent, each.model, "full")),
-                each.geo,
-                each.see,
-                each.feedback,
-                each.screen,
-                each.language,
-                _speed(each),
+                input_of(Contestant(each.agent, each.model)),
+                *(
+                    f"{value:g}" if isinstance(value, float) else value
+                    for value in each.conditions.as_json().values()
+                ),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
                 f"{entry.bundle} ({entry.version}), {entry.sha256[:12]}",
             )
         )
-    return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=8)
-
-
-def _speed(each: Contestant) -> str:
-    """Simulated time that its answers took."""
-    return f"{each.clock}, latency {each.latency_s:g} s" if each.latency_s else each.clock
+    return Table(f"table_{number}", f"Table {number}", COLUMNS, tuple(rows), heads=3 + len(TABLE))
 
 
 def _conditions(suite: str, plan: Json, rows: Sequence[EpisodeRow]) -> BundleConditions:

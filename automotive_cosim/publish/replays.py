@@ -7,7 +7,6 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from automotive_cosim.agents import AgentSettings, make_agent
-from automotive_cosim.agents.settings import geo_input
 from automotive_cosim.contracts import ActionType, Json
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import SAID
@@ -60,7 +59,7 @@ def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]
     """The channels that its agent may have had; no foreign agent is loaded to find out."""
     setup = job.setup
     if ":" not in setup.agent:
-        settings = AgentSettings(geo_input(setup.geo), seed=setup.seed)
+        settings = AgentSettings(setup.conditions, seed=setup.seed)
         return [frozenset(make_agent(setup.agent, "rules", settings).channels)]  # whatever its model
     asks = any(step["action"] and step["action"]["action_type"] == ActionType.QUERY for step in steps)
     return [ALL, ALL - {Channel.GPS}, ALL - {Channel.CONTEXT}] if asks else [ALL]

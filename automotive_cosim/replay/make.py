@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 from automotive_cosim.agents import FORMATS, PROFILES, make_agent
@@ -17,7 +17,6 @@ from automotive_cosim.agents.native.grid import GuiScreen
 from automotive_cosim.agents.native.verbs import call_for
 from automotive_cosim.contracts import Action, ActionType, Json
 from automotive_cosim.contracts.ids import resource_id
-from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.models import ChatMessage, ModelReply, Rules
 from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, ProviderApi
 from automotive_cosim.models.base import estimated_tokens
@@ -25,7 +24,7 @@ from automotive_cosim.models.replay import SUFFIX, text_digest
 from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.traffic.fork import Simulations
 
-EPISODE = EpisodeSpec("hvac_fan_max", scenario="grid")
+SETUP = EpisodeSetup("hvac_fan_max", scenario="grid")
 SCREEN_PX = (1280, 720)
 THOUGHT = "I see what is wanted."
 
@@ -74,7 +73,7 @@ def made(simulations: Simulations) -> dict[str, Json]:
         simulations: warm traffic.
     """
     watcher = Touches()
-    setup = EpisodeSetup(**asdict(EPISODE), agent="oracle", model="none")
+    setup = replace(SETUP, agent="oracle", model="none")
     run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
     found = {}
     for name, form in FORMATS.items():
@@ -151,8 +150,8 @@ def _recorded(
 ) -> Json:
     tells = _Tells(bodies, api)
     played = make_agent(agent, model, chat_model=tells)
-    result = run_episode(EpisodeSetup(**asdict(EPISODE), agent=agent, model=model), played, simulations=simulations)
-    shown = {name: getattr(EPISODE, name) for name in ("task", "half", "scenario", "seed")}
+    result = run_episode(replace(SETUP, agent=agent, model=model), played, simulations=simulations)
+    shown = {name: getattr(SETUP, name) for name in ("task", "half", "scenario", "seed")}
     return {
         "episode": shown,
         "agent": agent,

@@ -43,11 +43,11 @@ def contrast(results: Results) -> tuple[Side, Side] | None:
     Pairs that depend on place come first, then other safety tasks, each in the order of their ids.
     """
     rows = [row for row in results.rows if row.success is not None and _has_trace(results, row)]
-    solved = {_key(row): row for row in rows if row.geo == "full" and row.success}
+    solved = {_key(row): row for row in rows if row.conditions.geo == "full" and row.success}
     found = [
-        (PLACE not in row.tags, not row.pair, CONTROLS.index(row.geo), row.id, row)
+        (PLACE not in row.tags, not row.pair, CONTROLS.index(row.conditions.geo), row.id, row)
         for row in rows
-        if row.geo in CONTROLS and not row.success and _key(row) in solved
+        if row.conditions.geo in CONTROLS and not row.success and _key(row) in solved
     ]
     if not found:
         return None

@@ -135,7 +135,7 @@ def _prompts(results: Results) -> Drawing | None:
                 [0, *shares],
                 where="post",
                 color=PALETTE[agents.index((each.agent, each.model)) % len(PALETTE)],
-                linestyle=DASHES[each.geo],
+                linestyle=DASHES[each.conditions.geo],
                 label=each.label,
             )
         axes.set_xlim(left=0)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +16,7 @@ from automotive_cosim.drives.score import Score, together
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.drivechart import timeline_chart
-from automotive_cosim.report.results import seen_and_told
+from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.report.templates import render
@@ -37,43 +36,12 @@ Figure = Callable[[Sequence[WatchRow]], float | None]
 """A figure of several drives together; None if there is nothing to divide by."""
 
 
-@dataclass(frozen=True, slots=True)
-class WatchedBy:
-    """An agent and its conditions: one row of the tables."""
-
-    agent: str
-    model: str
-    geo: str
-    clock: str
-    latency_s: float
-    see: str
-    feedback: str
-    screen: str
-
-    @property
-    def label(self) -> str:
-        """Agent and conditions in words."""
-        parts = [self.agent if self.model == "none" else f"{self.agent} ({self.model})"]
-        parts += [f"geo {self.geo}"] if self.geo != "full" else []
-        parts += seen_and_told(self.see, self.feedback, self.screen)
-        parts += [f"{self.clock} clock"] if self.clock != "fixed" else []
-        parts += [f"latency {self.latency_s:g} s"] if self.latency_s else []
-        return ", ".join(parts)
-
-
-def watcher_of(row: WatchRow) -> WatchedBy:
-    """The agent and the conditions of a drive."""
-    return WatchedBy(
-        row.agent, row.model, str(row.geo), str(row.clock), row.latency_s, row.see, row.feedback, row.screen
-    )
-
-
-def grouped(rows: Iterable[WatchRow]) -> dict[WatchedBy, list[WatchRow]]:
+def grouped(rows: Iterable[WatchRow]) -> dict[Contestant, list[WatchRow]]:
     """The judged drives of each watcher, the best first."""
-    found: dict[WatchedBy, list[WatchRow]] = {}
+    found: dict[Contestant, list[WatchRow]] = {}
     for row in rows:
         if row.score is not None:
-            found.setdefault(watcher_of(row), []).append(row)
+            found.setdefault(contestant(row), []).append(row)
     return dict(sorted(found.items(), key=lambda entry: -whole(entry[1]).value))
 
 
@@ -130,6 +98,18 @@ def _per_hour(of: Callable[[WatchRow], float]) -> Figure:
     return figure
 
 
+def _watched_share(rows: Sequence[WatchRow]) -> float | None:
+    """The share of the driving time in which the agent watched, before it failed or its budget was spent."""
+    judged = [row for row in rows if row.score is not None]
+    driven_s = sum(row.score.driven_s for row in judged if row.score is not None)
+    watched_s = sum(
+        row.score.driven_s if row.unwatched_from_s is None else row.unwatched_from_s
+        for row in judged
+        if row.score is not None
+    )
+    return 100 * watched_s / driven_s if driven_s else None
+
+
 FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("Score", _value, ".0f"),
     ("Recall %", _share(lambda score: score.recall), ".0f"),
@@ -137,6 +117,7 @@ FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("False alarms/h", lambda rows: whole(rows).false_alarms_per_h, ".1f"),
     ("Nuisances/h", lambda rows: whole(rows).nuisances_per_h, ".1f"),
     ("Median delay s", lambda rows: whole(rows).median_delay_s, ".1f"),
+    ("Watched %", _watched_share, ".0f"),
     ("Overspeed saved %", _saved(lambda harm: float(harm.over_limit_m)), ".0f"),
     ("Short TTC saved %", _saved(lambda harm: float(harm.short_ttc_s)), ".0f"),
     ("Distraction s/h", _per_hour(lambda row: row.distraction_s), ".0f"),
@@ -192,7 +173,7 @@ def tables(rows: Sequence[WatchRow]) -> list[Table]:
     return [table for table in (_watchers(groups), _kinds(groups), _families(groups), _errors(rows)) if table.rows]
 
 
-def _watchers(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+def _watchers(groups: dict[Contestant, list[WatchRow]]) -> Table:
     lines: tuple[TableRow, ...] = tuple(
         (
             each.label,
@@ -216,7 +197,7 @@ def _watchers(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
     )
 
 
-def _kinds(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+def _kinds(groups: dict[Contestant, list[WatchRow]]) -> Table:
     """Events met of each kind, and look-alikes left alone."""
     lines = []
     for name, kind in KINDS.items():
@@ -224,9 +205,9 @@ def _kinds(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
         for mine in groups.values():
             events = [event for row in mine for event in row.events if event.kind == name]
             real = [event for event in events if event.outcome.counts]
-            baits = [event for event in events if event.bait]
-            met, left = sum(e.outcome.is_credited for e in real), sum(e.outcome == "avoided" for e in baits)
-            cells.append(f"{met}/{len(real)}, {left}/{len(baits)}" if events else "–")
+            lookalikes = [event for event in events if event.lookalike]
+            met, left = sum(e.outcome.is_credited for e in real), sum(e.outcome == "avoided" for e in lookalikes)
+            cells.append(f"{met}/{len(real)}, {left}/{len(lookalikes)}" if events else "–")
         if any(cell != "–" for cell in cells):
             lines.append((name, kind.about, *cells))
     return Table(
@@ -239,7 +220,7 @@ def _kinds(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
     )
 
 
-def _families(groups: dict[WatchedBy, list[WatchRow]]) -> Table:
+def _families(groups: dict[Contestant, list[WatchRow]]) -> Table:
     families = dict.fromkeys(row.family for mine in groups.values() for row in mine)
     lines = []
     for family in families:
@@ -286,7 +267,7 @@ def write_drives(folder: Path) -> Path:
             drawn = timeline_chart(row, _read(timeline))
             write_whole(folder / "plots" / f"{row.id}.svg", drawn[0].replace("currentColor", INK))
             if len(plots) < SHOWN:
-                plots[row.id] = (f"{row.family}, seed {row.seed}: {watcher_of(row).label}", *drawn)
+                plots[row.id] = (f"{row.family}, seed {row.seed}: {contestant(row).label}", *drawn)
         page = folder / "report.html"
         write_whole(
             page,

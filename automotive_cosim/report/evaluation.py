@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.episode.conditions import told
 from automotive_cosim.errors import UserError
 from automotive_cosim.report import findings
 from automotive_cosim.report.case import contrast
@@ -70,11 +71,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.failures(shared, found),
         findings.harm(shared),
         findings.place_effect(shared),
-        findings.sight(shared),
-        findings.feedback(shared),
-        findings.screen(shared),
-        findings.language(shared),
-        findings.think_time(shared),
+        *findings.by_condition(shared),
         findings.by_label(shared, "Skill", lambda row: row.skills),
         findings.by_label(shared, "Tag", lambda row: row.tags),
         findings.prompts(shared),
@@ -111,6 +108,7 @@ def _page(
         labels={row.id: contestant(row).label for row in results.rows},
         parts=PARTS,
         plan=results.manifest["plan"],
+        conditions=told(results.manifest["plan"]),
         starts=starts,
         is_mixed=any(start["git"] != starts[0]["git"] for start in starts),
         has_stand_in=any(row.model == "rules" for row in results.rows),

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
 
 import numpy as np
 
-from automotive_cosim.cockpit.language import Language
-from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import See
+from automotive_cosim.episode.conditions import TABLE, Condition
 from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
 from automotive_cosim.report.stats import clustered_mean, compare
@@ -102,10 +98,11 @@ def place_effect(results: Results) -> Table:
     ranked = [each for each in results.contestants if each.agent not in NOT_RANKED]
     for full in ranked:
         for other in ranked:
-            if full.geo == "full" != other.geo and replace(full, geo=other.geo) == other:
+            geo = other.conditions.geo
+            if full.conditions.geo == "full" != geo and full.under("geo", geo) == other:
                 told = [_effect(results, full, other, decided) for decided in (True, False)]
                 if any(cell.episodes for cell in told):
-                    rows.append((f"{full.method}, {full.base_model}", other.geo, *told))
+                    rows.append((f"{full.method}, {full.base_model}", geo, *told))
     columns = ("Contestant", "Compared with geo", "Pairs that depend on place", "Placebo: the other pairs")
     note = (
         f"Pair success with full geo-context minus that under the other geo control, on the same pairs, with 95 % "
@@ -115,95 +112,31 @@ def place_effect(results: Results) -> Table:
     return Table("place_effect", "Effect of place", columns, tuple(rows), note, heads=2)
 
 
-def think_time(results: Results) -> Table:
-    """Success over the time that each answer takes; no rows if all were run at one latency."""
-    latencies = sorted({each.latency_s for each in results.contestants})
-    groups = list(dict.fromkeys(replace(each, latency_s=0.0) for each in results.contestants))
-    rows: list[TableRow] = [
-        (each.label, *(rate_cell(results.of(replace(each, latency_s=latency_s))) for latency_s in latencies))
-        for each in groups
-        if len(latencies) > 1
-    ]
-    columns = ("Contestant", *(f"{latency_s:g} s" for latency_s in latencies))
-    note = f"Simulated seconds added to every answer before its action. All halves. {RATES}"
-    return Table("think_time", "Success over think time", columns, tuple(rows), note)
+def by_condition(results: Results) -> list[Table]:
+    """Success by the values of each condition: a column for each value, and a row for each contestant.
 
-
-def sight(results: Results) -> Table:
-    """Success by how agents see the screen; no rows if all see it in the same way."""
-    note = "The list of elements, the picture, or both; the picture alone comes without ids and descriptions."
-    if beyond := results.beyond_the_list:
-        note += f" Left out: {counted(len(beyond), 'task')} in which something needed is only in the picture."
-    return _side_by_side(
-        results,
-        ("sight", "Success by how the agent sees the screen"),
-        See,
-        lambda each, see: replace(each, see=see),
-        note,
-    )
-
-
-def feedback(results: Results) -> Table:
-    """Success by what an agent is told about its last action; no rows if all were told the same."""
-    note = "Quiet feedback names the control and says if it worked; verbose also says what changed in the car."
-    return _side_by_side(
-        results,
-        ("feedback", "Success by feedback"),
-        FeedbackDetail,
-        lambda each, detail: replace(each, feedback=detail),
-        note,
-    )
-
-
-def screen(results: Results) -> Table:
-    """Success by the size of the screen; no rows if all had the same."""
-    note = "1920x720 shows the map and music beside each app; 1080x1920 shows them above it."
-    return _side_by_side(
-        results,
-        ("screen", "Success by the size of the screen"),
-        ScreenSize,
-        lambda each, size: replace(each, screen=size),
-        note,
-    )
-
-
-def language(results: Results) -> Table:
-    """Success by the driver's language; no rows if all heard the same."""
-    note = "The driver's words and the screens are in this language; what other people write stays in English."
-    return _side_by_side(
-        results,
-        ("language", "Success by language"),
-        Language,
-        lambda each, language: replace(each, language=language),
-        note,
-    )
-
-
-def _side_by_side(
-    results: Results,
-    named: tuple[str, str],
-    values: Iterable[str],
-    under: Callable[[Contestant, str], Contestant],
-    note: str,
-) -> Table:
-    """A column for each value of a condition, and a row for each contestant.
-
-    Args:
-        results: the episodes.
-        named: the table's name and title.
-        values: of the condition, its default first.
-        under: a contestant with another value.
-        note: what the values mean.
+    A condition that is the same for all has no rows.
     """
-    default, *_ = asked = [str(value) for value in values]
-    shown = [value for value in asked if any(under(each, value) == each for each in results.contestants)]
-    groups = list(dict.fromkeys(under(each, default) for each in results.contestants))
+    return [_side_by_side(results, each) for each in TABLE]
+
+
+def _side_by_side(results: Results, condition: Condition) -> Table:
+    shown = sorted(
+        {condition.of(each.conditions) for each in results.contestants},
+        key=lambda value: condition.choices.index(value) if condition.choices else value,
+    )
+    groups = list(dict.fromkeys(each.under(condition.name, condition.default) for each in results.contestants))
     rows: list[TableRow] = [
-        (each.label, *(rate_cell(results.of(under(each, value))) for value in shown))
+        (each.label, *(rate_cell(results.of(each.under(condition.name, value))) for value in shown))
         for each in groups
         if len(shown) > 1
     ]
-    return Table(*named, ("Contestant", *shown), tuple(rows), f"{note} All halves. {RATES}")
+    note = condition.words.note
+    if condition.name == "see" and (beyond := results.beyond_the_list):
+        note += f" Left out: {counted(len(beyond), 'task')} in which something needed is only in the picture."
+    columns = ("Contestant", *map(condition.told, shown))
+    name = f"by_{condition.word}"
+    return Table(name, condition.words.title, columns, tuple(rows), f"{note} All halves. {RATES}")
 
 
 def _effect(results: Results, full: Contestant, other: Contestant, decided: bool) -> Cell:
@@ -254,7 +187,7 @@ def prompts(results: Results) -> Table:
             lengths = [length for row in asked for length in row.prompt_tokens]
             shown = [f"{value:.0f}" for value in np.percentile(lengths, (5, 25, 50, 75, 95))]
             ids = tuple(row.id for row in asked)
-            rows.append((each.label, each.geo, str(len(lengths)), *(Cell(text, ids) for text in shown)))
+            rows.append((each.label, each.conditions.geo, str(len(lengths)), *(Cell(text, ids) for text in shown)))
     columns = ("Contestant", "Geo", "Prompts", "5 %", "25 %", "Median", "75 %", "95 %")
     note = (
         "Tokens per prompt, as percentiles over all calls. For rules, tokens are estimated at four characters each."

@@ -5,15 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from automotive_cosim.cockpit.language import Language
-from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.episode.specification import Clock
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import SetupError, UserError
-from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -21,6 +18,7 @@ from automotive_cosim.run.plan import languages_in_words, make_plan
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_evaluation, read_rows
 from automotive_cosim.run.versions import ran_with
+from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.tasking.task import NEEDS_PICTURE
 
 if TYPE_CHECKING:
@@ -49,13 +47,7 @@ class Contestant:
 
     agent: str
     model: str
-    geo: str
-    clock: str = str(Clock.FIXED)
-    latency_s: float = 0.0
-    see: str = str(See.BOTH)
-    feedback: str = str(FeedbackDetail.QUIET)
-    screen: str = str(ScreenSize.STANDARD)
-    language: str = str(Language.ENGLISH)
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
 
     @property
     def base_model(self) -> str:
@@ -72,12 +64,11 @@ class Contestant:
     def label(self) -> str:
         """Agent, model, conditions and speed on one short line."""
         model = {"rules": "rules stand-in", "none": ""}.get(self.model, self.model)
-        geo = "" if self.geo == "full" else f"geo {self.geo}"
-        clock = "" if self.clock == Clock.FIXED else f"{self.clock}'s clock"
-        latency = f"latency {self.latency_s:g} s" if self.latency_s else ""
-        seen = seen_and_told(self.see, self.feedback, self.screen)
-        parts = (self.method, model, geo, *seen, *spoken(self), clock, latency)
-        return ", ".join(part for part in parts if part)
+        return ", ".join(part for part in (self.method, model, *self.conditions.labels) if part)
+
+    def under(self, name: str, value: Any) -> Contestant:
+        """The same with another value of a condition."""
+        return replace(self, conditions=replace(self.conditions, **{name: value}))
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +94,7 @@ class Results:
         except UserError:  # the catalogue has changed since
             return ""
         were = f"{counted(missing, 'task')} {'was' if missing == 1 else 'were'}"
-        return f"{were} left out: no phrasings in {languages_in_words(plan.language)}." if missing else ""
+        return f"{were} left out: no phrasings in {languages_in_words(plan.languages)}." if missing else ""
 
     @property
     def contestants(self) -> tuple[Contestant, ...]:
@@ -135,23 +126,9 @@ class Results:
         return replace(self, rows=tuple(row for row in self.rows if row.id in self.coverage.shared))
 
 
-def contestant(row: EpisodeRow) -> Contestant:
+def contestant(row: EpisodeRow | WatchRow) -> Contestant:
     """The contestant that an episode belongs to."""
-    seen = row.see, row.feedback, row.screen, row.language
-    return Contestant(row.agent, row.model, row.geo, row.clock, row.latency_s, *seen)
-
-
-def seen_and_told(see: str, feedback: str, screen: str) -> tuple[str, ...]:
-    """Screen size, screen input and feedback in words, where they are not the default."""
-    size = () if screen == ScreenSize.STANDARD else (f"{screen} screen",)
-    sight = () if see == See.BOTH else (f"{see} alone",)
-    told = () if feedback == FeedbackDetail.QUIET else (f"{feedback} feedback",)
-    return (*size, *sight, *told)
-
-
-def spoken(each: Contestant) -> tuple[str, ...]:
-    """The driver's language, in words, unless it is English."""
-    return () if each.language == Language.ENGLISH else (f"in {Language(each.language).words}",)
+    return Contestant(row.agent, row.model, row.conditions)
 
 
 def standings(results: Results) -> list[str]:

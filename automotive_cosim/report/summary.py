@@ -11,7 +11,7 @@ from automotive_cosim.agents import PROFILES, NativeAgent, chosen
 from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import EDITION_2026, EDITION_2026_ROWS, PAPER, PAPER_COLUMNS, PAPER_ROWS
-from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs, seen_and_told, spoken
+from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -388,8 +388,7 @@ def rate_in_words(found: Rate) -> str:
 
 def input_of(each: Contestant) -> str:
     """The agent's input, in the paper's words."""
-    words = [] if each.geo == "full" else [f"geo {each.geo}"]
-    words += (*seen_and_told(each.see, each.feedback, each.screen), *spoken(each))
+    words = each.conditions.inputs
     control = f" ({', '.join(words)})" if words else ""
     if each.agent == NativeAgent.name:
         lacks = chosen(each.model)[1].lacks

@@ -5,30 +5,33 @@ find -> take over -> brief -> (act -> step)* -> verdict -> aftermath
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing, suppress
 from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Protocol, runtime_checkable
 
 import numpy as np
 import numpy.typing as npt
-from annotated_types import Ge
 
 from automotive_cosim import geo
 from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
 from automotive_cosim.contracts import Element, Json
+from automotive_cosim.contracts.given import Clock
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.situation import HandOver, SituationFinder
-from automotive_cosim.episode.specification import Clock, End, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
-from automotive_cosim.formats.annotations import OneOf
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.toml import dotted
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.interface import trace
 from automotive_cosim.models import ModelReply
 from automotive_cosim.run.estimates import PositionEstimate, estimates
+from automotive_cosim.run.former import setup_values
 from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
 from automotive_cosim.run.row import formerly
@@ -48,13 +51,18 @@ class EpisodeSetup(EpisodeSpec):
     model: str = "rules"
     without: tuple[str, ...] = ()
     """Parts of the agent that are switched off, for the record."""
-    clock: Annotated[Clock, OneOf(Clock)] = Clock.FIXED
-    """Whether the seconds that the model takes pass on the road."""
-    latency_s: Annotated[float, Ge(0)] = 0.0
-    """Simulated seconds that each answer takes, before its action."""
     spare_traffic: tuple[int, ...] = ()
     """Seeds of traffic to try in turn, with the same instance, if the situation does not occur in the seed's own
     traffic. No agent acts before it does, so every agent gets the same traffic."""
+
+
+def read_setup(values: Mapping[str, Any], where: str) -> EpisodeSetup:
+    """A setup from its JSON form, one of an earlier version too.
+
+    Raises:
+        UserError: it is not one; the message says what is wrong where.
+    """
+    return checked(EpisodeSetup, setup_values(values, where), lambda steps: (where, dotted(steps)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,11 +97,8 @@ class EpisodeResult:
     """How the agent's side failed, if that ended the episode; ``success`` is then False."""
     violations: tuple[Violation, ...] = ()
     """Traffic law violations from departure to the end of the aftermath; seconds since the hand-over."""
-    geo: str = "full"
-    see: str = "both"
-    feedback: str = "verbose"
-    screen: str = "1280x720"
-    language: str = "en"
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
+    """What the agent was given, and at what speed."""
     without: tuple[str, ...] = ()
     notes: tuple[str, ...] = ()
     """Assumptions where the scenario says nothing, e.g. that there is no GPS."""
@@ -223,11 +228,11 @@ class _Run:
         agent = self._agent
         hand_over = self._find()
         try:
-            conditions = self._setup.conditions(agent.channels)
+            session = self._setup.session(agent.channels)
         except BaseException:  # its process cannot be started
             hand_over.world.close()
             raise
-        episode = self._episode = Episode.take_over(hand_over, conditions, Listeners(self._watchers))
+        episode = self._episode = Episode.take_over(hand_over, session, Listeners(self._watchers))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
             agent.brief(episode.instance, drawn=episode.world.cockpit.drawn)
@@ -276,10 +281,10 @@ class _Run:
         """Simulated seconds that the agent's last answer took."""
         if isinstance(self._agent, Replayed):
             return self._agent.thought_s
-        seconds = self._setup.latency_s
-        if self._setup.clock is Clock.MODEL and isinstance(self._agent, Timed):
+        seconds = self._setup.conditions.latency_s
+        if self._setup.conditions.clock is Clock.MODEL and isinstance(self._agent, Timed):
             seconds += self._agent.answer_s
-        elif self._setup.clock is Clock.MODEL and isinstance(self._agent, Thinker):
+        elif self._setup.conditions.clock is Clock.MODEL and isinstance(self._agent, Thinker):
             seconds += sum(stage.reply.seconds for stage in self._agent.stages if stage.reply is not None)
         return round(seconds, 1)  # the shortest step of a scenario
 
@@ -314,11 +319,7 @@ class _Run:
             "end": end,
             "error": None if error is None else str(error),
             "error_kind": None if error is None else type(error).__name__,
-            "geo": str(setup.geo),
-            "see": str(setup.see),
-            "feedback": str(setup.feedback),
-            "screen": str(setup.screen),
-            "language": str(setup.language),
+            "conditions": setup.conditions,
             "without": setup.without,
             "tokens_in": sum(reply.tokens_in for reply in self._replies),
             "tokens_out": sum(reply.tokens_out for reply in self._replies),

@@ -6,12 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
-from automotive_cosim.cockpit.language import Language
-from automotive_cosim.cockpit.size import ScreenSize
-from automotive_cosim.episode.specification import Clock, End
-from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import See
+from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.specification import End
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
 from automotive_cosim.run.taps import PixelTaps
@@ -62,23 +58,12 @@ class EpisodeRow(JobRow):
     scenario: str
     agent: str
     model: str
-    geo: GeoInput
     seed: int
     traffic_seed: int | None = None
     """Seed of the traffic: ``seed``, or a spare one; None without a hand-over."""
     repeat: int
-    clock: Clock = Clock.FIXED
-    """Whether the seconds that the model took passed on the road."""
-    latency_s: float = 0.0
-    """Simulated seconds added to each answer."""
-    see: See = See.BOTH
-    """How the agent saw the screen."""
-    feedback: FeedbackDetail = FeedbackDetail.VERBOSE
-    """What it was told about its last action."""
-    screen: ScreenSize = ScreenSize.STANDARD
-    """Size of the car's screen."""
-    language: Language = Language.ENGLISH
-    """What the driver spoke, and the car showed."""
+    conditions: Annotated[Conditions, InColumns("")] = Conditions()  # noqa: RUF009, frozen
+    """What the agent was given, and at what speed."""
     thought_s: float = 0.0
     """Simulated seconds that all answers took."""
     parameters: Mapping[str, Any] | None = None

@@ -1,17 +1,26 @@
-"""Modes, which earlier versions had: ``prompted``, which every episode is now, and ``monitoring``, now drives."""
+"""What earlier versions wrote, in the present form; nothing else reads theirs.
+
+0.1    had modes: ``prompted``, which every episode is now, and ``monitoring``, now drives
+0.2    had each condition as a field of rows, setups and results, ``latency`` for ``latency_s`` and one clock a plan
+"""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
+from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import FeedbackDetail
+from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UserError
 
 INSTEAD = "drives have replaced monitoring: `automotive-cosim drive`, and `automotive-cosim eval --drives all`"
+NAMES = frozenset(each.name for each in TABLE)
 
 
-def without_mode(values: Mapping[str, Any], where: str) -> dict[str, Any]:
-    """A plan or an episode's setup without its modes, so that one of an earlier version can be read.
+def plan_values(values: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """A plan's values; a condition with one value may be given without brackets.
 
     Args:
         values: its fields.
@@ -20,6 +29,48 @@ def without_mode(values: Mapping[str, Any], where: str) -> dict[str, Any]:
     Raises:
         UserError: it has another mode than ``prompted``.
     """
+    made = _without_mode(values, where)
+    if "latency" in made:
+        made.setdefault("latency_s", made.pop("latency"))
+    return {
+        name: [value] if name in NAMES and isinstance(value, str | int | float) else value
+        for name, value in made.items()
+    }
+
+
+def setup_values(values: Mapping[str, Any], where: str) -> dict[str, Any]:
+    """An episode's setup.
+
+    Raises:
+        UserError: it has another mode than ``prompted``.
+    """
+    return with_conditions(_without_mode(values, where))
+
+
+def with_conditions(values: Mapping[str, Any]) -> dict[str, Any]:
+    """A row, setup or result with its conditions in a table of their own.
+
+    Before there was a choice of feedback, it was verbose.
+    """
+    if "conditions" in values or not NAMES & values.keys():
+        return dict(values)
+    found = {"feedback": str(FeedbackDetail.VERBOSE)} | {name: values[name] for name in NAMES & values.keys()}
+    return {name: value for name, value in values.items() if name not in NAMES} | {"conditions": found}
+
+
+def line_of(line: bytes) -> bytes | None:
+    """A row's line in the present form; None if an earlier version did not write it either.
+
+    Raises:
+        ValueError: it is not JSON.
+    """
+    values = json.loads(line)
+    if not isinstance(values, dict) or "conditions" in values:
+        return None
+    return json.dumps(with_conditions(values)).encode()
+
+
+def _without_mode(values: Mapping[str, Any], where: str) -> Json:
     for name in ("mode", "modes"):
         if name in values and values[name] not in ("prompted", ["prompted"]):
             raise UserError(f"{where} has an older format: its {name} is {values[name]!r}; {INSTEAD}")

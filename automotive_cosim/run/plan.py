@@ -17,19 +17,18 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.cockpit.language import Language
-from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import Clock, Conditions
+from automotive_cosim.episode.conditions import ConditionLists, Conditions, combined, lists_of
+from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
 from automotive_cosim.interface.observe import See
 from automotive_cosim.interface.trace import canonical
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.former import without_mode
+from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.outside import EPISODE_S, STEP_S, check_agent
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.split import Split, split_of
@@ -72,8 +71,8 @@ class Limits:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
-    """The content of a ``plan.toml``; every list is combined with every other."""
+class Plan(ConditionLists):
+    """The content of a ``plan.toml``; every list is combined with every other, also those of the conditions."""
 
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
@@ -93,25 +92,6 @@ class Plan:
     spare_traffic: tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...] = SPARE_TRAFFIC
     """Seeds of traffic that replace a seed's own, in turn, if the situation does not occur in it although the task
     lists the scenario. Every agent gets the same; the row says which."""
-    geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
-    """What an agent is told about its place."""
-    clock: Annotated[str, OneOf(tuple(Clock))] = str(Clock.FIXED)
-    """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
-    latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
-    """Simulated seconds added to each answer, before its action."""
-    see: Annotated[tuple[Annotated[str, OneOf(tuple(See), "way to see the screen")], ...], MinLen(1)] = ("both",)
-    """How an agent sees the screen: ``tree``, ``picture`` or ``both``."""
-    feedback: Annotated[tuple[Annotated[str, OneOf(tuple(FeedbackDetail), "kind of feedback")], ...], MinLen(1)] = (
-        "quiet",
-    )
-    """What an agent is told about its last action: ``quiet`` or ``verbose``."""
-    screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
-        "1280x720",
-    )
-    """Size of the car's screen: ``1280x720``, ``1920x720`` or ``1080x1920``."""
-    language: Annotated[tuple[Annotated[str, OneOf(tuple(Language), "language")], ...], MinLen(1)] = ("en",)
-    """What the driver speaks and the car shows: ``en``, ``fr``, ``de`` or ``ja``. Tasks without
-    phrasings in one of them are left out in all."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each episode, for models that do not answer the same twice."""
     held_out: bool = False
@@ -144,7 +124,7 @@ class Plan:
             open_scenario(name)
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
-        for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
+        for agent, model, conditions in {(job.setup.agent, job.model, job.setup.conditions) for job in self.jobs()}:
             if agent == HUMAN:
                 raise UserError(
                     "agent 'human' needs a person; use `automotive-cosim serve --play`, or `run --agent human`"
@@ -153,8 +133,8 @@ class Plan:
                 check_agent(agent)
             else:
                 try:
-                    made = make_agent(agent, model, AgentSettings(see=see))
-                    Conditions(frozenset(made.channels), see=see)
+                    made = make_agent(agent, model, AgentSettings(conditions))
+                    SessionSetup(frozenset(made.channels), conditions)
                 except SetupError as error:
                     if not dry:
                         raise
@@ -169,16 +149,18 @@ class Plan:
         Raises:
             UserError: there are more than can ever be run.
         """
-        lists = (
-            *(self.agents, self.models, self._placed(), self.seeds),
-            *(self.geo, self.latency, self.see, self.feedback, self.screen, self.language),
-        )
+        lists = (self.agents, self.models, self._placed(), self.seeds, *lists_of(self).values())
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(
                 f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
             )
         jobs = {job.id: job for job in self._each() if self.split in (BOTH, job.split)}
         return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
+
+    @property
+    def languages(self) -> tuple[Language, ...]:
+        """What the drivers speak."""
+        return tuple(lists_of(self)["language"])
 
     def left_out(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that cannot run in any of the scenarios."""
@@ -192,7 +174,7 @@ class Plan:
 
     def beyond_the_list(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that are not run with ``see`` tree: something needed is only in the picture."""
-        if See.TREE not in self.see:
+        if See.TREE not in lists_of(self)["see"]:
             return ()
         return tuple(task_id for task_id in choose(self.tasks, self.suite) if CATALOGUE[task_id].needs_picture)
 
@@ -201,7 +183,7 @@ class Plan:
             return "these tasks need the picture, which see = tree withholds; give picture or both"
         if not self._spoken():
             return (
-                f"none of the tasks has phrasings in {languages_in_words(self.language)}; those of the "
+                f"none of the tasks has phrasings in {languages_in_words(self.languages)}; those of the "
                 "hard suite do (--suite hard)"
             )
         if self._placed():
@@ -227,22 +209,18 @@ class Plan:
     def _spoken(self) -> list[Task]:
         """The chosen tasks that have phrasings in every language."""
         chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
-        return [task for task in chosen if set(self.language) <= set(task.languages)]
+        return [task for task in chosen if set(self.languages) <= set(task.languages)]
 
     def _each(self) -> Iterator[EpisodeJob]:
-        conditions = product(self.see, self.feedback, self.screen, self.language)
-        for agent, model, (task, scenario), seed, geo, latency_s, repeat, condition in product(
+        for agent, model, (task, scenario), seed, conditions, repeat in product(
             self.agents,
             self.models,
             self._placed(),
             self.seeds,
-            self.geo,
-            self.latency,
+            combined(self),
             range(self.repeats),
-            conditions,
         ):
-            see, feedback, screen, language = condition
-            if task.needs_picture and See(see) is See.TREE:
+            if task.needs_picture and conditions.see is See.TREE:
                 continue
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # a half may move it to another place
@@ -255,15 +233,9 @@ class Plan:
                     seed=seed,
                     max_steps=self.limits.hard_steps if task.suite is Suite.HARD else self.limits.steps,
                     max_sim_s=self.limits.sim_s,
-                    geo=GeoInput(geo),
+                    conditions=conditions,
                     held_out=self.held_out,
                     spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
-                    clock=Clock(self.clock),
-                    latency_s=latency_s,
-                    see=See(see),
-                    feedback=FeedbackDetail(feedback),
-                    screen=ScreenSize(screen),
-                    language=Language(language),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
 
@@ -313,13 +285,8 @@ class EpisodeJob:
             self.setup,
             agent="",
             model="",
-            geo=GeoInput.FULL,
             without=(),
-            clock=Clock.FIXED,
-            latency_s=0.0,
-            see=See.BOTH,
-            feedback=FeedbackDetail.QUIET,
-            screen=ScreenSize.STANDARD,
+            conditions=Conditions(language=self.setup.conditions.language),
         )
 
     @property
@@ -339,17 +306,12 @@ class EpisodeJob:
 
     def _named(self, half: str) -> str:
         """Readable words, then a digest of everything else."""
-        setup = self.setup
+        setup, conditions = self.setup, self.setup.conditions
         exactly = (
-            setup.task, half, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{self.repeat}",
+            setup.task, half, setup.agent, setup.model, conditions.geo, f"s{setup.seed}", f"r{self.repeat}",
             setup.scenario or "own",
             *(["held_out"] if setup.held_out else []),
-            *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
-            *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
-            *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
-            *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
-            *([str(setup.screen)] if setup.screen is not ScreenSize.STANDARD else []),
-            *([str(setup.language)] if setup.language is not Language.ENGLISH else []),
+            *replace(conditions, geo=GeoInput.FULL).tags,
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"
@@ -402,7 +364,7 @@ def read_plan(path: Path) -> dict[str, Any]:
         UserError: it cannot be read, is not TOML, or has a wrong or surplus field.
     """
     document = read_toml(path)
-    document = replace(document, table=without_mode(document.table, str(path)))
+    document = replace(document, table=plan_values(document.table, str(path)))
     document.read(Plan)
     return document.table
 
@@ -425,7 +387,7 @@ def make_plan(values: Mapping[str, Any]) -> Plan:
     Raises:
         UserError: a field is unknown, missing, empty or of the wrong type.
     """
-    plan = checked(Plan, values, lambda steps: ("the plan", dotted(steps)))
+    plan = checked(Plan, plan_values(values, "the plan"), lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:
         raise UserError('the plan has no agent; give agents = ["asurada"] in the file, or --agents asurada')
     given = {entry.name: getattr(plan, entry.name) for entry in fields(plan)}

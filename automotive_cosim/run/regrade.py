@@ -64,7 +64,8 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
         UserError: the task no longer exists, or the commands that it allows have changed.
     """
     assert stored.counterfactual is not None
-    instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters, language=row.language)
+    spoken = row.conditions.language
+    instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters, language=spoken)
     if stored.allowed_writes != instance.half.allowed_writes:
         raise UserError(f"the commands that {row.task} allows have changed; rerun {row.id}")
     return judge(

@@ -10,7 +10,7 @@ from itertools import zip_longest
 from pathlib import Path
 
 from automotive_cosim.agents import PROFILES, AgentSettings, NativeAgent, make_agent
-from automotive_cosim.agents.settings import geo_input, parts
+from automotive_cosim.agents.settings import parts
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
 from automotive_cosim.contracts.plain import counted
@@ -22,14 +22,11 @@ from automotive_cosim.errors import (
     UserError,
 )
 from automotive_cosim.formats import files
-from automotive_cosim.formats.checked import checked
-from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, read_setup, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.former import without_mode
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import EpisodeJob, make_plan
@@ -110,8 +107,7 @@ def _single(folder: Path, episode: str) -> list[Compared]:
         raise UserError(f"{folder} holds a single run; omit {episode!r}")
     record = files.read_json(folder / "episode.json")
     steps = [files.parse_json(line) for line in (folder / "steps.jsonl").read_bytes().splitlines()]
-    values = without_mode(record["manifest"]["setup"], str(folder / "episode.json"))
-    setup = checked(EpisodeSetup, values, lambda keys: ("episode.json", dotted(keys)))
+    setup = read_setup(record["manifest"]["setup"], str(folder / "episode.json"))
     collector, _ = _again(setup, steps, _channels(setup), record["agent_error"])
     return compare(steps, collector.steps)
 
@@ -119,7 +115,7 @@ def _single(folder: Path, episode: str) -> list[Compared]:
 def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
     """The channels that its agent was given; no model is needed."""
     if setup.agent in PROFILES:
-        settings = AgentSettings(geo_input(setup.geo), parts(setup.without))
+        settings = AgentSettings(setup.conditions, parts(setup.without))
         return PROFILES[setup.agent].under(settings).channels
     if setup.agent == ScriptedAgent.name:
         return ALL

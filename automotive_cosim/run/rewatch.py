@@ -69,13 +69,8 @@ def watched(row: WatchRow, steps: Sequence[Json], simulations: Simulations | Non
         row.seed,
         row.agent,
         row.model,
-        row.geo,
-        row.clock,
-        row.latency_s,
+        row.conditions,
         row.repeat,
-        row.see,
-        row.feedback,
-        row.screen,
         "" if row.scenario == family_named(row.family).scenario else row.scenario,
     )
     player = Player(steps[1:], frozenset(row.channels), row.agent_error)

@@ -16,6 +16,7 @@ from typing import Annotated, Any, Generic, TypeVar, get_type_hints
 from pydantic import AliasChoices, Field, TypeAdapter, ValidationError
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.run.former import line_of, with_conditions
 
 T = TypeVar("T")
 R = TypeVar("R", bound="JobRow")
@@ -23,7 +24,8 @@ R = TypeVar("R", bound="JobRow")
 
 @dataclass(frozen=True, slots=True)
 class InColumns:
-    """Marks a field that holds a dataclass: in a data frame it becomes columns that begin with this word."""
+    """Marks a field that holds a dataclass: in a data frame it becomes columns that begin with this word, if it has
+    one."""
 
     prefix: str
 
@@ -76,12 +78,22 @@ def from_line(kind: type[R], line: bytes) -> R:
     Raises:
         ValueError: the line is not JSON, or a field is missing or of another type; the message gives the first.
     """
+    read = _form(kind).adapter.validate_json
     try:
-        return _form(kind).adapter.validate_json(line, strict=True)
+        return read(line, strict=True)
     except ValidationError as error:
-        first = error.errors(include_url=False)[0]
-        where = ".".join(map(str, first["loc"]))
-        raise ValueError(f"{where}: {first['msg']}" if where else first["msg"]) from error
+        refused = error
+    try:  # an earlier version may have written it
+        former = line_of(line)
+        if former is not None:
+            return read(former, strict=True)
+    except ValidationError as error:
+        refused = error
+    except ValueError:  # it is not even JSON
+        pass
+    first = refused.errors(include_url=False)[0]
+    where = ".".join(map(str, first["loc"]))
+    raise ValueError(f"{where}: {first['msg']}" if where else first["msg"]) from refused
 
 
 def from_json(kind: type[T], values: Json) -> T:
@@ -90,7 +102,7 @@ def from_json(kind: type[T], values: Json) -> T:
     Raises:
         ValueError: a field is missing or of another type.
     """
-    return _form(kind).adapter.validate_python(values)
+    return _form(kind).adapter.validate_python(with_conditions(values))
 
 
 def steady(row: JobRow) -> Json:
@@ -111,7 +123,8 @@ def columns(record: object) -> Json:
         if inside is None:
             made[name] = value
         else:
-            made |= {f"{inside.prefix}_{part}": each for part, each in (value or {}).items()}
+            before = inside.prefix and f"{inside.prefix}_"
+            made |= {f"{before}{part}": each for part, each in (value or {}).items()}
     return made
 
 

@@ -27,7 +27,7 @@ import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
-from automotive_cosim.run.former import without_mode
+from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.record import STAMPED, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
 from automotive_cosim.run.versions import installed
@@ -172,7 +172,7 @@ def read_manifest(folder: Path) -> Json:
         )
     if not isinstance(manifest.get("plan"), dict):
         raise UserError(f"{path} has no plan; give a results folder as `automotive-cosim eval` wrote it")
-    return manifest | {"plan": without_mode(manifest["plan"], str(path))}
+    return manifest | {"plan": plan_values(manifest["plan"], str(path))}
 
 
 def read_evaluation(folder: Path) -> Json:

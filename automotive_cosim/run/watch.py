@@ -10,22 +10,20 @@ from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
-from automotive_cosim.cockpit.size import ScreenSize
-from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
-from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.contracts import Element, Json
+from automotive_cosim.contracts.given import Clock
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.plan import DrivePlan
 from automotive_cosim.drives.result import DriveResult, result_of
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watch import Watch
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
-from automotive_cosim.episode.specification import Clock, End
-from automotive_cosim.geo.breaches import limit_at
-from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import Channel, See
+from automotive_cosim.episode.specification import End
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.models.base import ModelReply
 from automotive_cosim.run.episode import Replayed, Timed
@@ -41,13 +39,8 @@ class WatchSetup:
     seed: int = 0
     agent: str = ""
     model: str = "none"
-    geo: GeoInput = GeoInput.FULL
-    clock: Clock = Clock.FIXED
-    latency_s: float = 0.0
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
     repeat: int = 0
-    see: See = See.BOTH
-    feedback: FeedbackDetail = FeedbackDetail.QUIET
-    screen: ScreenSize = ScreenSize.STANDARD
     scenario: str = ""
     """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
 
@@ -87,13 +80,8 @@ def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
         season=family.season,
         agent=setup.agent,
         model=setup.model,
-        geo=setup.geo,
-        clock=setup.clock,
-        latency_s=setup.latency_s,
+        conditions=setup.conditions,
         repeat=setup.repeat,
-        see=setup.see,
-        feedback=setup.feedback,
-        screen=setup.screen,
     )
 
 
@@ -120,7 +108,7 @@ def run_watch(
     *,
     simulations: Simulations | None = None,
     watchers: Sequence[WatchWatcher] = (),
-    plan: DrivePlan | None = None,
+    plan: DriveScript | None = None,
 ) -> WatchRecord:
     """Runs a drive to its end and judges it.
 
@@ -140,7 +128,7 @@ def run_watch(
     listener = Listeners(watchers)
     if setup.scenario and plan is None:
         plan = elsewhere(family_named(setup.family).draw(setup.seed), setup.scenario)
-    spec = DriveSpec(setup.family, setup.seed, setup.geo, setup.see, setup.feedback, setup.screen)
+    spec = DriveSpec(setup.family, setup.seed, setup.conditions)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
         watch = spec.begin(own, agent.channels, listener, plan)
@@ -152,7 +140,7 @@ def run_watch(
         end = play(watch, agent, (meter.stepped, *(watcher.acted for watcher in watchers)), meter.thought_s)
         record = WatchRecord(
             row=judged_row(planned, end, channels, result_of(watch), **meter.totals()),
-            timeline=_timeline(watch),
+            timeline=timeline(watch),
             steps=tuple(_steps(watch)),
         )
         for watcher in watchers:
@@ -170,13 +158,13 @@ class _Meter:
 
     def thought_s(self) -> float:
         """Simulated seconds of the last answer."""
-        seconds = self._setup.latency_s
+        seconds = self._setup.conditions.latency_s
         agent = self._agent
         if isinstance(agent, Replayed):
             seconds = agent.thought_s
-        elif self._setup.clock is Clock.MODEL and isinstance(agent, Timed):
+        elif self._setup.conditions.clock is Clock.MODEL and isinstance(agent, Timed):
             seconds += agent.answer_s
-        elif self._setup.clock is Clock.MODEL and isinstance(agent, Thinker):
+        elif self._setup.conditions.clock is Clock.MODEL and isinstance(agent, Thinker):
             seconds += sum(stage.reply.seconds for stage in agent.stages if stage.reply is not None)
         seconds = round(seconds, 1)
         self._thought_s += seconds
@@ -198,20 +186,6 @@ class _Meter:
             "cost_usd": sum(reply.cost_usd for reply in replies),
             "model_seconds": round(sum(reply.seconds for reply in replies), 3),
         }
-
-
-def _timeline(watch: Watch) -> Json:
-    def speeds(moments: Sequence[Moment]) -> list[float]:
-        return [round(moment.driving.speed_mps * KMH_PER_MPS, 1) for moment in moments]
-
-    limits = [limit_at(moment.context).kmh for moment in watch.moments]
-    begun_s = watch.moments[0].time_s
-    return {
-        "time_s": [round(moment.time_s - begun_s, 1) for moment in watch.moments],
-        "speed_kmh": speeds(watch.moments),
-        "limit_kmh": [None if limit is None else round(limit, 1) for limit in limits],
-        "baseline_kmh": speeds(watch.baseline_moments),
-    }
 
 
 def _steps(watch: Watch) -> list[Json]:

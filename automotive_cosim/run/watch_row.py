@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated
 
-from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.drives.harm import Harm
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.drives.score import Score
-from automotive_cosim.episode.specification import Clock, End
-from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import Channel, See
+from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.specification import End
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.run.row import InColumns, JobRow, Volatile
 
 
@@ -28,16 +26,8 @@ class WatchRow(JobRow):
     season: str
     agent: str
     model: str
-    geo: GeoInput = GeoInput.FULL
-    clock: Clock = Clock.FIXED
-    latency_s: float = 0.0
-    """Simulated seconds added to each answer."""
-    see: See = See.BOTH
-    """How the agent saw the screen."""
-    feedback: FeedbackDetail = FeedbackDetail.VERBOSE
-    """What it was told about its last action."""
-    screen: ScreenSize = ScreenSize.STANDARD
-    """Size of the car's screen."""
+    conditions: Annotated[Conditions, InColumns("")] = Conditions()  # noqa: RUF009, frozen
+    """What the agent was given, and at what speed."""
     repeat: int = 0
     end: End = End.ERROR
     agent_error: str | None = None
@@ -53,6 +43,8 @@ class WatchRow(JobRow):
     """Seconds for which messages took the driver's eyes off the road."""
     events: tuple[JudgedEvent, ...] = ()
     acts: tuple[JudgedAct, ...] = ()
+    unwatched_from_s: float | None = None
+    """From when nobody watched: the agent had failed or spent its budget. None if somebody did to the end."""
     steps: int = 0
     waits: int = 0
     wakes: int = 0

@@ -16,20 +16,18 @@ from typing import Annotated, Any
 from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
-from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.episode.specification import Clock, Conditions
+from automotive_cosim.episode.conditions import ConditionLists, combined
+from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import CosimError, UnknownNameError, UserError
-from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.controls import GeoInput
-from automotive_cosim.interface.feedback import FeedbackDetail
-from automotive_cosim.interface.observe import See
 from automotive_cosim.run.batch import Progress, run_jobs, spent_before
 from automotive_cosim.run.executor import Executor, Runner
+from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.meter import Budget, MeterHandle
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import check_agent
@@ -48,7 +46,7 @@ DRIVE_LIMITS = Limits(steps=100_000, sim_s=1800.0, wall_s=7200.0, agent_s=7200.0
 
 
 @dataclass(frozen=True, slots=True)
-class WatchPlan:
+class WatchPlan(ConditionLists):
     """What an evaluation of drives runs; every list is combined with every other."""
 
     drives: Annotated[tuple[str, ...], MinLen(1)]
@@ -61,24 +59,8 @@ class WatchPlan:
     """Models for the agents that use one."""
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
     """Seeds; each draws its own drive."""
-    geo: Annotated[tuple[Annotated[str, OneOf(tuple(GeoInput), "geo control")], ...], MinLen(1)] = ("full",)
-    """What an agent is told about its place."""
-    clock: Annotated[str, OneOf(tuple(Clock))] = str(Clock.FIXED)
-    """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
-    latency: Annotated[tuple[Annotated[float, Ge(0), Le(600)], ...], MinLen(1)] = (0.0,)
-    """Simulated seconds added to each answer, before its action."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each drive, for models that do not answer the same twice."""
-    see: Annotated[tuple[Annotated[str, OneOf(tuple(See), "way to see the screen")], ...], MinLen(1)] = ("both",)
-    """How an agent sees the screen."""
-    feedback: Annotated[tuple[Annotated[str, OneOf(tuple(FeedbackDetail), "kind of feedback")], ...], MinLen(1)] = (
-        "quiet",
-    )
-    """What an agent is told about its last action."""
-    screen: Annotated[tuple[Annotated[str, OneOf(tuple(ScreenSize), "size of the screen")], ...], MinLen(1)] = (
-        "1280x720",
-    )
-    """Size of the car's screen."""
     wall_s: Annotated[float, Gt(0)] = DRIVE_LIMITS.wall_s
     """Wall seconds of one drive; exceeding them is an infrastructure error."""
 
@@ -95,13 +77,14 @@ class WatchPlan:
         """
         for scenario in self.scenarios:
             elsewhere(FAMILIES[families_named(self.drives)[0]].draw(0), scenario)
-        for agent, model, see in {(job.setup.agent, job.model, job.setup.see) for job in self.jobs()}:
+        for agent, model, conditions in {(job.setup.agent, job.model, job.setup.conditions) for job in self.jobs()}:
             if agent == HUMAN:
                 raise UserError("agent 'human' needs a person; use `automotive-cosim serve --play`")
             if ":" in agent:
                 check_agent(agent)
             else:
-                Conditions(frozenset(make_agent(agent, model, AgentSettings(see=see)).channels), see=see)
+                made = make_agent(agent, model, AgentSettings(conditions))
+                SessionSetup(frozenset(made.channels), conditions)
 
     def jobs(self) -> tuple[WatchJob, ...]:
         """Every drive, grouped by warm simulation.
@@ -112,16 +95,14 @@ class WatchPlan:
         limits = replace(DRIVE_LIMITS, wall_s=self.wall_s)
         found = {
             job.id: job
-            for family, scenario, agent, model, seed, geo, latency_s, repeat, (see, feedback, screen) in product(
+            for family, scenario, agent, model, seed, conditions, repeat in product(
                 families_named(self.drives),
                 self.scenarios or ("",),
                 self.agents,
                 self.models,
                 self.seeds,
-                self.geo,
-                self.latency,
+                combined(self),
                 range(self.repeats),
-                product(self.see, self.feedback, self.screen),
             )
             for job in [
                 WatchJob(
@@ -130,13 +111,8 @@ class WatchPlan:
                         seed,
                         agent,
                         model if agent in MODELLED or agent == HUMAN else NO_MODEL,
-                        GeoInput(geo),
-                        Clock(self.clock),
-                        latency_s,
+                        conditions,
                         repeat,
-                        See(see),
-                        FeedbackDetail(feedback),
-                        ScreenSize(screen),
                         scenario,
                     ),
                     limits,
@@ -183,13 +159,9 @@ class WatchJob:
         """Its id, which can be a file name."""
         setup = self.setup
         exactly = (
-            setup.family, setup.agent, setup.model, setup.geo, f"s{setup.seed}", f"r{setup.repeat}",
+            setup.family, setup.agent, setup.model, setup.conditions.geo, f"s{setup.seed}", f"r{setup.repeat}",
             *([setup.scenario] if setup.scenario else []),
-            *([f"{setup.clock}_clock"] if setup.clock != Clock.FIXED else []),
-            *([f"latency{setup.latency_s:g}"] if setup.latency_s else []),
-            *([f"see_{setup.see}"] if setup.see is not See.BOTH else []),
-            *([str(setup.feedback)] if setup.feedback is not FeedbackDetail.QUIET else []),
-            *([str(setup.screen)] if setup.screen is not ScreenSize.STANDARD else []),
+            *replace(setup.conditions, geo=GeoInput.FULL).tags,
         )  # fmt: skip
         words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
         return f"{words[:150]}-{digest(exactly)[:8]}"
@@ -220,7 +192,7 @@ def make_watch_plan(values: Mapping[str, Any]) -> WatchPlan:
     Raises:
         UserError: a field is unknown, missing, empty or of the wrong type.
     """
-    plan = checked(WatchPlan, values, lambda steps: ("the plan", dotted(steps)))
+    plan = checked(WatchPlan, plan_values(values, "the plan"), lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:
         raise UserError("the plan has no agent; give --agents asurada, or --agents rule-perfect")
     given = {entry.name: getattr(plan, entry.name) for entry in fields(plan)}
@@ -279,7 +251,7 @@ def run_watch_job(
     """
     setup = job.setup
     try:
-        settings = AgentSettings(setup.geo, seed=setup.seed, see=setup.see)
+        settings = AgentSettings(setup.conditions, seed=setup.seed)
         with agent_for(setup.agent, job.model, settings, job.limits, nursery, meter) as agent:
             record = run_watch(job.id, setup, agent, simulations=simulations)
     except CosimError as error:

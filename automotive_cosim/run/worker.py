@@ -95,7 +95,7 @@ def run_with(
 def agent_of(job: EpisodeJob, nursery: Nursery, meter: MeterHandle | None = None) -> AbstractContextManager[Agent]:
     """The agent of a job; see ``agent_for``."""
     setup = job.setup
-    settings = AgentSettings(setup.geo, seed=setup.seed, see=setup.see)
+    settings = AgentSettings(setup.conditions, seed=setup.seed)
     return agent_for(setup.agent, job.model, settings, job.limits, nursery, meter)
 
 

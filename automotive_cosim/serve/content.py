@@ -11,14 +11,17 @@ from typing import Any
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.drives.judge import EventOutcome
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json, read_json
 from automotive_cosim.report.page import PARTS, element
 from automotive_cosim.run.drive_recorder import SHOWN as DRIVE_STEPS
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.former import with_conditions
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.road import NAME as ROAD
 from automotive_cosim.run.road_recorder import is_being_written
+from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
 from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.run.words import action_in_words
@@ -29,11 +32,10 @@ from automotive_cosim.studies.live import LIVE, WATCHED
 
 HEAD = (
     *("task", "half", "scenario", "agent", "model", "seed", "success", "steps", "sim_seconds", "end", "error"),
-    *("goal", "geo", "see", "feedback", "screen", "language", "tokens_in", "tokens_out", "model_seconds"),
+    *("goal", "tokens_in", "tokens_out", "model_seconds"),
 )
 SHOWN = (
-    *("id", "task", "half", "scenario", "agent", "model", "geo", "see", "feedback", "screen"),
-    *("language", "seed", "repeat"),
+    *("id", "task", "half", "scenario", "agent", "model", "seed", "repeat"),
     *("dimension", "module"),
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )
@@ -141,7 +143,11 @@ class Content:
             ),
             "rows": [
                 {name: getattr(row, name) for name in SHOWN}
-                | {"missing": row.missing, "has_trace": (entry.folder / "traces" / f"{row.id}.jsonl.gz").is_file()}
+                | {
+                    "conditions": row.conditions.labels,
+                    "missing": row.missing,
+                    "has_trace": (entry.folder / "traces" / f"{row.id}.jsonl.gz").is_file(),
+                }
                 for row in rows.values()
             ],
         }
@@ -254,7 +260,7 @@ class Content:
     def _drives(self, entry: ShelfEntry, manifest: Json) -> Json:
         """The plan and the rows of an evaluation of drives."""
         rows = read_rows(entry.folder, WatchRow)
-        names = ("id", "family", "scenario", "season", "agent", "model", "geo", "see", "feedback", "seed", "repeat",
+        names = ("id", "family", "scenario", "season", "agent", "model", "seed", "repeat",
                  "value", "error", "error_kind", "end", "steps")  # fmt: skip
         return {
             "id": entry.id,
@@ -265,6 +271,7 @@ class Content:
             "rows": [
                 {name: getattr(row, name) for name in names}
                 | {
+                    "conditions": row.conditions.labels,
                     "met": row.score and row.score.met,
                     "events": row.score and row.score.events,
                     "nuisances": row.score and row.score.nuisances,
@@ -293,8 +300,10 @@ class Content:
             row = {}
         events, acts = row.get("events", ()), row.get("acts", ())
         head |= {name: row[name] for name in HEAD if row.get(name) is not None}
+        if row:
+            head |= {name: value for name, value in _head(row).items() if name in ("screen", "conditions")}
         head["task"] = row.get("family", head["task"])
-        met = [event for event in events if not event["bait"]]
+        met = [event for event in events if not event["lookalike"]]
         return {
             **head,
             "id": entry.id,
@@ -363,7 +372,7 @@ def _kind(plan: Json) -> str:
 
 def _span(event: Json) -> Json:
     """An event of a drive, from when it becomes observable to its deadline or its end."""
-    told = {name: event[name] for name in ("kind", "words", "bait", "outcome", "obliged_s", "deadline_s")}
+    told = {name: event[name] for name in ("kind", "words", "lookalike", "outcome", "obliged_s", "deadline_s")}
     return {**told, "from_s": event["observable_s"], "to_s": event["deadline_s"] or event["ends_s"]}
 
 
@@ -371,9 +380,9 @@ def _drive_timeline(events: Sequence[Json], acts: Sequence[Json]) -> list[Json]:
     """Every instant that the page lists, in order."""
     told = []
     for event in events:
-        what = f"{'look-alike' if event['bait'] else 'event'} {event['kind']}: {event['words']}"
+        what = f"{'look-alike' if event['lookalike'] else 'event'} {event['kind']}: {event['words']}"
         told.append((event["observable_s"], "event", f"{what} [{event['outcome']}]"))
-        if event["deadline_s"] is not None and not event["bait"]:
+        if event["deadline_s"] is not None and not event["lookalike"]:
             told.append((event["deadline_s"], "deadline", f"deadline of {event['kind']}"))
     told += [(act["time_s"], "alert", f"{act['words']} [{act['worth']}]") for act in acts]
     return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(told)]
@@ -404,7 +413,10 @@ def _road_lines(path: Path, *_stamp: int) -> list[Json]:
 
 def _head(result: Json) -> Json:
     started = (result.get("manifest") or {}).get("started")
-    return {name: result.get(name) for name in HEAD} | {"started": started}
+    told = with_conditions(result).get("conditions")
+    conditions = Conditions() if told is None else from_json(Conditions, told)
+    seen = {"screen": conditions.screen, "conditions": conditions.labels}
+    return {name: result.get(name) for name in HEAD} | seen | {"started": started}
 
 
 def _object(path: Path) -> Json:

@@ -16,7 +16,8 @@ from pathlib import Path
 from typing import Generic
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.specification import Clock
+from automotive_cosim.contracts.given import Clock
+from automotive_cosim.episode.conditions import Conditions, with_conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import ALL_SUITES, HUMAN, EpisodeJob, Limits, Plan
@@ -31,6 +32,8 @@ FOLDER, DRIVES = "people", "people-drives"
 MOST_S, MOST_STEPS = 120.0, 1000
 """Simulated seconds, and acts, after which a played episode ends."""
 LONGEST_NAME = 40
+CONDITIONS = Conditions(clock=Clock.MODEL)
+"""A person's seconds pass on the road."""
 
 
 def people_plan(
@@ -41,16 +44,19 @@ def people_plan(
     scenario: str | None = None,
 ) -> Plan:
     """The plan in which everyone plays every task with every seed. A person's seconds pass on the road."""
-    return Plan(
-        agents=(HUMAN,),
-        models=tuple(people),
-        tasks=tuple(tasks),
-        suite=ALL_SUITES,
-        scenarios=() if scenario is None else (scenario,),
-        seeds=tuple(seeds),
-        repeats=repeats,
-        clock=str(Clock.MODEL),
-        limits=Limits(steps=MOST_STEPS, hard_steps=MOST_STEPS, sim_s=MOST_S),
+    limits = Limits(steps=MOST_STEPS, hard_steps=MOST_STEPS, sim_s=MOST_S)
+    return with_conditions(
+        Plan(
+            agents=(HUMAN,),
+            models=tuple(people),
+            tasks=tuple(tasks),
+            suite=ALL_SUITES,
+            scenarios=() if scenario is None else (scenario,),
+            seeds=tuple(seeds),
+            repeats=repeats,
+            limits=limits,
+        ),
+        CONDITIONS,
     )
 
 
@@ -174,7 +180,7 @@ class PlayedDrives(PlayedRows[WatchRow]):
         """
 
         def at(repeat: int) -> WatchJob:
-            return WatchJob(WatchSetup(family, seed, HUMAN, name, clock=Clock.MODEL, repeat=repeat))
+            return WatchJob(WatchSetup(family, seed, HUMAN, name, CONDITIONS, repeat))
 
         return at(self._first(lambda repeat: at(repeat).id))
 
@@ -189,11 +195,11 @@ class PlayedDrives(PlayedRows[WatchRow]):
 
     def plan_of(self, rows: Sequence[WatchRow]) -> Json:
         """See ``PlayedRows.plan_of``."""
-        return WatchPlan(
+        plan = WatchPlan(
             drives=tuple(sorted({row.family for row in rows})),
             agents=(HUMAN,),
             models=tuple(sorted({row.model for row in rows})),
             seeds=tuple(sorted({row.seed for row in rows})),
-            clock=str(Clock.MODEL),
             repeats=1 + max((row.repeat for row in rows), default=0),
-        ).as_json()
+        )
+        return with_conditions(plan, CONDITIONS).as_json()

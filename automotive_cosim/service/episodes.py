@@ -78,7 +78,7 @@ class _OnTask:
         spec = self.spec
         hand_over = SituationFinder(spec, simulations, listener=listener).find(SeedSource(spec.seed).next())
         try:
-            return Episode.take_over(hand_over, spec.conditions(channels))
+            return Episode.take_over(hand_over, spec.session(channels))
         except BaseException:
             hand_over.world.close()
             raise

@@ -12,7 +12,7 @@ from automotive_cosim.cosim.car import ALTERNATIVES_FROM_S
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.session import Session
-from automotive_cosim.episode.specification import Conditions
+from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.studies.plan import DriveJob, named
 from automotive_cosim.traffic.base import Traffic
@@ -41,7 +41,7 @@ def decided(agent: str, job: DriveJob, traffic: Traffic) -> None:
     if world.moment.driving.end is not None:
         return
     player.reset(GOAL)
-    play(Session.begin(world, GOAL, Conditions(player.channels, max_steps=job.plan.agent_steps), drive), player)
+    play(Session.begin(world, GOAL, SessionSetup(player.channels, max_steps=job.plan.agent_steps), drive), player)
 
 
 def _coupled(job: DriveJob, traffic: Traffic) -> CoSimulation:

@@ -22,7 +22,7 @@ class Signs:
         """Edges whose limit was ever changed, with the original speeds of their lanes."""
         self._over: dict[str, list[float]] = {}
         self._timed = {edge.edge_id for edge in network.edges.values() if edge.timed_limits}
-        self._minute: datetime | None = None
+        self._seen: tuple[datetime, str] | None = None
         self.changed = False
         """Whether a limit has changed since this was last set to False."""
 
@@ -56,15 +56,15 @@ class Signs:
                 others = tuple(each for each in self._edges[edge_id].timed_limits if each is not limit)
                 self._post(edge_id, others, school_zone=self._as_built[edge_id][0].school_zone)
 
-    def follow(self, local_time: datetime) -> None:
-        """Applies the limits of this time of day."""
-        minute = local_time.replace(second=0, microsecond=0)
-        if minute == self._minute:
+    def follow(self, local_time: datetime, weather: str = "") -> None:
+        """Applies the limits of this time, and of this weather (``posted.WEATHERS``)."""
+        seen = local_time.replace(second=0, microsecond=0), weather
+        if seen == self._seen:
             return
-        self._minute = minute
+        self._seen = seen
         for edge_id in sorted(self._timed):
             edge = self._edges[edge_id]
-            limit = in_force(edge.timed_limits, local_time)
+            limit = in_force(edge.timed_limits, local_time, weather)
             if limit is not edge.timed_limit:
                 self._keep(edge_id)
                 self._edges[edge_id] = replace(edge, timed_limit=limit)
@@ -74,7 +74,7 @@ class Signs:
         edge = replace(self._edges[edge_id], timed_limits=limits, school_zone=school_zone)
         self._edges[edge_id] = edge
         self._timed.add(edge_id)
-        self._minute = None
+        self._seen = None
         self.changed = True
 
     def _keep(self, edge_id: str) -> None:

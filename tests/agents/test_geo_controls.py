@@ -9,6 +9,7 @@ import pytest
 from automotive_cosim import scenarios
 from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.interface.controls import SPOTS, GeoInput, unrelated
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.skills import SKILLS
@@ -116,16 +117,16 @@ def test_the_other_places_are_in_different_countries():
 
 @pytest.mark.parametrize("control", list(GeoInput))
 def test_agent_and_environment_agree_on_the_channels(control):
-    agent = make_agent("asurada", settings=AgentSettings(geo=control))
+    agent = make_agent("asurada", settings=AgentSettings(Conditions(GeoInput(control))))
     assert agent.channels == frozenset(Channel) - control.withheld
 
 
 def _won(simulations, agent: str, geo: GeoInput = GeoInput.FULL) -> Iterator[bool | None]:
     """Half by half, played when asked for."""
     for half in ("first", "second"):
-        setup = EpisodeSetup(half=half, geo=GeoInput(geo))
+        setup = EpisodeSetup(half=half, conditions=Conditions(GeoInput(geo)))
         yield run_episode(
-            setup, make_agent(agent, settings=AgentSettings(geo=geo)), simulations=simulations
+            setup, make_agent(agent, settings=AgentSettings(Conditions(GeoInput(geo)))), simulations=simulations
         ).success
 
 
@@ -143,6 +144,6 @@ def test_with_a_wrong_place_a_pairs_success_falls_to_that_without_place(simulati
 
 
 def test_the_record_says_under_which_control_it_was_made(simulations):
-    setup = EpisodeSetup(**QUICK, geo=GeoInput.WRONG)
+    setup = EpisodeSetup(**QUICK, conditions=Conditions(GeoInput.WRONG))
     result = run_episode(setup, make_agent("no-op"), simulations=simulations)
-    assert json.loads(json.dumps(result.as_json(), default=str))["geo"] == "wrong"
+    assert json.loads(json.dumps(result.as_json(), default=str))["conditions"]["geo"] == "wrong"

@@ -9,6 +9,7 @@ import pytest
 from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, ModelAgent, StageName, make_agent
 from automotive_cosim.agents.memory import Memory
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, GoalStatus, Observation
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError, UserError
 from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import Channel, See
@@ -125,7 +126,7 @@ def test_an_unreadable_answer_is_recorded_with_what_was_wrong(agent, observation
     assert made.stages[-1].name is StageName.ACT
     assert made.stages[-1].reply.text == "no idea"
     made.act(observation("x", feedback=Feedback(FeedbackCode.MALFORMED, "no JSON")))
-    assert "Step 1: none unreadable answer -> malformed no JSON; answer in form" in model.asked[2].text
+    assert "Step 1: unreadable answer -> malformed no JSON; answer in form" in model.asked[2].text
 
 
 def test_an_answer_that_was_cut_off_is_told_so(agent, observation):
@@ -189,11 +190,11 @@ def test_the_rule_models_m3a_does_what_its_t3a_does(seen):
         ({"without": frozenset({AgentPart.GPS})}, {Channel.GPS}),
         ({"without": frozenset({AgentPart.CONTEXT})}, {Channel.CONTEXT}),
         ({"without": frozenset({AgentPart.SCREEN})}, {Channel.SCREENSHOT}),
-        ({"geo": GeoInput.GPS}, {Channel.CONTEXT}),
-        ({"geo": GeoInput.CONTEXT}, {Channel.GPS}),
-        ({"geo": GeoInput.NONE}, {Channel.GPS, Channel.CONTEXT}),
-        ({"geo": GeoInput.IRRELEVANT}, {Channel.GPS}),
-        ({"geo": GeoInput.WRONG}, set()),
+        ({"conditions": Conditions(GeoInput.GPS)}, {Channel.CONTEXT}),
+        ({"conditions": Conditions(GeoInput.CONTEXT)}, {Channel.GPS}),
+        ({"conditions": Conditions(GeoInput.NONE)}, {Channel.GPS, Channel.CONTEXT}),
+        ({"conditions": Conditions(GeoInput.IRRELEVANT)}, {Channel.GPS}),
+        ({"conditions": Conditions(GeoInput.WRONG)}, set()),
     ],
     ids=["gps", "context", "screen", "geo gps", "geo context", "geo none", "geo irrelevant", "geo wrong"],
 )
@@ -258,7 +259,10 @@ def test_unknown_agents_and_models_suggest_the_nearest():
 
 def test_the_picture_alone_comes_without_list_and_index(agent, observation):
     made, model = agent(
-        'Action: {"action_type": "click", "x": 5, "y": 6}', profile="m3a", sees=True, see=See.PICTURE
+        'Action: {"action_type": "click", "x": 5, "y": 6}',
+        profile="m3a",
+        sees=True,
+        conditions=Conditions(see=See.PICTURE),
     )
     seen = observation("Watch my speed", elements=None, screenshot=np.zeros((720, 1280, 3), np.uint8))
     assert made.channels.isdisjoint({Channel.ELEMENTS})
@@ -273,4 +277,4 @@ def test_the_picture_alone_comes_without_list_and_index(agent, observation):
 @pytest.mark.parametrize(("profile", "sees"), [("t3a", True), ("m3a", False)])
 def test_the_picture_alone_needs_an_agent_and_a_model_with_eyes(agent, profile, sees):
     with pytest.raises(UserError, match="would see nothing"):
-        agent("", profile=profile, sees=sees, see=See.PICTURE)
+        agent("", profile=profile, sees=sees, conditions=Conditions(see=See.PICTURE))

@@ -6,6 +6,7 @@ from typing import Any, cast
 
 import pytest
 
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import UserError
@@ -33,6 +34,6 @@ def test_a_law_that_says_otherwise_is_named_as_the_reason() -> None:
 
 def test_a_task_that_needs_the_picture_is_refused_without_it() -> None:
     for see in (See.PICTURE, See.BOTH):
-        SituationFinder(EpisodeSpec("hard_theos_pump", see=see), cast("Any", None))
+        SituationFinder(EpisodeSpec("hard_theos_pump", conditions=Conditions(see=see)), cast("Any", None))
     with pytest.raises(UserError, match="hard_theos_pump needs the picture, which see = tree withholds"):
-        SituationFinder(EpisodeSpec("hard_theos_pump", see=See.TREE), cast("Any", None))
+        SituationFinder(EpisodeSpec("hard_theos_pump", conditions=Conditions(see=See.TREE)), cast("Any", None))

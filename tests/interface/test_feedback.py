@@ -10,12 +10,13 @@ import pytest
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import word
-from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import Action, ActionType, Direction, Element, Feedback, FeedbackCode
 from automotive_cosim.contracts.ids import resource_id as shown_id
-from automotive_cosim.episode.specification import Conditions, feedback_of, see_of
-from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.specification import SessionSetup
+from automotive_cosim.errors import UserError
 from automotive_cosim.interface.feedback import control, quiet
 from automotive_cosim.interface.observe import ALL, Channel, See
 from tests.laws import over
@@ -89,7 +90,7 @@ def test_what_is_read_out_is_heard(parked: Cockpit, speed_kmh: float, is_heard: 
     assert (" wrote: " in told(car, touch(car, "thread.read")).text) is is_heard
 
 
-@over(SCREENS)
+@over(pages())
 def test_no_touch_tells_a_signal(screen: str, parked: Cockpit) -> None:
     car = parked.copy()
     car.visit(screen)
@@ -123,7 +124,7 @@ def test_without_a_list_an_index_names_nothing(parked: Cockpit) -> None:
 
 @pytest.mark.parametrize("see", See)
 def test_each_way_to_see_leaves_something_of_the_screen(see: See) -> None:
-    given = Conditions(see=see).given
+    given = SessionSetup(conditions=Conditions(see=see)).given
     assert ALL - given == see.withheld
     assert given & {Channel.ELEMENTS, Channel.SCREENSHOT}
 
@@ -131,19 +132,13 @@ def test_each_way_to_see_leaves_something_of_the_screen(see: See) -> None:
 @pytest.mark.parametrize(("channel", "see"), [(Channel.ELEMENTS, See.PICTURE), (Channel.SCREENSHOT, See.TREE)])
 def test_an_agent_is_not_blinded(channel: Channel, see: See) -> None:
     with pytest.raises(UserError, match=f"--see {see}"):
-        Conditions(frozenset({channel}), see=see)
-    assert Conditions(frozenset({Channel.GPS}), see=see).given == {Channel.GPS}
-
-
-@pytest.mark.parametrize("by_name", [see_of, feedback_of])
-def test_an_unknown_condition_is_refused(by_name: object) -> None:
-    with pytest.raises(UnknownNameError, match="tre"):
-        by_name("tre")  # type: ignore[operator]
+        SessionSetup(frozenset({channel}), Conditions(see=see))
+    assert SessionSetup(frozenset({Channel.GPS}), Conditions(see=see)).given == {Channel.GPS}
 
 
 def test_the_drawn_list_has_the_boxes_and_only_the_letters(parked: Cockpit) -> None:
     car = parked.copy()
-    for screen in SCREENS:
+    for screen in pages():
         car.visit(screen)
         both = list(zip(car.elements(), car.drawn(), strict=True))
         assert all(one.bbox_pixels == other.bbox_pixels for one, other in both)

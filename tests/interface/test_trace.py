@@ -11,7 +11,7 @@ import pytest
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.interface.trace import HASHED, Hash, Step, canonical, plain, sha256
 from automotive_cosim.traffic.fork import Simulations
 
@@ -22,7 +22,7 @@ APPS = ("climate", "map", "media", "home", "climate", "vehicle")
 def steps(simulations: Simulations) -> list[Step]:
     finder = SituationFinder(EpisodeSpec("hvac_fan_max", scenario="grid"), simulations)
     world = finder.find(SeedSource(2).next()).world
-    session = Session.begin(world, "", Conditions(frozenset()))
+    session = Session.begin(world, "", SessionSetup(frozenset()))
     for app in APPS:
         session.step(Action(ActionType.OPEN_APP, app_name=app))
     session.refuse("no action")

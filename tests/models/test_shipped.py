@@ -1,6 +1,6 @@
 """The conversations that ship with the package play to their recorded ends, without a model."""
 
-from dataclasses import asdict
+from dataclasses import replace
 
 import pytest
 
@@ -8,8 +8,8 @@ from automotive_cosim.agents import FORMATS, PROFILES, make_agent
 from automotive_cosim.errors import ModelError, UnknownNameError
 from automotive_cosim.models import ChatMessage, make_model
 from automotive_cosim.models.replay import conversation, shipped
-from automotive_cosim.replay.make import EPISODE
-from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.replay.make import SETUP
+from automotive_cosim.run.episode import run_episode
 from automotive_cosim.traffic.fork import Simulations
 
 
@@ -22,7 +22,7 @@ def test_there_is_one_for_every_native_format_and_every_agent_with_a_model() -> 
 def test_each_plays_to_its_recorded_end(name: str, simulations: Simulations) -> None:
     told = conversation(name)
     model = f"replay/{name}" + (f"?format={name}" if told["agent"] == "native" else "")
-    setup = EpisodeSetup(**asdict(EPISODE) | told["episode"], agent=told["agent"], model=model)
+    setup = replace(SETUP, **told["episode"], agent=told["agent"], model=model)
     result = run_episode(setup, make_agent(told["agent"], model), simulations=simulations)
     assert result.error is None, "make them anew: python -m automotive_cosim.replay.make"
     assert (str(result.end), result.success) == (told["end"], told["success"])

@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.cli import results as commands
+from automotive_cosim.contracts.given import Clock, GeoInput
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.evaluation import all_tables, write_report
@@ -153,8 +155,8 @@ def test_held_out_phrasings_stand_apart(folder):
 
 
 def test_a_slower_agent_is_a_contestant_of_its_own():
-    slow = Contestant("t3a", "rules", "none", "model", 3.0)
-    assert slow != Contestant("t3a", "rules", "none")
+    slow = Contestant("t3a", "rules", Conditions(GeoInput.NONE, Clock.MODEL, 3.0))
+    assert slow != Contestant("t3a", "rules", Conditions(GeoInput.NONE))
     assert slow.label == "t3a, rules stand-in, geo none, model's clock, latency 3 s"
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.report import findings
 from automotive_cosim.report.case import contrast
 from automotive_cosim.report.results import Results
@@ -20,9 +21,20 @@ from automotive_cosim.tasking.task import Dimension, Module
 def row(task="t", half="first", geo="full", success=True, *, agent="asurada", **more):
     named = {"module": Module.ROAD, "dimension": Dimension.DRIVING_ALIGNMENT} | more
     return EpisodeRow(
-        id=f"{task}-{half}-{agent}-{geo}", pair=f"{task}-{agent}-{geo}", task=task, half=half, geo=geo, agent=agent,
-        model="rules", seed=0, repeat=0, scenario="grid", success=success, **({"feedback": "quiet"} | named),
+        id=f"{task}-{half}-{agent}-{geo}", pair=f"{task}-{agent}-{geo}", task=task, half=half, agent=agent,
+        conditions=Conditions.named({"geo": geo}),
+        model="rules", seed=0, repeat=0, scenario="grid", success=success, **named,
     )  # fmt: skip
+
+
+def under(row, **values):
+    """The row under other conditions."""
+    return replace(row, conditions=Conditions.named(row.conditions.as_json() | values))
+
+
+def by(name, found):
+    """The table of success by a condition."""
+    return next(table for table in findings.by_condition(found) if table.name == f"by_{name}")
 
 
 def results(*rows, folder=None):
@@ -36,12 +48,12 @@ def figures(overspeed_m, ttc_s=5.0):
 
 def test_success_by_language_stands_side_by_side():
     rows = [
-        replace(row(task, success=success, language=language), id=f"{task}-{language}")
+        replace(under(row(task, success=success), language=language), id=f"{task}-{language}")
         for task in "ab"
         for language, success in (("en", True), ("ja", task == "a"))
     ]
-    assert findings.language(results(*rows[::2])).rows == ()
-    table = findings.language(results(*rows))
+    assert by("language", results(*rows[::2])).rows == ()
+    table = by("language", results(*rows))
     assert table.columns == ("Contestant", "en", "ja")
     ((_, english, japanese),) = table.rows
     assert str(english).startswith("100%")
@@ -78,29 +90,28 @@ def test_a_clustered_mean_draws_whole_clusters():
 
 def test_success_by_condition_is_set_side_by_side():
     rows = [
-        replace(row(task, success=success, see=see), id=f"{task}-{see}")
+        replace(under(row(task, success=success), see=see), id=f"{task}-{see}")
         for task, see, success in [("a", "tree", True), ("b", "tree", True), ("a", "picture", False)]
     ]
-    table = findings.sight(results(*rows))
+    table = by("see", results(*rows))
     ((label, tree, picture),) = table.rows
     assert table.columns == ("Contestant", "tree", "picture")
     assert label == "asurada, rules stand-in"
     assert str(tree).startswith("100%")
     assert str(picture).startswith("0%")
-    assert findings.feedback(results(*rows)).rows == ()
+    assert by("feedback", results(*rows)).rows == ()
     assert {each.label for each in results(*rows).contestants} == {
         "asurada, rules stand-in, tree alone",
         "asurada, rules stand-in, picture alone",
     }
     heard = [
-        replace(each, see="both", feedback=how)
-        for each, how in zip(rows, ("quiet", "quiet", "verbose"), strict=True)
+        under(each, see="both", feedback=how) for each, how in zip(rows, ("quiet", "quiet", "verbose"), strict=True)
     ]
-    assert findings.feedback(results(*heard)).columns == ("Contestant", "quiet", "verbose")
+    assert by("feedback", results(*heard)).columns == ("Contestant", "quiet", "verbose")
     assert "verbose feedback" in results(heard[2]).contestants[0].label
     sizes = ("1280x720", "1920x720", "1080x1920")
-    drawn = [replace(each, see="both", screen=size) for each, size in zip(rows, sizes, strict=True)]
-    assert findings.screen(results(*drawn)).columns == ("Contestant", *sizes)
+    drawn = [under(each, see="both", screen=size) for each, size in zip(rows, sizes, strict=True)]
+    assert by("screen", results(*drawn)).columns == ("Contestant", *sizes)
     assert "1080x1920 screen" in results(drawn[2]).contestants[0].label
 
 

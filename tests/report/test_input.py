@@ -3,6 +3,7 @@
 import pytest
 
 from automotive_cosim.agents import FORMATS
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.report.results import Contestant
 from automotive_cosim.report.summary import input_of
 
@@ -19,10 +20,10 @@ from automotive_cosim.report.summary import input_of
     ],
 )
 def test_the_input_is_named(agent: str, model: str, geo: str, said: str) -> None:
-    assert input_of(Contestant(agent, model, geo)) == said
+    assert input_of(Contestant(agent, model, Conditions.named({"geo": geo}))) == said
 
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_a_gap_of_a_format_is_named(form: str) -> None:
-    said = input_of(Contestant("native", f"local/m?format={form}", "full"))
+    said = input_of(Contestant("native", f"local/m?format={form}"))
     assert ("show_alert" in said) == ("show_alert" in FORMATS[form].lacks)

@@ -7,7 +7,8 @@ from xml.etree import ElementTree
 import pytest
 
 import automotive_cosim
-from automotive_cosim.episode.specification import Clock
+from automotive_cosim.contracts.given import Clock
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.regression import as_json, changes, junit, markdown
 from automotive_cosim.run.collect import failed, planned
@@ -94,8 +95,10 @@ def test_runs_that_share_nothing_are_refused(tmp_path):
 
 
 def test_people_are_compared_with_themselves_and_beside_an_agent_it_is_said_where_to_look(tmp_path):
-    people = write(tmp_path / "people", agent="human", model="heron", clock=Clock.MODEL)
-    later = write(tmp_path / "later", lost={2}, agent="human", model="heron", clock=Clock.MODEL)
+    people = write(tmp_path / "people", agent="human", model="heron", conditions=Conditions(clock=Clock.MODEL))
+    later = write(
+        tmp_path / "later", lost={2}, agent="human", model="heron", conditions=Conditions(clock=Clock.MODEL)
+    )
     (episodes, _) = changes(people, later)
     assert (episodes.contestant.label, episodes.count("lost")) == ("human, heron, model's clock", 1)
     named = r"people \(human, heron, model's clock\) and \S+ \(asurada.*\) have no .* serve"

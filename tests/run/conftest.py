@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.agents import Agent, make_agent
+from automotive_cosim.episode.conditions import TABLE, Conditions
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher, run_episode
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
@@ -48,8 +49,10 @@ def run(tmp_path: Path, simulations: Simulations) -> Callable[..., Episode]:
 
     def run_(agent: str | Agent = "oracle", out: str = "out", **names: object) -> Episode:
         player = make_agent(agent) if isinstance(agent, str) else agent
+        named = {name: names.pop(name) for name in [each.name for each in TABLE] if name in names}
         setup = EpisodeSetup(
-            **({"task": TASK, "scenario": "grid", "agent": player.name, "model": player.model} | names)
+            **({"task": TASK, "scenario": "grid", "agent": player.name, "model": player.model} | names),
+            conditions=Conditions.named(named),
         )
         memory = Memory()
         watchers = [Recorder(tmp_path / out, setup, {}), memory]

@@ -1,14 +1,15 @@
 """What an answer takes passes on the road, is recorded, and is repeated exactly."""
 
 import json
+from dataclasses import replace
 
 import pytest
 
 from automotive_cosim.agents import make_agent
 from automotive_cosim.agents.base import Stage, StageName
-from automotive_cosim.episode.specification import Clock
+from automotive_cosim.contracts.given import Clock
 from automotive_cosim.models import ModelReply
-from automotive_cosim.report.findings import think_time
+from automotive_cosim.report.findings import by_condition
 from automotive_cosim.report.results import Results, contestant
 from automotive_cosim.run.collect import planned
 from automotive_cosim.run.coverage import Coverage
@@ -84,7 +85,7 @@ def _planned(**values):
 def test_each_latency_is_an_episode_of_its_own():
     rows = _planned(latency=[0, 1, 3])
     assert len({row.id for row in rows}) == 3
-    assert {row.latency_s for row in rows} == {0.0, 1.0, 3.0}
+    assert {row.conditions.latency_s for row in rows} == {0.0, 1.0, 3.0}
     assert _planned()[0].id == _planned(latency=[0])[0].id
     assert _planned(clock="model")[0].id != _planned()[0].id
 
@@ -95,7 +96,8 @@ def test_success_is_shown_over_think_time(tmp_path):
         "oracle (told the answer)",
         "oracle (told the answer), latency 3 s",
     }
-    table = think_time(Results(tmp_path, {}, rows, Coverage(2, 0, shared=frozenset(row.id for row in rows))))
+    whole = Results(tmp_path, {"plan": {}}, rows, Coverage(2, 0, shared=frozenset(row.id for row in rows)))
+    [table] = [table for table in by_condition(whole) if table.rows]
     assert table.columns == ("Contestant", "0 s", "3 s")
     assert len(table.rows) == 1
-    assert think_time(Results(tmp_path, {}, rows[:1], Coverage(1, 0))).rows == ()
+    assert not any(table.rows for table in by_condition(replace(whole, rows=rows[:1])))

@@ -260,7 +260,7 @@ def test_what_only_the_picture_tells_is_not_planned_for_the_list_alone():
         assert made.beyond_the_list() == ()
     mixed = plan(tasks=["picture", "hard_which_nora"], suite="hard", see=["tree", "both"])
     assert set(mixed.beyond_the_list()) == pictured
-    assert {job.setup.task for job in mixed.jobs() if job.setup.see == "tree"} == {"hard_which_nora"}
+    assert {job.setup.task for job in mixed.jobs() if job.setup.conditions.see == "tree"} == {"hard_which_nora"}
     with pytest.raises(UserError, match="need the picture, which see = tree withholds"):
         plan(tasks=["picture"], suite="hard", see=["tree"]).check(dry=True)
 
@@ -268,7 +268,7 @@ def test_what_only_the_picture_tells_is_not_planned_for_the_list_alone():
 def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
     chosen = ["hvac_fan_max", "hard_car_wash", "hard_language_midway"]
     both = plan(tasks=chosen, language=["en", "fr"])
-    assert {(job.setup.task, job.setup.language) for job in both.jobs()} == {
+    assert {(job.setup.task, job.setup.conditions.language) for job in both.jobs()} == {
         ("hard_car_wash", "en"),
         ("hard_car_wash", "fr"),
     }
@@ -276,7 +276,9 @@ def test_tasks_without_words_in_a_language_are_left_out_of_all_of_them():
     assert both.left_out() == ()
     english = plan(tasks=chosen)
     assert english.unspoken() == ()
-    assert {job.id for job in english.jobs()} > {job.id for job in both.jobs() if job.setup.language == "en"}
+    assert {job.id for job in english.jobs()} > {
+        job.id for job in both.jobs() if job.setup.conditions.language == "en"
+    }
     assert len({job.situation for job in both.jobs()}) == len(both.jobs())
 
 

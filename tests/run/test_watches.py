@@ -14,10 +14,11 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim.cli.main import app
+from automotive_cosim.contracts.given import Clock
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.score import together
 from automotive_cosim.drives.watchers import RulePerfect
-from automotive_cosim.episode.specification import Clock
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.drives import LEAST_DRIVES, grouped, interval, tables, told, write_drives
 from automotive_cosim.run.batch import Progress
@@ -247,7 +248,7 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
         def answer_s(self) -> float:
             return 0.4 + 1.7 * (len(self._told) % 4)
 
-    setup = WatchSetup("grid_june", 1, "slow", clock=Clock.MODEL, latency_s=0.5)
+    setup = WatchSetup("grid_june", 1, "slow", conditions=Conditions(clock=Clock.MODEL, latency_s=0.5))
     agent = Slow()
     with (
         closing(Simulations()) as simulations,
@@ -276,16 +277,12 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
 @pytest.mark.slow
 def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None:
     values = PLAN | {"agents": ["rule-perfect"]}
-    assert {job.setup.latency_s for job in make_watch_plan(values | {"latency": [0, 1, 3, 10]}).jobs()} == {
-        0,
-        1,
-        3,
-        10,
-    }
+    jobs = make_watch_plan(values | {"latency": [0, 1, 3, 10]}).jobs()
+    assert {job.setup.conditions.latency_s for job in jobs} == {0, 1, 3, 10}
     two = make_watch_plan(values | {"latency": [0, 10]})
     assert run_watch_plan(two, tmp_path / "e", executor=Processes(1), retries=0).judged == 2
     rows = read_rows(tmp_path / "e", WatchRow).values()
-    scores = {each.latency_s: mine[0].value for each, mine in grouped(rows).items()}
+    scores = {each.conditions.latency_s: mine[0].value for each, mine in grouped(rows).items()}
     assert scores[10.0] < scores[0.0]  # type: ignore[operator]
     assert "latency 10 s" in write_drives(tmp_path / "e").read_text("utf-8")
 

@@ -11,7 +11,7 @@ from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.proof.prover import GATES, Prover
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasking.verdict import Verdict
@@ -34,7 +34,7 @@ def played(simulations) -> Play:
 
     def run(task: Task, half: str, agent: Agent, seed: int = SEED) -> Episode:
         finder = SituationFinder(EpisodeSpec(task.id, half), simulations)
-        episode = Episode.take_over(finder.find(SeedSource(seed).next()), Conditions(agent.channels))
+        episode = Episode.take_over(finder.find(SeedSource(seed).next()), SessionSetup(agent.channels))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
             agent.brief(episode.instance, drawn=episode.world.cockpit.drawn)

@@ -13,9 +13,10 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.cockpit.aboard import Seat
 from automotive_cosim.cockpit.language import Language, word
 from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
-from automotive_cosim.episode.specification import Conditions, EpisodeSpec, SeedSource
+from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import UserError
 from automotive_cosim.interface.spaces import GOAL_BYTES, SAID_BYTES
 from automotive_cosim.tasking.dialogue import NEUTRAL, topic_of
@@ -192,9 +193,9 @@ def test_the_oracle_wins_in_traffic(language: Language, simulations: Simulations
     """What the words of the driver, the screens and the verdict share; the rest of the suite is solved without
     traffic (``test_solutions.py``)."""
     for task in ON_THE_GRID:
-        spec = EpisodeSpec(task, scenario="grid", language=language)
+        spec = EpisodeSpec(task, scenario="grid", conditions=Conditions(language=language))
         hand_over = SituationFinder(spec, simulations).find(SeedSource(0).next())
-        with closing(Episode.take_over(hand_over, Conditions())) as episode:
+        with closing(Episode.take_over(hand_over, SessionSetup())) as episode:
             oracle = Oracle()
             oracle.reset(episode.goal)
             oracle.brief(episode.instance)

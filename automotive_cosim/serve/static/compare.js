@@ -4,7 +4,7 @@ import { ask, counted, h, outcome, plain, seconds } from "./dom.js";
 import { RoadRecord, RoadView } from "./road.js";
 
 const MOST = 400;
-const label = (row) => [row.agent, row.model !== "none" && row.model, row.geo !== "full" && `geo ${row.geo}`, row.see !== "both" && row.see, row.feedback !== "quiet" && row.feedback].filter(Boolean).join(", ");
+const label = (row) => [row.agent, row.model !== "none" && row.model, ...row.conditions].filter(Boolean).join(", ");
 const instance = (row) => [row.task, row.half, row.scenario, row.seed, row.repeat].join(" ");
 const won = (row) => (row?.success === true ? "won" : row?.success === false ? "lost" : row ? "error" : "not run");
 const CHANGES = { "": "all instances", differs: "different outcome", better: "only the second won", worse: "only the first won", both: "both won", neither: "neither won" };

@@ -123,6 +123,6 @@ function episode(id, row) {
   const agent = row.model === "none" || row.model === "rules" ? row.agent : `${row.agent} (${row.model})`;
   const why = row.error ? h("span", { class: "muted" }, `${row.error_kind}: ${row.error}`) : row.missing.map(plain).join(", ");
   return h("tr", {}, h("td", {}, name), h("td", {}, row.half), h("td", {}, row.scenario),
-    h("td", {}, agent + (row.geo === "full" ? "" : `, geo ${row.geo}`)), h("td", {}, String(row.seed)),
+    h("td", {}, [agent, ...row.conditions].join(", ")), h("td", {}, String(row.seed)),
     h("td", { title: seconds(row.sim_seconds) }, String(row.steps)), h("td", {}, outcome(row)), h("td", {}, why));
 }

@@ -1,0 +1,68 @@
+"""The options of the conditions: one for each line of their table."""
+
+from __future__ import annotations
+
+import inspect
+from collections.abc import Callable, Mapping
+from typing import Annotated, Any, TypeVar
+
+import typer
+
+from automotive_cosim.cli.batches import words
+from automotive_cosim.cli.options import number
+from automotive_cosim.episode.conditions import TABLE, Condition, condition
+
+F = TypeVar("F", bound=Callable[..., Any])
+
+
+def takes_conditions(*, lists: bool = False) -> Callable[[F], F]:
+    """Gives a command an option for each condition; it gets those that were given as ``**conditions``.
+
+    Args:
+        lists: whether an option takes several values, separated by commas.
+    """
+
+    def given(command: F) -> F:
+        signature = inspect.signature(command, eval_str=True)
+        own = [each for each in signature.parameters.values() if each.kind is not inspect.Parameter.VAR_KEYWORD]
+        more = [_parameter(each, lists=lists) for each in TABLE]
+        any_command: Any = command
+        any_command.__signature__ = signature.replace(parameters=[*own, *more])
+        return command
+
+    return given
+
+
+def values_of(conditions: Mapping[str, str | None]) -> dict[str, list[Any]]:
+    """The values between the commas of the options that were given, by the conditions' names.
+
+    Raises:
+        UserError: an option is empty.
+    """
+    return {
+        name: [_value(condition(name), word) for word in words(condition(name).word, text)]
+        for name, text in conditions.items()
+        if text is not None
+    }
+
+
+def given(conditions: Mapping[str, str | None]) -> dict[str, Any]:
+    """The values of the options that were given, by the conditions' names."""
+    return {name: _value(condition(name), text) for name, text in conditions.items() if text is not None}
+
+
+def _value(each: Condition, word: str) -> Any:
+    return word if each.choices else number(*each.bounds)(word)
+
+
+def _parameter(each: Condition, *, lists: bool) -> inspect.Parameter:
+    choices = f" {'Separated by commas' if lists else 'One of'}: {', '.join(each.choices)}." if each.choices else ""
+    option = typer.Option(
+        f"--{each.word}",
+        help=each.help + choices + (" Several are separated by commas." if lists and not each.choices else ""),
+        metavar=None if each.choices else "SECONDS",
+        show_default=f"{each.default:g}" if isinstance(each.default, float) else str(each.default),
+    )
+    return inspect.Parameter(
+        each.name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option]
+    )

@@ -1,0 +1,96 @@
+"""What an agent may be given: the channels of its observation, and the values of each condition."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Channel(StrEnum):
+    """Channels that can be withheld from an agent; goal, time and feedback never are."""
+
+    SCREENSHOT = "screenshot"
+    ELEMENTS = "elements"
+    VEHICLE = "vehicle"
+    GPS = "gps"
+    CONNECTIVITY = "connectivity"
+    CONTEXT = "context"
+
+
+ALL = frozenset(Channel)
+PLACE = frozenset({Channel.GPS, Channel.CONTEXT})
+
+
+class GeoInput(StrEnum):
+    """What an agent is told about its place; ``interface.controls`` has a table."""
+
+    FULL = "full"
+    GPS = "gps"
+    CONTEXT = "context"
+    WRONG = "wrong"
+    IRRELEVANT = "irrelevant"
+    NONE = "none"
+
+    @property
+    def withheld(self) -> frozenset[Channel]:
+        """Channels that it takes away."""
+        kept = {
+            GeoInput.GPS: {Channel.GPS},
+            GeoInput.CONTEXT: {Channel.CONTEXT},
+            GeoInput.IRRELEVANT: {Channel.CONTEXT},
+            GeoInput.NONE: set[Channel](),
+        }
+        return PLACE - kept.get(self, PLACE)
+
+    @property
+    def answers(self) -> bool:
+        """Whether the virtual sensor may be asked."""
+        return Channel.CONTEXT not in self.withheld and self is not GeoInput.IRRELEVANT
+
+
+class See(StrEnum):
+    """How an agent sees the screen."""
+
+    BOTH = "both"
+    TREE = "tree"
+    """As the list of elements."""
+    PICTURE = "picture"
+    """As the picture: no list, no ids, no descriptions; an action has to give a point."""
+
+    @property
+    def withheld(self) -> frozenset[Channel]:
+        """Channels that it takes away."""
+        return {
+            See.BOTH: frozenset[Channel](),
+            See.TREE: frozenset({Channel.SCREENSHOT}),
+            See.PICTURE: frozenset({Channel.ELEMENTS}),
+        }[self]
+
+
+class FeedbackDetail(StrEnum):
+    """How much an agent is told about its last action; ``interface.feedback`` has a table."""
+
+    QUIET = "quiet"
+    VERBOSE = "verbose"
+
+
+class Language(StrEnum):
+    """The languages of car and driver, by the codes of ``HMI.LANGUAGE``."""
+
+    ENGLISH = "en"
+    FRENCH = "fr"
+    GERMAN = "de"
+    JAPANESE = "ja"
+
+    @property
+    def words(self) -> str:
+        """Its name in English: ``French``."""
+        return self.name.capitalize()
+
+
+class Clock(StrEnum):
+    """What an agent's answer costs on the road, besides the action itself."""
+
+    FIXED = "fixed"
+    """The same for every answer, by default nothing."""
+    MODEL = "model"
+    """The seconds that the model really took, in addition."""

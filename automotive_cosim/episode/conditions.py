@@ -1,0 +1,279 @@
+"""Conditions: what an agent is given, and at what speed; the same for a task's half and for a drive.
+
+A condition is one field of ``Conditions``: its name, type, default, help and words. Plans, ids, options, rows,
+report tables, the leaderboard and the doors loop over ``TABLE``; only what the condition does stands elsewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import MISSING, dataclass, field, fields, make_dataclass, replace
+from enum import StrEnum
+from itertools import product
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar, get_args, get_type_hints
+
+from annotated_types import Ge, Le, MinLen
+
+from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import Clock, FeedbackDetail, GeoInput, Language, See
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.annotations import OneOf
+from automotive_cosim.formats.docs import field_docs
+
+
+@dataclass(frozen=True, slots=True)
+class Words:
+    """How a condition is called where results are read."""
+
+    heading: str
+    """Heading of its column."""
+    label: str
+    """A value in words, as a format."""
+    tag: str
+    """A value that is not the default, in ids."""
+    title: str
+    """Title of the report's table of success by it."""
+    note: str
+    """What its values mean, below that table."""
+    is_speed: bool = False
+    """Whether it is about how fast the agent answers, and not about what it is given."""
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class Conditions:
+    """What an agent is given, and at what speed."""
+
+    geo: Annotated[
+        GeoInput,
+        OneOf(GeoInput, "geo control"),
+        Words(
+            "Geo", "geo {}", "{}", "Success by geo control", "What the agent is told about the place of the car."
+        ),
+    ] = GeoInput.FULL
+    """What the agent is told about its place."""
+    clock: Annotated[
+        Clock,
+        OneOf(Clock),
+        Words(
+            "Clock", "{}'s clock", "{}_clock", "Success by clock",
+            "Whether the seconds that a model takes to answer pass on the road (model) or not (fixed).",
+            is_speed=True,
+        ),
+    ] = Clock.FIXED  # fmt: skip
+    """Whether the seconds that a model takes to answer pass on the road (``model``) or not (``fixed``)."""
+    latency_s: Annotated[
+        float,
+        Ge(0),
+        Le(600),
+        Words(
+            "Latency s", "latency {:g} s", "latency{:g}", "Success over think time",
+            "Simulated seconds added to every answer before its action.", is_speed=True,
+        ),
+    ] = 0.0  # fmt: skip
+    """Simulated seconds added to each answer, before its action."""
+    see: Annotated[
+        See,
+        OneOf(See, "way to see the screen"),
+        Words(
+            "Sees", "{} alone", "see_{}", "Success by how the agent sees the screen",
+            "The list of elements, the picture, or both; the picture alone comes without ids and descriptions.",
+        ),
+    ] = See.BOTH  # fmt: skip
+    """How the agent sees the screen."""
+    feedback: Annotated[
+        FeedbackDetail,
+        OneOf(FeedbackDetail, "kind of feedback"),
+        Words(
+            "Feedback", "{} feedback", "{}", "Success by feedback",
+            "Quiet feedback names the control and says if it worked; verbose also says what changed in the car.",
+        ),
+    ] = FeedbackDetail.QUIET  # fmt: skip
+    """What the agent is told about its last action: the control and whether it worked (``quiet``), or also what
+    changed in the car (``verbose``)."""
+    screen: Annotated[
+        ScreenSize,
+        OneOf(ScreenSize, "size of the screen"),
+        Words(
+            "Screen", "{} screen", "{}", "Success by the size of the screen",
+            "1920x720 shows the map and music beside each app; 1080x1920 shows them above it.",
+        ),
+    ] = ScreenSize.STANDARD  # fmt: skip
+    """Size of the car's screen."""
+    language: Annotated[
+        Language,
+        OneOf(Language, "language"),
+        Words(
+            "Language", "in {0.words}", "{}", "Success by language",
+            "The driver's words and the screens are in this language; what other people write stays in English.",
+        ),
+    ] = Language.ENGLISH  # fmt: skip
+    """What the driver speaks, and the car shows."""
+
+    @classmethod
+    def named(cls, values: Mapping[str, object]) -> Conditions:
+        """Conditions by name, with values as words or numbers.
+
+        Raises:
+            UserError: there is no such condition or value.
+        """
+        return cls(**{name: condition(name).value(value) for name, value in values.items()})
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """Whatever is not the default, in words."""
+        return tuple(each.label(self) for each in TABLE if not each.is_default(self))
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The same without what is about speed: what the agent is given."""
+        return tuple(each.label(self) for each in INPUTS if not each.is_default(self))
+
+    @property
+    def tags(self) -> tuple[str, ...]:
+        """Whatever is not the default, for ids."""
+        return tuple(each.words.tag.format(each.of(self)) for each in TABLE if not each.is_default(self))
+
+    def as_json(self) -> Json:
+        """Values by name."""
+        return {each.name: each.of(self) for each in TABLE}
+
+
+@dataclass(frozen=True, slots=True)
+class Condition:
+    """A line of the table."""
+
+    name: str
+    kind: Any
+    """Type of its values, with the annotations that say which are valid."""
+    default: Any
+    help: str
+    words: Words
+
+    @property
+    def choices(self) -> tuple[str, ...]:
+        """Its values, if they are words."""
+        kind = get_args(self.kind)[0]
+        return tuple(map(str, kind)) if issubclass(kind, StrEnum) else ()
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """The least and the greatest value of one that is a number."""
+        found = {type(mark): mark for mark in get_args(self.kind)}
+        return float(found[Ge].ge), float(found[Le].le)
+
+    @property
+    def word(self) -> str:
+        """Its name without the unit, as options and older plans have it."""
+        return self.name.removesuffix("_s")
+
+    def of(self, conditions: Conditions) -> Any:
+        """Its value."""
+        return getattr(conditions, self.name)
+
+    def is_default(self, conditions: Conditions) -> bool:
+        """Whether its value is the default."""
+        return bool(self.of(conditions) == self.default)
+
+    def label(self, conditions: Conditions) -> str:
+        """Its value in words."""
+        return self.words.label.format(self.of(conditions))
+
+    def told(self, value: object) -> str:
+        """A value as the heading of a column."""
+        return str(value) if self.choices else f"{value:g} s"
+
+    def value(self, given: object) -> Any:
+        """A value from a word, or from a number.
+
+        Raises:
+            UserError: it has no such value.
+        """
+        kind, *annotations = get_args(self.kind)
+        if self.choices:
+            if given not in self.choices:
+                what = next((each.what for each in annotations if isinstance(each, OneOf)), "") or self.name
+                raise UnknownNameError(what, str(given), self.choices)
+            return kind(given)
+        least, most = self.bounds
+        if not isinstance(given, int | float) or not least <= given <= most:
+            raise UserError(f"{self.name} is {given!r}; give a number from {least:g} to {most:g}")
+        return kind(given)
+
+
+def _table() -> Iterator[Condition]:
+    docs, kinds = field_docs(Conditions), get_type_hints(Conditions, include_extras=True)
+    for each in fields(Conditions):
+        words = next(mark for mark in get_args(kinds[each.name]) if isinstance(mark, Words))
+        assert each.default is not MISSING
+        yield Condition(each.name, kinds[each.name], each.default, docs[each.name], words)
+
+
+TABLE = tuple(_table())
+"""Every condition, in the order of the fields."""
+INPUTS = tuple(each for each in TABLE if not each.words.is_speed)
+"""Those that say what an agent is given; whoever paces an agent from outside has no others."""
+
+
+def condition(name: str) -> Condition:
+    """A line of the table.
+
+    Raises:
+        UnknownNameError: there is none of that name.
+    """
+    found = next((each for each in TABLE if each.name == name), None)
+    if found is None:
+        raise UnknownNameError("condition", name, [each.name for each in TABLE])
+    return found
+
+
+# --- lists of values, of which a plan combines each with every other --------------------------------------
+
+if TYPE_CHECKING:
+
+    @dataclass(frozen=True, slots=True)
+    class ConditionLists:
+        """Values of each condition."""
+
+else:
+    ConditionLists = make_dataclass(
+        "ConditionLists",
+        [
+            (each.name, Annotated[tuple[each.kind, ...], MinLen(1)], field(default=(each.default,)))
+            for each in TABLE
+        ],
+        frozen=True,
+        slots=True,
+        kw_only=True,
+        namespace={
+            "__doc__": "Values of each condition.",
+            "__module__": __name__,
+            "__field_docs__": {each.name: each.help for each in TABLE},
+        },
+    )
+
+
+def lists_of(values: ConditionLists) -> dict[str, Sequence[Any]]:
+    """The values of each condition, by its name."""
+    return {each.name: getattr(values, each.name) for each in TABLE}
+
+
+L = TypeVar("L", bound=ConditionLists)
+
+
+def with_conditions(lists: L, conditions: Conditions) -> L:
+    """Lists with these conditions alone."""
+    only: dict[str, Any] = {name: (value,) for name, value in conditions.as_json().items()}
+    return replace(lists, **only)
+
+
+def told(plan: Json) -> str:
+    """The conditions of a plan's JSON in words: ``geo full, none; language en``."""
+    lists = ((each, plan.get(each.name, [each.default])) for each in TABLE)
+    return "; ".join(f"{each.words.heading.lower()} {', '.join(map(each.told, values))}" for each, values in lists)
+
+
+def combined(values: ConditionLists) -> tuple[Conditions, ...]:
+    """Every combination of the values."""
+    lists = lists_of(values)
+    return tuple(Conditions(**dict(zip(lists, each, strict=True))) for each in product(*lists.values()))

@@ -1,0 +1,27 @@
+"""The docstrings below the fields of a class, which Python itself does not keep; they require the source code."""
+
+from __future__ import annotations
+
+import ast
+import inspect
+from itertools import pairwise
+from textwrap import dedent
+
+
+def field_docs(cls: type) -> dict[str, str]:
+    """The docstrings below the fields of a class, each on one line; a class without source names them itself."""
+    if told := cls.__dict__.get("__field_docs__"):
+        return dict(told)
+    (body,) = ast.parse(dedent(inspect.getsource(cls))).body
+    assert isinstance(body, ast.ClassDef)
+    docs = {}
+    for node, below in pairwise(body.body):
+        match node, below:
+            case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(text))):
+                docs[name] = prose(text)
+    return docs
+
+
+def prose(text: str) -> str:
+    """A docstring on one line."""
+    return " ".join(text.replace("``", "`").split())
