@@ -30,7 +30,7 @@ ZM ZW
 """
 """Where traffic keeps left."""
 MILES = """
-AG AI AS BS BZ DM FK FM GB GD GG GU GY IM IO JE KN KY LC LR MH MM MP MS PN PR PW SH TC UM US VC VG VI WS
+AG AI AS BS BZ DM FK FM GB GD GG GS GU GY IM IO JE KN KY LC LR MH MM MP MS PN PR PW SH TC UM US VC VG VI WS
 """
 """Where signs count miles per hour."""
 
