@@ -14,6 +14,7 @@ from automotive_cosim.geo.borders import country_at
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.place import LAW_OF, Atlas
 from automotive_cosim.geo.rules import Status
+from automotive_cosim.osm.country import LEFT_HAND
 from tests.laws import over
 
 CODES = sorted(
@@ -107,6 +108,10 @@ def test_every_country_has_side_units_number_and_rules(code: str) -> None:
     assert all(number.isdigit() and 2 <= len(number) <= 5 for number in law.emergency)
     lacking = {"limit", "seat_belts", "phone", "daytime_lamps", "alcohol"} - set(law.by_topic)
     assert lacking == LACKING.get(code, set())
+
+
+def test_maps_are_imported_for_the_side_of_their_country() -> None:
+    assert set(LEFT.split()) == LEFT_HAND
 
 
 def test_places_without_roads_are_the_only_ones_without_law() -> None:

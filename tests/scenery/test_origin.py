@@ -121,7 +121,9 @@ def test_weather_and_context_are_the_places(simulations) -> None:
         env.close()
     za, no = seen["ZA"], seen["NO"]
     assert za.weather.temperature_2m > no.weather.temperature_2m  # the 10th of March
-    assert (za.driving.x_m, za.driving.y_m) == (no.driving.x_m, no.driving.y_m)
+    # The grid keeps right, so in South Africa it is mirrored.
+    assert (za.driving.x_m, za.driving.distance_m) == (no.driving.x_m, no.driving.distance_m)
+    assert za.driving.heading_deg == pytest.approx((180.0 - no.driving.heading_deg) % 360.0)
     assert za.local_time.replace(tzinfo=None) == no.local_time.replace(tzinfo=None)
     assert za.local_time - no.local_time == timedelta(hours=-1)
 
