@@ -9,7 +9,7 @@ from typing import Annotated
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
-from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, lon_lat, whole_number
+from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, lon_lat, tell_opening, whole_number
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -126,6 +126,7 @@ def run(
 
     Without options, a car in Paris drives at 80 km/h where 50 is posted, and the agent is to warn the driver.
     """
+    tell_opening(*filter(None, [scenario]))
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import parts
     from automotive_cosim.cli.console import Console
