@@ -7,8 +7,8 @@ import pytest
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
-from automotive_cosim.drives.judge import ORDER, EventOutcome, Judgement, Worth, judge
-from automotive_cosim.drives.score import NUISANCE, score, together
+from automotive_cosim.drives.judge import NUISANCE, ORDER, EventOutcome, Judgement, Worth, judge
+from automotive_cosim.drives.score import score, together
 
 SPEEDING = DriveEvent(
     kind="over_limit",
@@ -267,6 +267,15 @@ def test_each_nuisance_costs_the_same() -> None:
     one, two = (score(judged(warn(105.0), *(warn(300.0 + 100 * i) for i in range(n))), 600.0) for n in (1, 2))
     assert 100.0 - one.value == pytest.approx(100 * NUISANCE / 2)
     assert one.value - two.value == pytest.approx(100.0 - one.value)
+
+
+def test_who_takes_each_look_alike_for_its_event_gains_nothing() -> None:
+    """Blue lights and plain vans, told alike; and one who tells them apart."""
+    light = replace(SPEEDING, kind="blue_light", subject="", value=None, weight=2.0)
+    van = replace(light, lookalike=True, observable_s=400.0, last_s=440.0, obliged_s=None, deadline_s=None)
+    alike = [warn(at_s, AlertKind.YIELD) for at_s in (105.0, 410.0)]
+    assert score(judged(*alike, events=(light, van)), 600.0).value == 0.0
+    assert score(judged(alike[0], events=(light, van)), 600.0).value == 100.0
 
 
 def test_on_a_drive_without_events_nothing_can_be_gained() -> None:
