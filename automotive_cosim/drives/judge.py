@@ -41,6 +41,8 @@ SWING = 2.0
 apart gains nothing."""
 ORDER = "the driver asked to leave everything else as it is"
 """What speaks against a command that no kind of event concerns."""
+NOT_DUE = "nothing that asks for it is due"
+"""What speaks against a stop, or against driving slowly, while there is only something that may come."""
 Against = Callable[[EventKind, float], str | None]
 """The fact known to the agent at a simulation time that speaks against a warning of a kind; None if none does."""
 CAUSED_S = 10.0
@@ -339,12 +341,15 @@ class _Bench:
         meant = [kind for kind in self.kinds if kind.settles(act, None) or kind.concerns(act)]
         facts = {kind.name: self.against(kind, act.time_s) for kind in meant}
         supported = [name for name, fact in facts.items() if fact is None]
-        if supported or (act.said and not meant):  # of other words nobody can say whether they are true
+        holds_back = act.alert is None and act.holds_back  # no warning: it must be due, not only true
+        if (supported and not holds_back) or (
+            act.said and not meant
+        ):  # of other words nobody can say whether they are true
             return self._supported(act, supported[0] if supported else "")
         alike = [case for case in there if case.event.lookalike and case.kind.settles(act, case.event.value)]
         for case in alike:
             case.taken = True
-        reason = "; ".join(filter(None, facts.values())) or ORDER
+        reason = "; ".join(filter(None, facts.values())) or (NOT_DUE if supported else ORDER)
         if alike:
             cost = SWING * max(case.event.weight for case in alike)
             return JudgedAct(act.time_s, act.words, Worth.LOOKALIKE, alike[0].event.kind, reason, cost)

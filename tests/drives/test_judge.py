@@ -7,7 +7,7 @@ import pytest
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
-from automotive_cosim.drives.judge import NUISANCE, ORDER, EventOutcome, Judgement, Worth, judge
+from automotive_cosim.drives.judge import NOT_DUE, NUISANCE, ORDER, EventOutcome, Judgement, Worth, judge
 from automotive_cosim.drives.score import score, together
 
 SPEEDING = DriveEvent(
@@ -223,6 +223,20 @@ def test_what_is_true_is_not_a_look_alike_either() -> None:
     """Both are there: a limit that the car almost keeps, and a lower one ahead."""
     found = judged(warn(110.0), events=(LOOKALIKE,), true=("limit_falls",))
     assert (found.acts[0].worth, found.events[0].outcome) == (Worth.NEUTRAL, EventOutcome.AVOIDED)
+
+
+def test_a_stop_must_be_due_and_not_only_true() -> None:
+    stop = WatchAct(300.0, requests=(PullOver(),))
+    meant = tuple(kind.name for kind in KINDS.values() if PullOver in kind.requests)
+    found = judged(stop, true=meant).acts[0]
+    assert (found.worth, found.reason) == (Worth.FALSE, NOT_DUE)
+    soft = replace(SPEEDING, kind="tyre", subject="", value=None)
+    assert judged(replace(stop, time_s=105.0), events=(soft,)).acts[0].worth is Worth.RIGHT
+
+
+def test_to_crawl_is_not_to_keep_a_limit() -> None:
+    speeds = {kmh: judged(WatchAct(105.0, requests=(SlowDown(kmh),))).events[0].outcome for kmh in (20.0, 45.0)}
+    assert speeds == {20.0: EventOutcome.MISSED, 45.0: EventOutcome.HIT}
 
 
 def test_what_is_true_and_was_just_told_is_a_repeat() -> None:
