@@ -233,12 +233,13 @@ def test_a_picture_comes_when_it_is_asked_for(begin: Begin) -> None:
 def test_an_agent_that_breaks_down_leaves_the_drive_to_itself(begin: Begin) -> None:
     watch = begin(120.0)
     watch.step(Action(ActionType.WAIT, seconds=5))
+    failed_s = round(watch.seconds, 1)
     watch.give_up("its process has ended")
     assert watch.end is End.AGENT_FAILED
     assert watch.seconds == pytest.approx(120.0)
     assert watch.judgement is not None
-    assert watch.unwatched_from_s == 5.0
-    assert timeline(watch)["watched_until_s"] == 5.0
+    assert watch.unwatched_from_s == failed_s < 10.0
+    assert timeline(watch)["watched_until_s"] == failed_s
 
 
 def test_nothing_that_an_agent_reads_names_an_event(begin: Begin) -> None:
