@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
 from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.geo.breaches import binding_limit
+from automotive_cosim.geo.bound import binding_limit
 from automotive_cosim.tasking.dialogue import Topic, questions
 
 
