@@ -113,7 +113,7 @@ class NativeAgent:
             {
                 "grammar": self._form.syntax.describe(self._form.verbs, *span) or None,
                 "goal": prompt.driver_words(seen),
-                "history": "\n".join(map(prompt.one_line, self._history)) or "nothing yet",
+                "history": "\n".join(map(one_line, self._history)) or "nothing yet",
                 "problem": self._problem or None,
             },
         )

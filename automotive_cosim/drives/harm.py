@@ -9,7 +9,7 @@ from itertools import pairwise
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import WatchAct
-from automotive_cosim.geo.bound import binding_limit
+from automotive_cosim.geo.breaches import binding_limit
 
 SHORT_TTC_S = 3.0
 """Time to collision below which a driver is exposed (Minderhoud and Bovy, 2001, threshold of TET)."""

@@ -56,8 +56,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.counterfactual import replayed
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
-from automotive_cosim.geo.bound import binding_limit
-from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, violations
+from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit, violations
 from automotive_cosim.geo.rules import Status
 from automotive_cosim.proof import mutations
 from automotive_cosim.proof.ground import Ground, Played, Script, finish
@@ -262,15 +261,15 @@ def optional(ground: Ground, right: Played) -> Wrong:
 
 def _may_advise(ground: Ground, kind: AlertKind, kmh: float) -> bool:
     """Whether a goal that names a speed names this one; another is wrong, and one that names none takes any."""
-    named_kmh = {found.speed_kmh for found in _alerts_in(ground.half.goal) if found.kind == kind}
+    named_kmh = {found.speed_kmh for found in _alerts_of(ground.half.goal) if found.kind == kind}
     return None in named_kmh or any(abs(speed - kmh) < 1.0 for speed in named_kmh if speed is not None)
 
 
-def _alerts_in(check: Check) -> Iterator[AlertGiven]:
+def _alerts_of(check: Check) -> Iterator[AlertGiven]:
     if isinstance(check, AlertGiven):
         yield check
     for part in getattr(check, "checks", ()):
-        yield from _alerts_in(part)
+        yield from _alerts_of(part)
 
 
 AIR = frozenset(

@@ -12,8 +12,7 @@ from dataclasses import replace
 
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.geo.bound import binding_limit
-from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH
+from automotive_cosim.geo.breaches import EQUAL_UP_TO_KMH, binding_limit
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.place import Atlas, Place, shipped
 from automotive_cosim.geo.rules import Jurisdiction, Rule, Status, Value

@@ -94,11 +94,11 @@ READINGS: Mapping[str, frozenset[Facet]] = {
 _ELEMENTS: Mapping[str, frozenset[Facet]] = {
     begin: frozenset(causes)
     for begin, causes in {
-        "home.map": {Facet.VIEW},
-        "map.": {Facet.VIEW},
-        "home.street": {Facet.VIEW, Facet.ROAD},
-        "home.turn": {Facet.VIEW},
-        "home.route": {Facet.VIEW},
+        "home.map": {Facet.VIEW, Facet.PLACE},
+        "map.": {Facet.VIEW, Facet.PLACE},
+        "home.street": {Facet.VIEW, Facet.ROAD, Facet.PLACE},
+        "home.turn": {Facet.VIEW, Facet.PLACE},
+        "home.route": {Facet.VIEW, Facet.PLACE},
         "home.speed": {Facet.SPEED},
         "home.telltales": {Facet.SPEED},  # they stand beside its figures
         "home.sign": {Facet.SIGN},
@@ -117,8 +117,9 @@ _ELEMENTS: Mapping[str, frozenset[Facet]] = {
         "": {Facet.CAR},
     }.items()
 }
-"""What elements follow from, by the beginning of their resource id; the first that fits."""
-_MAP = frozenset({Facet.VIEW})
+"""What elements follow from, by the beginning of their resource id; the first that fits. Streets have the names of
+their place."""
+_MAP = frozenset({Facet.VIEW, Facet.PLACE})
 """Elements without a name: the streets on the map."""
 _LINES: Mapping[str, frozenset[Facet]] = {
     "place": frozenset({Facet.PLACE}),

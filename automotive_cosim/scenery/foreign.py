@@ -18,7 +18,7 @@ from automotive_cosim.scenarios import Ego, Scenario, Sumo, WeatherAt
 from automotive_cosim.scenery.relocation import zone_of
 from automotive_cosim.scenery.routes import drawn_trips
 from automotive_cosim.traffic.georeference import middle
-from automotive_cosim.traffic.network import Network, read_network
+from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import DEFAULTS, FIXED, INPUTS, QUIET, Configuration, read_configuration
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
 from automotive_cosim.traffic.vetting import vet
@@ -58,8 +58,10 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         ScenarioError: the files are missing or invalid, or no two roads are connected.
     """
     configuration = read_configuration(path)
-    network = read_network(configuration.net)
-    for name in INPUTS:
+    reader = NetworkReader(configuration.net)
+    vet(configuration.net, reader, FORM)
+    network = reader.network()
+    for name in INPUTS[1:]:
         for file in configuration.files.get(name, ()):
             vet(file)
     place = NOWHERE if network.unplaced else Atlas().place(*middle(network.map))

@@ -17,7 +17,9 @@ from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_d
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.mirror import mirrored
 from automotive_cosim.traffic.network import Network, Shape, quantity, read_network
 from automotive_cosim.traffic.options import FALSE, TRUE, Configuration
 
@@ -37,15 +39,26 @@ AREAS_LIMIT = 20_000
 """Of more areas the largest are shown."""
 
 
-def read_mapped(configuration: Configuration) -> Network:
+def read_mapped(configuration: Configuration, read: Network | None = None) -> Network:
     """The network of a configuration with what is around its roads.
+
+    Args:
+        configuration: names the files.
+        read: the network without it, if it has been read.
 
     Raises:
         ScenarioError: a file is missing or invalid; a polygon with its line.
     """
-    network = read_network(configuration.net)
+    network = read or read_network(configuration.net)
     ground = read_ground(configuration, network.map)
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
+
+
+def placed(network: Network, scenario: Scenario) -> Network:
+    """A scenario's network as it drives there: on its side of the road, and at its place."""
+    if scenario.mirrored:
+        network = mirrored(network)
+    return network if scenario.origin is None else network.at(scenario.origin, scenario.language)
 
 
 def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[GroundArea, ...]:

@@ -18,7 +18,8 @@ from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import random_traffic
-from automotive_cosim.traffic.network import Network, read_network, root_of
+from automotive_cosim.traffic.mirror import mirrored, write_mirrored
+from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_network, root_of
 from automotive_cosim.traffic.redraw import redraw
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vetting import OTHER_EGO, copy_vetted, refuse_variables
@@ -26,9 +27,6 @@ from automotive_cosim.traffic.vocabulary import IGNORED, MESOSCOPIC, REFUSED, TA
 
 INPUTS = ("net-file", "route-files", "additional-files", "weight-files")
 """Options that name files."""
-
-FORMS = {"net-file": "a complete SUMO network"}
-"""What their files should be, for errors."""
 
 TRUE, FALSE = frozenset(("1", "true", "on", "yes", "x", "t")), frozenset(("0", "false", "off", "no", "-", "f", ""))
 """How SUMO's files say so."""
@@ -214,24 +212,24 @@ def command_line(options: Mapping[str, str]) -> list[str]:
     return ["sumo", *(f"--{name}={value}" for name, value in options.items())]
 
 
-def copied(configuration: Configuration, folder: Path) -> Copied:
+def copied(configuration: Configuration, folder: Path, network: NetworkReader | None = None) -> Copied:
     """The configuration with checked copies of its files.
 
     Args:
         configuration: the scenario's own.
         folder: a folder for the copies, and for nothing else but what SUMO writes.
+        network: reads the network while it is copied.
 
     Raises:
         ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``).
     """
+    net = folder / copy_vetted(configuration.net, folder, "net-file0", network, FORM)
     files = {
-        name: tuple(
-            folder / copy_vetted(file, folder, f"{name}{number}", FORMS.get(name, "a SUMO file"))
-            for number, file in enumerate(originals)
-        )
+        name: tuple(folder / copy_vetted(file, folder, f"{name}{number}") for number, file in enumerate(originals))
         for name, originals in configuration.files.items()
+        if name != "net-file"
     }
-    net = files["net-file"][0]
+    files["net-file"] = (net,)
     return Copied(
         configuration.path, net, configuration.options, files, configuration.ignored, folder, configuration.files
     )
@@ -243,13 +241,17 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
     Args:
         configuration: the scenario's own, with copies of its files.
         setup: seed, and the scenario's step lengths, scale and rerouting.
-        network: the configuration's, if it has been read.
+        network: the configuration's as it drives, if it has been read.
     """
     options = DEFAULTS | dict(configuration.options) | QUIET | FIXED
     for name, value in options.items():
         if name.endswith(EGO_LISTS):
             options[name] = ",".join(OTHER_EGO if each == EGO else each for each in value.split(","))
     inputs = {name: [file.name for file in files] for name, files in configuration.files.items()}
+    if setup.scenario.mirrored:
+        image = network or mirrored(read_network(configuration.net))
+        inputs["net-file"] = ["mirrored.net.xml"]
+        write_mirrored(configuration.net, configuration.folder / "mirrored.net.xml", image.map)
     sumo = setup.scenario.sumo
     step_s = sumo.step_length_s
     if sumo.redraws_trips:

@@ -9,15 +9,15 @@ from __future__ import annotations
 import itertools
 import re
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TextIO
+from typing import Protocol, TextIO
 from xml.sax.saxutils import escape, quoteattr
 
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file, opened
-from automotive_cosim.formats.xml import SHARED_ENCODINGS, scan
+from automotive_cosim.formats.xml import SHARED_ENCODINGS, OnStart, scan
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vocabulary import ELEMENTS, INPUTS, OUTPUTS, WRITING_LIGHT, parameter
 
@@ -45,23 +45,43 @@ NAMING = TRAVELLERS.union(INPUTS, OUTPUTS, ("ride", "transport", "stop"))
 """Elements of which an attribute may have to change."""
 
 
-def vet(path: Path) -> None:
+class Listener(Protocol):
+    """Reads a file while it is checked."""
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        """Takes the start of an element."""
+        ...
+
+    def end(self, name: str) -> None:
+        """Takes its end."""
+        ...
+
+
+def vet(path: Path, also: Listener | None = None, what: str = "a SUMO file") -> None:
     """Checks a network, a route file or an additional file, also packed, and the files that it names.
+
+    Args:
+        path: the file.
+        also: reads the file, too.
+        what: what the file should be, for errors.
 
     Raises:
         ScenarioError: it is not such a file, has an element or a device's parameter that is not known to write
             nothing, or names a file that is missing; with its line.
     """
-    _vet(path, None, "", ())
+    _vet(path, None, "", (), what, also)
 
 
-def copy_vetted(path: Path, folder: Path, name: str, what: str = "a SUMO file") -> str:
+def copy_vetted(
+    path: Path, folder: Path, name: str, also: Listener | None = None, what: str = "a SUMO file"
+) -> str:
     """Checks like ``vet`` and writes what SUMO may read, unpacked, into a folder.
 
     Args:
         path: a network, a route file or an additional file, also packed.
         folder: the folder of the copies, in which SUMO must run.
         name: what the copy is called, without an ending; copies of files that it names begin with it.
+        also: reads the file, too.
         what: what the file should be, for errors.
 
     Returns:
@@ -70,7 +90,7 @@ def copy_vetted(path: Path, folder: Path, name: str, what: str = "a SUMO file") 
     Raises:
         see ``vet``.
     """
-    return _vet(path, folder, name, (), what)
+    return _vet(path, folder, name, (), what, also)
 
 
 def refuse_variables(name: str, where: str) -> None:
@@ -83,12 +103,20 @@ def refuse_variables(name: str, where: str) -> None:
         raise ScenarioError(f"{where} names {name[:200]!r}: variables ($) are not replaced here; write it out")
 
 
-def _vet(path: Path, folder: Path | None, name: str, through: tuple[Path, ...], what: str = "a SUMO file") -> str:
+def _vet(
+    path: Path,
+    folder: Path | None,
+    name: str,
+    through: tuple[Path, ...],
+    what: str = "a SUMO file",
+    also: Listener | None = None,
+) -> str:
     if path.resolve() in through:
         raise ScenarioError(f"{path} includes itself")
     reader = _Reader(path, folder, name, (*through, path.resolve()))
     copy = None if folder is None else folder / f"{name}.xml"
-    encoding = scan(path, reader.start, reader.end, error=ScenarioError, what=what, copy=copy)
+    start, end = (reader.start, reader.end) if also is None else _both(reader, also)
+    encoding = scan(path, start, end, error=ScenarioError, what=what, copy=copy)
     if copy is not None and (reader.changed or encoding not in SHARED_ENCODINGS):
         as_it_was = copy.replace(copy.with_suffix(".given"))
         with copy.open("w", encoding="utf-8") as file:
@@ -96,6 +124,18 @@ def _vet(path: Path, folder: Path | None, name: str, through: tuple[Path, ...], 
             scan(as_it_was, writer.start, writer.end, writer.text, error=ScenarioError)
         as_it_was.unlink()
     return f"{name}.xml"
+
+
+def _both(reader: _Reader, also: Listener) -> tuple[OnStart, Callable[[str], None]]:
+    def start(name: str, attributes: dict[str, str], line: int) -> None:
+        also.start(name, attributes)
+        reader.start(name, attributes, line)
+
+    def end(name: str) -> None:
+        also.end(name)
+        reader.end(name)
+
+    return start, end
 
 
 @dataclass(slots=True)

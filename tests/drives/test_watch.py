@@ -24,6 +24,7 @@ from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
 from automotive_cosim.drives.score import Score, score
+from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm, noticed
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS, AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
@@ -236,6 +237,8 @@ def test_an_agent_that_breaks_down_leaves_the_drive_to_itself(begin: Begin) -> N
     assert watch.end is End.AGENT_FAILED
     assert watch.seconds == pytest.approx(120.0)
     assert watch.judgement is not None
+    assert watch.unwatched_from_s == 5.0
+    assert timeline(watch)["watched_until_s"] == 5.0
 
 
 def test_nothing_that_an_agent_reads_names_an_event(begin: Begin) -> None:
@@ -264,6 +267,13 @@ def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(silent: tuple
     assert found.events >= 2
     assert (found.value, found.recall, found.false_alarms) == (0.0, 0.0, 0)
     assert [m.driving for m in watch.moments] == [m.driving for m in watch.baseline_moments]
+    assert watch.unwatched_from_s is None
+    told = timeline(watch)
+    seconds = len(watch.moments)
+    for key in ("time_s", "speed_kmh", "limit_kmh", "gap_s", "ttc_s", "visibility_m", "grip", "lamps"):
+        assert len(told[key]) == seconds, key
+    assert len(told["wakes"]) == len(watch.woken) > 0
+    assert told["advice"] == []
 
 
 @pytest.mark.slow

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.applied import AppliedRule
-from automotive_cosim.geo.bound import BindingLimit, binding_limit
+from automotive_cosim.geo.breaches import BindingLimit, binding_limit
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Status
 

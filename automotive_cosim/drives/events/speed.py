@@ -19,7 +19,7 @@ from automotive_cosim.drives.events.law import (
     time_left_s,
 )
 from automotive_cosim.drives.margins import hold_s, margin_kmh
-from automotive_cosim.geo.bound import binding_limit
+from automotive_cosim.geo.breaches import binding_limit
 
 FOG_M = 1000.0
 """Sight below which there is fog (WMO No. 8)."""
