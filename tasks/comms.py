@@ -85,7 +85,7 @@ EXPLICIT = (
             "Read me what {contact} wrote, answer {words}, then do not disturb.",
             "What does {contact} want? Reply {words}, and after that nobody gets through.",
             "Play {contact}'s message to me, send back {words}, switch the ringing off.",
-            "Something new from {contact}; I'd like to hear it, they get {words}, then silence please.",
+            "Read me the new message from {contact}, reply {words}, then do not disturb, please.",
         ),
         AllOf(
             (

@@ -90,11 +90,11 @@ def _python() -> Finding:
 
 
 def _folders() -> Finding:
-    """Tasks, agents and scenarios are links in a checkout, which git on Windows leaves as text files."""
+    """A checkout that is not installed finds them by links, which git on Windows leaves as text files."""
     missing = [name for name in ("tasks", "agents", "sumo_scenarios") if not _is_package(name)]
     if not missing:
         return Finding("folders", Health.OK, "tasks, agents and scenarios found")
-    fix = "in a checkout: `git config core.symlinks true`, then `git checkout -- .`; or install the wheel"
+    fix = "install the checkout (`pip install -e .`) or the wheel, which do without the checkout's links"
     return Finding("folders", Health.MISSING, f"automotive_cosim has no {', '.join(missing)}", fix)
 
 

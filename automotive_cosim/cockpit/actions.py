@@ -7,7 +7,7 @@ model's prompt is generated from it (``grammar``), so the two cannot diverge.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from dataclasses import fields as dataclass_fields
 from enum import StrEnum
@@ -66,25 +66,28 @@ class Takes:
     """The fields of one action type. With ``target``, it requires an ``index``, or ``x`` and ``y``, never both."""
 
     about: str
+    about_by_point: str = ""
+    """The same for who is given no list of elements, where it differs."""
     target: bool = False
     required: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
 
 
 FIELDS: Mapping[ActionType, Takes] = {
-    ActionType.CLICK: Takes("tap an element or a point", target=True),
+    ActionType.CLICK: Takes("tap an element or a point", "tap a point", target=True),
     ActionType.DOUBLE_TAP: Takes("tap it twice", target=True),
     ActionType.LONG_PRESS: Takes("press and hold it", target=True),
     ActionType.INPUT_TEXT: Takes(
         "type up to 120 characters into a text field", target=True, required=("text",), optional=("clear_text",)
     ),
     ActionType.SCROLL: Takes(
-        "show what lies in that direction, on the screen or in one list",
+        "scroll the screen or a list in that direction",
+        "scroll the screen in that direction",
         required=("direction",),
         optional=("index",),
     ),
     ActionType.SWIPE: Takes(
-        "drag a finger from there; a slider takes the value where it is let go",
+        "swipe from that point; a slider is set where the finger is lifted",
         target=True,
         required=("direction",),
         optional=("distance_px",),
@@ -95,17 +98,17 @@ FIELDS: Mapping[ActionType, Takes] = {
     ActionType.OPEN_APP: Takes("open a screen by its name", required=("app_name",)),
     ActionType.WAIT: Takes("let 1 to 10 seconds pass", optional=("seconds",)),
     ActionType.ANSWER: Takes(
-        "say something to the driver, in up to 120 characters: an answer to a question, which warns nobody",
+        "tell the driver something, in up to 120 characters: it answers a question, it is no warning",
         required=("text",),
     ),
     ActionType.STATUS: Takes(
-        "declare that you are done: complete; or that you decline, with a reason: infeasible if it must not or "
-        "cannot be done (law, safety, not_possible), not_needed if there is nothing to do (already_so, or none)",
+        "declare how it ended: complete when it is done; infeasible if it must not or cannot be done (reason law, "
+        "safety or not_possible); not_needed if there is nothing to do (reason already_so or none)",
         required=("goal_status",),
         optional=("reason",),
     ),
     ActionType.SHOW_ALERT: Takes(
-        "warn the driver on screen and by voice, as a wish to be warned or told of danger or limits asks for; "
+        "warn the driver on screen and by voice, when the driver has asked to be warned about danger or limits; "
         "a text has up to 120 characters",
         required=("kind",),
         optional=("severity", "text", "speed_kmh"),
@@ -120,8 +123,8 @@ FIELDS: Mapping[ActionType, Takes] = {
         'say where the car is, as "LON,LAT" in degrees, while GPS is out', required=("text",)
     ),
     ActionType.ASK_DRIVER: Takes(
-        "ask the driver, in up to 120 characters, what nothing else tells: one question that names every choice, "
-        "before anything is changed; it distracts the driver for as long as it takes to say and to answer",
+        "ask the driver one question (at most 120 characters) about something you cannot find out otherwise. List "
+        "all options, and ask before you change anything. Asking distracts the driver",
         required=("text",),
     ),
 }
@@ -223,8 +226,37 @@ def grammar(kinds: Collection[ActionType] = tuple(ActionType), *, by_point: bool
         by_point: whether there is no list of elements, so that a target is a point.
     """
     return "\n".join(
-        f"- {takes.about}: {_example(kind, takes, by_point)}" for kind, takes in FIELDS.items() if kind in kinds
+        f"- {_about(takes, by_point)}: {_example(kind, takes, by_point)}"
+        for kind, takes in FIELDS.items()
+        if kind in kinds
     )
+
+
+def signatures(kinds: Collection[ActionType] = tuple(ActionType), *, by_point: bool = False) -> str:
+    """The same in fewer words: each action as a name with its fields, those in brackets optional.
+
+    Args:
+        kinds: the actions to list.
+        by_point: see ``grammar``.
+    """
+    return "\n".join(
+        f"- {kind}({', '.join(_signature(takes, by_point))}): {_about(takes, by_point)}"
+        for kind, takes in FIELDS.items()
+        if kind in kinds
+    )
+
+
+def _about(takes: Takes, by_point: bool) -> str:
+    return (by_point and takes.about_by_point) or takes.about
+
+
+def _signature(takes: Takes, by_point: bool) -> Iterator[str]:
+    target = (("x", "y") if by_point else ("index",)) if takes.target else ()
+    for name in (*target, *takes.required, *takes.optional):
+        if by_point and name == "index":
+            continue
+        values = f": {'|'.join(_ENUMS[name])}" if name in _ENUMS else ""
+        yield f"[{name}{values}]" if name in takes.optional else name + values
 
 
 def json_schema() -> Json:

@@ -15,7 +15,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, Dismiss, Show
-from automotive_cosim.cockpit.notices import lit
+from automotive_cosim.cockpit.notices import lit, lit_in_words
 from automotive_cosim.cockpit.parts import speed, speed_unit, stepper, switch, temperature
 from automotive_cosim.cockpit.registry import apps_in, docked
 from automotive_cosim.cockpit.signals import ADAS, CALL, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
@@ -126,7 +126,7 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             look=Look.PLAIN,
             on_tap=Back() if state.screen == "notifications" else Show("notifications"),
         ),
-        Telltales(rect=bar.lamps, key="status.telltales", description=say("Telltales"), lit=lit(state)),
+        Telltales(rect=bar.lamps, key="status.telltales", description=lit_in_words(state), lit=lit(state)),
         *_links(bar.links, state),
         *_motion(bar.motion, state),
     )

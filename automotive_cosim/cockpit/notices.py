@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from automotive_cosim.cockpit.aboard import Kind, seated
 from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, LIGHTS, MOTION, OUTSIDE, TYRE
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.telltales import Telltale
+from automotive_cosim.contracts.text import listed, say
 
 LOW_KPA = 200.0
 """A fifth below the 250 kPa on the door frame, where UN R64 requires a tyre warning."""
@@ -41,3 +44,25 @@ def lit(state: State) -> tuple[Telltale, ...]:
         Telltale.REAR_FOG: signals[LIGHTS.REAR_FOG],
     }
     return tuple(telltale for telltale in Telltale if holds[telltale])
+
+
+NAMES: Mapping[Telltale, str] = {
+    Telltale.WARNING: say("Warning"),
+    Telltale.BELT: say("Seat belt"),
+    Telltale.DOOR: say("Trunk"),
+    Telltale.BATTERY: say("Battery"),
+    Telltale.HAZARD: say("Hazards"),
+    Telltale.TYRE: say("Tyre pressure"),
+    Telltale.STABILITY: say("Stability control off"),
+    Telltale.FROST: say("Frost"),
+    Telltale.HIGH_BEAM: say("High beam"),
+    Telltale.LOW_BEAM: say("Low beam"),
+    Telltale.FRONT_FOG: say("Front fog"),
+    Telltale.REAR_FOG: say("Rear fog"),
+}
+
+
+def lit_in_words(state: State) -> str:
+    """The tell-tales that are lit, for the list."""
+    names = [NAMES[telltale] for telltale in lit(state)]
+    return say("Telltales: {lit}", lit=listed(names)) if names else say("Telltales")

@@ -266,7 +266,7 @@ class LimitSign(Widget):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Telltales(Widget):
-    """Tell-tales that are lit, line by line; as many as there is room for. The list only names them together."""
+    """Tell-tales that are lit, line by line; as many as there is room for."""
 
     lit: tuple[Telltale, ...]
 
@@ -275,7 +275,7 @@ class Telltales(Widget):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SignView(Widget):
-    """The road sign that was read last. The list only says that there is one."""
+    """The road sign that was read last."""
 
     sign: RoadSign | None
     figure: str = ""

@@ -32,6 +32,7 @@ import numpy.typing as npt
 from gymnasium import spaces
 
 from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, TEXT_LIMIT, check
+from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -64,27 +65,7 @@ GEARS = ("P", "R", "N", "D")
 NETWORKS = ("none", "4g", "5g")
 RESTRICTION_BITS = 9
 SPEED_STEP_KMH = 5
-APPS = (
-    "home",
-    "climate",
-    "map",
-    "safety",
-    "vehicle",
-    "media",
-    "settings",
-    "outside",
-    "phone",
-    "apps",
-    "charging",
-    "parking",
-    "manual",
-    "memo",
-    "trip",
-    "calendar",
-    "store",
-    "notifications",
-    "cabin",
-)
+APPS = tuple(apps())
 
 BOUNDS: Mapping[str, tuple[float, float]] = {
     "speed_kmh": (0, 400),

@@ -36,7 +36,7 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.files import opened
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic import georeference
-from automotive_cosim.traffic.naming import neutral_names
+from automotive_cosim.traffic.naming import local_names
 from automotive_cosim.traffic.posted import TimedLimit, timed_limits
 
 NO_LIMIT_FROM_MPS = 39.0
@@ -156,16 +156,16 @@ class Network:
     moved: bool = False
     """Whether it was moved from the position in its file."""
 
-    def at(self, origin: tuple[float, float]) -> Network:
+    def at(self, origin: tuple[float, float], language: str = "") -> Network:
         """The same network with its middle at another place: (longitude, latitude).
 
-        If it has a place of its own, its streets get names that do not tell it (``naming.neutral_names``).
+        If it has a place of its own, its streets get names in the language of the other (``naming.local_names``).
         """
         there = replace(self, map=georeference.moved(self.map, origin), unplaced="", moved=True)
-        return there if self.unplaced else there._neutral()
+        return there if self.unplaced else there._renamed(language)
 
-    def _neutral(self) -> Network:
-        names = neutral_names((edge.name, edge.road_class) for edge in self.edges.values())
+    def _renamed(self, language: str) -> Network:
+        names = local_names(((edge.name, edge.road_class) for edge in self.edges.values()), language)
         edges = {edge_id: replace(edge, name=names.get(edge.name, "")) for edge_id, edge in self.edges.items()}
         roads = tuple(replace(road, name=names.get(road.name, "")) for road in self.map.roads)
         return replace(self, edges=edges, map=replace(self.map, roads=roads))

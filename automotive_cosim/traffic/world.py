@@ -18,7 +18,7 @@ from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
-from automotive_cosim.traffic.ground import read_mapped
+from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
 from automotive_cosim.traffic.network import Network, NetworkReader
@@ -92,11 +92,9 @@ class World:
         self._is_watched = True
 
     def _mapped(self, roads: Network, setup: Setup) -> Network:
-        """The network with what is around it, at the scenario's place."""
+        """The network with what is around it, on its side of the road and at the scenario's place."""
         scenario = setup.scenario
-        network = read_mapped(self._configuration, roads)
-        if scenario.origin is not None:
-            network = network.at(scenario.origin)
+        network = placed(read_mapped(self._configuration, roads), scenario)
         if network.unplaced and scenario.has_place and not setup.allow_unprojected:
             raise ScenarioError(
                 f"{self._configuration.given['net-file'][0].name} {network.unplaced}, so it has no position on "

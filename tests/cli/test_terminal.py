@@ -130,7 +130,7 @@ def test_a_command_does_its_work_without_the_streams_that_it_lacks(tmp_path: Pat
         ["sh", "-c", f"{program} schema plan --out {table} {closed}"], capture_output=True, text=True
     )
     assert (done.returncode, done.stderr) == (0, "")
-    assert json.loads(table.read_text("utf-8"))["title"] == "Plan"
+    assert json.loads(table.read_text("utf-8"))["title"] == "plan"
 
 
 @pytest.mark.slow

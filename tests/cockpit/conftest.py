@@ -12,9 +12,12 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.apps.memo.commands import Record
+from automotive_cosim.cockpit.apps.store.state import Installed
+from automotive_cosim.cockpit.apps.timer.commands import StartTimer
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.messages import Focus, Pick, Show
+from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.cockpit.signals import MEDIA
 from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import (
@@ -142,6 +145,8 @@ def walk(home: Cockpit) -> tuple[View, ...]:
 
 
 def _leads_to(widget: Widget, here: Cockpit) -> str:
+    installed = here.commands()["apps.installed"]
+    more = [name for name in installed if not apps()[name].preinstalled]
     match widget.on_tap:
         case Pick(key, value) if not value.isdigit() and key != "media.show":
             return f"{here.screen} {key}={value}"
@@ -149,16 +154,18 @@ def _leads_to(widget: Widget, here: Cockpit) -> str:
             return f"explore {item}"
         case Focus():
             return f"{here.screen} typing"
-        case Show("apps") if "calendar" in here.commands()["apps.installed"] and here.screen == "store":
-            return "apps with another app"
+        case Show("apps") if more and here.screen == "store":
+            return f"apps with {more[0]}"
         case Show(screen):
             return screen
-        case Put() if widget.key == "store.calendar":
-            return "store with another app"
+        case Put(Installed(names)) if not more and set(names) > set(installed):
+            return f"store with {next(name for name in names if name not in installed)}"
         case Record() if here.commands()["apps.recording"]:
             return "memo with a memo"
         case Record() if not here.commands()["apps.memos"]:
             return "memo recording"
+        case StartTimer():
+            return "timer running"
         case Set(signal, value) if signal is MEDIA.SOURCE:
             return f"media from {value}"
         case _:

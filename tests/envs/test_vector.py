@@ -134,6 +134,7 @@ def test_what_the_environments_cannot_take_is_told() -> None:
         gym.make_vec("AutomotiveCosim/Flat-v0", num_envs=2, tasks=())
 
 
+@pytest.mark.sumo
 @pytest.mark.parametrize("actions", [[0], [0, 0, 0], 0])
 def test_a_wrong_number_of_actions_is_told_and_nothing_happens(actions: Any) -> None:
     with closing(

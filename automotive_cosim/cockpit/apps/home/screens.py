@@ -16,7 +16,7 @@ from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import camera_of
 from automotive_cosim.cockpit.messages import Show
-from automotive_cosim.cockpit.notices import NOTICED, lit
+from automotive_cosim.cockpit.notices import NOTICED, lit, lit_in_words
 from automotive_cosim.cockpit.parts import content, distance, heading, speed, speed_unit, temperature
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, GLASS, HVAC, MEDIA, MOTION
 from automotive_cosim.cockpit.state import State
@@ -151,7 +151,7 @@ def drive_card(rect: Rect, state: State) -> Widget:
             Telltales(
                 rect=lamps.left(LAMPS_WIDTH).middle(LAMPS_WIDTH, LAMPS_WIDTH),
                 key="home.telltales",
-                description=say("Telltales"),
+                description=lit_in_words(state),
                 lit=lit(state),
             ),
             heading(head, say("Range")),

@@ -19,6 +19,7 @@ from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.signals import VOICE
 from automotive_cosim.cockpit.state import Message, State
+from automotive_cosim.cockpit.telltales import RoadSign, SignKind
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import (
     Badge,
@@ -144,7 +145,23 @@ def sign_view(rect: Rect, key: str, state: State) -> tuple[SignView, ...]:
         return ()
     sign = state.last_sign
     figure = "" if sign is None or sign.limit_kmh is None else speed(state.signals, sign.limit_kmh)
-    return (SignView(rect=rect, key=key, description=say("Last sign"), sign=sign, figure=figure),)
+    return (SignView(rect=rect, key=key, description=_sign_in_words(sign, figure), sign=sign, figure=figure),)
+
+
+def _sign_in_words(sign: RoadSign | None, figure: str) -> str:
+    """What the last sign says, for the list."""
+    if sign is None:
+        return say("Last sign")
+    match sign.kind:
+        case SignKind.LIMIT:
+            shown = say("Limit sign {limit}", limit=figure)
+        case SignKind.END_OF_LIMIT:
+            shown = say("End of limit")
+        case SignKind.SCHOOL:
+            shown = say("School zone")
+        case SignKind.TUNNEL:
+            shown = say("Tunnel")
+    return say("Last sign: {sign}", sign=shown)
 
 
 def _orientation(rect: Rect, state: State) -> Button:

@@ -46,7 +46,7 @@ def store(state: State) -> tuple[Widget, ...]:
             rect=area,
             children=(
                 title(inner.top(40), Icon.STORE, say("Store")),
-                rows(inner.below(56), "store.apps", say("Apps"), state, len(names), line, height=68, gap=8),
+                rows(inner.below(56), "store.apps", say("Apps"), state, len(names), line, height=58, gap=6),
             ),
         ),
     )
