@@ -19,6 +19,9 @@ from automotive_cosim.errors import UserError
 
 P = ParamSpec("P")
 
+LARGE_BYTES = 4_000_000
+"""A network of some 2,000 edges, or packed of ten times as many, which is read in a second."""
+
 
 def _use_tasks_from(folder: Path | None) -> None:
     """Sets the variable before anything imports the catalogue; worker processes inherit it."""
@@ -150,7 +153,10 @@ def lon_lat(text: str) -> tuple[float, float]:
 
 
 def tell_opening(*names: str) -> None:
-    """Says at once which networks of others are being read, which takes seconds for a city."""
-    for name in names:
-        if Path(name).exists():
-            typer.echo(f"opening {name}", err=True)
+    """Says at once which large networks are being read: a city's takes seconds."""
+    for path in map(Path, names):
+        nets = (
+            path.glob("*.net.xml*") if path.is_dir() else path.parent.glob("*.net.xml*") if path.is_file() else ()
+        )
+        if sum(net.stat().st_size for net in nets) >= LARGE_BYTES:
+            typer.echo(f"opening {path}", err=True)

@@ -174,6 +174,8 @@ def run(
         raise
     if recorder.begun:
         write_page(folder)
+        if task is None and setup.task == ANYWHERE:
+            typer.echo(f"no --task was given: this was {ANYWHERE}, which comes about on any road", err=True)
     if as_json:
         whole = result.as_json()
         told = {name: whole[name] for name in HEADLINE} | under.as_json()
@@ -185,11 +187,10 @@ def run(
 
 
 def _default_task(half: str, scenario: str | None, on_another_way: bool) -> str:
-    """The task without ``--task``; it is said if it is not the usual one."""
+    """The task without ``--task``."""
     from automotive_cosim.tasks import CATALOGUE
 
     own = CATALOGUE[DEFAULT_TASK].half(half).start.scenario
     if half != "first" or (scenario in (None, own) and not on_another_way):
         return DEFAULT_TASK
-    typer.echo(f"no --task is given: {ANYWHERE}, which comes about on any road", err=True)
     return ANYWHERE
