@@ -28,6 +28,8 @@ COLD = replace(PARIS, cabin={"temperature_c": 12.0})
 COLD_THERE, FROST_THERE = ("london", "new_york", "tokyo", "autobahn", "grid"), ("london", "grid")
 """Other scenarios in whose season a cabin can be that cold, and in which there can be frost tomorrow."""
 HOT = Weather(34.0, 45.0, 0.0, 0, 10.0, 20_000.0, 8.0)
+MILD = Weather(24.0, 60.0, 0.0, 1, 20.0, 20_000.0, 8.0)
+"""Air that is damp enough to be dried by cooling."""
 SPRING = Weather(16.0, 55.0, 0.0, 1, 20.0, 20_000.0, 14.0)
 MORE_WARM_AIR = (Open("climate"), Tap("hvac.fan.max"))
 NOTICED_K = 0.5
@@ -204,7 +206,13 @@ TASKS = (
         SignalIs(HVAC.AIR_CONDITIONING, (False,)),
         Open("climate"),
         Tap("hvac.air_conditioning"),
-        start=replace(PARIS, cabin={"humidity_pct": 20.0}, signals={HVAC.AIR_CONDITIONING.path: True}),
+        start=replace(
+            PARIS,
+            start="2026-07-21T14:15:00",
+            weather=MILD,
+            cabin={"humidity_pct": 20.0},
+            signals={HVAC.AIR_CONDITIONING.path: True},
+        ),
     ),
     hinted(
         "hvac_hay_fever",

@@ -27,8 +27,8 @@ REACTION_S, BRAKING_MPS2 = 1.0, 5.0
 SIGHTS_TO_STOP = 2.0
 """Stopping distances of more than twice the sight are driven by nobody: our choice. Drivers in fog outdrive their
 sight, by up to about that much (White and Jeffery 1980, TRRL LR 838)."""
-COLDER_THAN_OUTSIDE_C = 5.0
-"""Without air conditioning a cabin is no colder than the air around it by more; our choice."""
+COLD_C, COLDER_THAN_OUTSIDE_C = 18.0, 5.0
+"""Without air conditioning no cabin is cold, and colder than the air around it by more; our choice."""
 
 
 def implausible(moment: Moment) -> Iterator[str]:
@@ -64,7 +64,7 @@ def _driven(moment: Moment) -> Iterator[str]:
     if "snow" in phenomena(weather) and speed_mps > 0 and not moment.signals[LIGHTS.LOW_BEAM.path]:
         yield "driving in falling snow without dipped beam"
     cabin_c, is_cooled = moment.signals[HVAC.CABIN_TEMPERATURE.path], moment.signals[HVAC.AIR_CONDITIONING.path]
-    if not is_cooled and cabin_c < weather.temperature_2m - COLDER_THAN_OUTSIDE_C:
+    if not is_cooled and cabin_c < min(COLD_C, weather.temperature_2m - COLDER_THAN_OUTSIDE_C):
         yield f"{cabin_c:.0f} degrees in the cabin, {weather.temperature_2m:.0f} outside and no cooling"
 
 

@@ -217,13 +217,15 @@ def _clean(instance: Instance, end: Moment, untouched: Moment, counterfactual: M
     return Part(False, "also changed: " + ", ".join(_change(key, untouched, end) for key in sorted(surplus)))
 
 
+def may_part(half: Half) -> frozenset[str]:
+    """Switches that couple what the half asks for to what it does not: whoever wants the one alone may part the
+    two."""
+    return frozenset(switch for switch, coupled in COUPLED_BY.items() if len(half.allowed_writes & coupled) == 1)
+
+
 def parted(half: Half, commands: Mapping[str, Any]) -> frozenset[str]:
-    """Switches that are off now and couple what the half asks for to what it does not: whoever wants the one alone
-    may part the two."""
-    asked = half.allowed_writes
-    return frozenset(
-        switch for switch, coupled in COUPLED_BY.items() if not commands[switch] and len(asked & coupled) == 1
-    )
+    """Those of them that are off now."""
+    return frozenset(switch for switch in may_part(half) if not commands[switch])
 
 
 def _change(key: str, before: Moment, after: Moment) -> str:
