@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from automotive_cosim.agents import answer, prompt
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
+from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import marked, png
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
@@ -118,7 +119,7 @@ class ModelAgent:
             return
         steps = [*self._done, prompt.action_words(self._last.action, self._last.seen)]
         self._memory.keep(
-            Strategy(where(self._first), prompt.one_line(self._first.goal), why(self._first), " > ".join(steps)),
+            Strategy(where(self._first), one_line(self._first.goal), why(self._first), " > ".join(steps)),
             worked=success,
         )
 
@@ -128,7 +129,7 @@ class ModelAgent:
         self._first = observation
         if self._memory is None:
             return
-        recalled = self._memory.recall(where(observation), prompt.one_line(observation.goal))
+        recalled = self._memory.recall(where(observation), one_line(observation.goal))
         self._recalled = tuple(strategy.words for strategy in recalled)
         self._asking.note(StageName.REMEMBER, observation, "\n".join(self._recalled) or "nothing of this place")
 
@@ -153,7 +154,7 @@ class ModelAgent:
             last.seen, last.action, now, last.plan, bool(pictures), is_brief=self._profile.brief
         )
         reply, asked = self._asking.ask(text, pictures)
-        lesson = prompt.one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
+        lesson = one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
         self._asking.note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))
         return lesson
 

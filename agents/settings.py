@@ -54,8 +54,9 @@ class AgentSettings:
     """Seed of an agent that acts randomly."""
     most_tokens: int = 2_000_000
     """An episode's budget of tokens, for questions and answers together."""
-    most_seconds: float = 1800.0
-    """An episode's budget of time to wait for the model."""
+    most_seconds: float = 14_400.0
+    """An episode's budget of time to wait for the model: hours, for a slow one that is asked hundreds of times on a
+    drive of thirty minutes."""
 
     def __post_init__(self) -> None:
         if self.most_tokens <= 0 or self.most_seconds <= 0:

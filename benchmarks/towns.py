@@ -18,10 +18,9 @@ from time import perf_counter
 
 from automotive_cosim import CockpitEnv
 from automotive_cosim.run.memory import rss_mb
-from automotive_cosim.scenery import open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.fork import Simulations
 
 STREETS = (4, 16, 50, 112)
 BLOCK_M = 150
@@ -39,45 +38,34 @@ def main() -> None:
             if not ok:
                 sys.exit(sumo_programs.first_error(printed))
             edges = 4 * streets * (streets - 1)
-            first_s, fork_s, memory_mb = resets(net)
-            second_s, bare_s = seconds(net)
-            print(
-                f"| {edges:,} | {first_s:.2f} s | {1000 * fork_s:.0f} ms | {1000 * second_s:.1f} ms | "
-                f"{1000 * bare_s:.1f} ms | {memory_mb or 0:,.0f} MB |",
-                flush=True,
-            )
+            print(f"| {edges:,} | {measured(net)} |", flush=True)
 
 
-def resets(net: Path) -> tuple[float, float, float | None]:
-    """Wall seconds of the first reset, of another one, and memory in MB."""
-    took_s = []
+def measured(net: Path) -> str:
+    """Wall seconds of the first reset and of later ones, of a simulated second with the whole driving state and of
+    SUMO's own, in turns; and the memory of all processes during an episode."""
+    resets_s, whole_s, bare_s = list[float](), list[float](), list[float]()
+    pool = Simulations()
     began_s = perf_counter()
-    with closing(CockpitEnv("hvac_fan_max", scenario=str(net))) as env:
+    with closing(pool), closing(CockpitEnv("hvac_fan_max", scenario=str(net), simulations=pool)) as env:
         for _ in range(1 + RESETS):
             env.reset(seed=0)
-            took_s.append(perf_counter() - began_s)
-            memory_mb = rss_mb()
+            resets_s.append(perf_counter() - began_s)
             began_s = perf_counter()
-    return took_s[0], statistics.median(took_s[1:]), memory_mb
-
-
-def seconds(net: Path) -> tuple[float, float]:
-    """Wall seconds of a simulated second with the whole driving state, and of SUMO alone, in turns."""
-    scenario = open_scenario(net)
-    whole, bare = list[float](), list[float]()
-    with (
-        closing(Forked(scenario)) as simulation,
-        closing(simulation.depart(EgoPlan(scenario.ego.trips[0], scenario.ego.driver))) as traffic,
-    ):
-        steps = round(1 / scenario.sumo.step_length_s)
-        for _ in range(SECONDS):
-            began_s = perf_counter()
-            traffic.advance(1.0)
-            whole.append(perf_counter() - began_s)
-            began_s = perf_counter()
-            traffic.bare_steps(steps)
-            bare.append(perf_counter() - began_s)
-    return statistics.mean(whole), statistics.mean(bare)
+        memory_mb = rss_mb() or 0.0
+        scenario = env.scenario
+        plan = EgoPlan(scenario.ego.trips[0], scenario.ego.driver)
+        with closing(pool.warm(scenario).depart(plan)) as traffic:
+            for _ in range(SECONDS):
+                began_s = perf_counter()
+                traffic.advance(1.0)
+                whole_s.append(perf_counter() - began_s)
+                began_s = perf_counter()
+                traffic.bare_steps(round(1 / scenario.sumo.step_length_s))
+                bare_s.append(perf_counter() - began_s)
+    first_s, fork_ms = resets_s[0], 1000 * statistics.median(resets_s[1:])
+    whole_ms, bare_ms = (1000 * statistics.mean(each) for each in (whole_s, bare_s))
+    return f"{first_s:.2f} s | {fork_ms:.0f} ms | {whole_ms:.1f} ms | {bare_ms:.1f} ms | {memory_mb:,.0f} MB"
 
 
 if __name__ == "__main__":

@@ -21,6 +21,8 @@ from automotive_cosim.tasks.forms import in_company
 from automotive_cosim.tasks.road_law import DENSE_FOG, FAIR, FOG, NOON, PLACE, SOON, figure, in_fog
 
 FOGGED = Start("beauce", "villages", driver="hurried", sign_camera=False)
+INTO_FOG = All((SpeedAbove(55.0, 80.0, 80.0), SpeedBetween(55.0, 84.0)))
+"""Faster than the fog allows, and no faster than anybody drives in it."""
 STREETS = Start("london", "kingsway", driver="hurried", weather=FAIR, sign_camera=False)
 BORDER = Start("border", "north", start=NOON, weather=FAIR, sign_camera=False)
 SCHOOL_RUN = Start("sydney", "school_run", driver="hurried", weather=FAIR, sign_camera=False)
@@ -139,7 +141,7 @@ SIGN_TASKS: tuple[Task, ...] = (
             in_fog(
                 Half(
                     replace(FOGGED, weather=DENSE_FOG),
-                    Trigger(All((SpeedAbove(90.0, 80.0, 80.0), VisibilityBetween(0.0, 50.0))), 3.0, 240.0),
+                    Trigger(All((INTO_FOG, VisibilityBetween(0.0, 50.0))), 0.0, 300.0),
                     AlertGiven(AlertKind.SPEED, 50.0, must_advise=True),
                     (Warn(AlertKind.SPEED, speed_kmh=50.0),),
                     SOON,
@@ -150,7 +152,7 @@ SIGN_TASKS: tuple[Task, ...] = (
             in_fog(
                 Half(
                     replace(FOGGED, weather=FOG),
-                    Trigger(All((SpeedAbove(90.0, 80.0, 80.0), Not(VisibilityBetween(0.0, 50.0)))), 3.0, 240.0),
+                    Trigger(All((INTO_FOG, Not(VisibilityBetween(0.0, 50.0)))), 0.0, 300.0),
                     AlertGiven(AlertKind.SPEED, 80.0),
                     (Open("safety"), Tap("safety.kind.speed"), Tap("safety.warn")),
                     SOON,

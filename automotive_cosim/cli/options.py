@@ -147,3 +147,10 @@ def lon_lat(text: str) -> tuple[float, float]:
             f"--origin {text!r} is not a longitude and latitude; give degrees such as 9.19,45.46"
         )
     return lon_deg, lat_deg
+
+
+def tell_opening(*names: str) -> None:
+    """Says at once which networks of others are being read, which takes seconds for a city."""
+    for name in names:
+        if Path(name).exists():
+            typer.echo(f"opening {name}", err=True)

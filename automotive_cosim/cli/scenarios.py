@@ -14,7 +14,7 @@ import typer
 from automotive_cosim import scenarios
 from automotive_cosim.cli.batches import tell_notes
 from automotive_cosim.cli.calibrate import calibrate_scenario
-from automotive_cosim.cli.options import AsJson, number, print_json, whole_number
+from automotive_cosim.cli.options import AsJson, number, print_json, tell_opening, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 
@@ -56,6 +56,7 @@ def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: As
     """Show one scenario: its place, time, weather and ego trips."""
     from automotive_cosim.scenery import open_scenario
 
+    tell_opening(scenario)
     found = open_scenario(scenario)
     if as_json:
         print_json(_shown(found))
@@ -130,6 +131,7 @@ def check_scenarios(
     from automotive_cosim.scenery.check import check
 
     proofs = []
+    tell_opening(*names or ())
     for scenario in [open_scenario(name) for name in names or scenarios.shipped()]:
         tell_notes([scenario])
         with _progress() as tell:
@@ -175,6 +177,7 @@ def render(
     from automotive_cosim.scenery import open_scenario
     from automotive_cosim.scenery.picture import ENDINGS, save_picture
 
+    tell_opening(*names or ())
     found = [open_scenario(name) for name in names or scenarios.shipped()]
     to_file = out is not None and not out.is_dir() and bool(out.suffix)
     if out and to_file and (out.suffix.lower() not in ENDINGS or len(found) > 1):
@@ -436,9 +439,12 @@ def _into_log() -> Tell:
 
 def _agreement(report: ImportReport) -> str:
     if not report.differences:
-        return "limit, name, class, tunnel and lanes of every edge"
-    found = len(report.differences)
-    return f"all but {counted(found, 'property', 'properties')} ({report.differences[0]}{'; …' * (found > 1)})"
+        return "access, direction, limit, name, class, tunnel and lanes of every edge; barriers and turns"
+    return f"all but {counted(len(report.differences), 'property', 'properties')}:"
+
+
+DIFFERENCES_SHOWN = 20
+"""How many the terminal lists; ``import.json`` has all."""
 
 
 def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
@@ -457,6 +463,8 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("posted limit", f"{report.posted_share:.2%} of the length"),
         ("derestricted", f"{report.derestricted_km:.1f} km"),
         ("as mapped", _agreement(report)),
+        *(("", text) for text in report.differences[:DIFFERENCES_SHOWN]),
+        *([("", "…; import.json has all")] if len(report.differences) > DIFFERENCES_SHOWN else []),
         ("signals", f"{report.signals}, roundabouts {report.roundabouts}"),
         ("tunnels", f"{counted(report.tunnels, 'edge')} ({report.tunnel_km:.1f} km)"),
         ("lamps", f"known for {report.lit_known_share:.0%} of the length"),

@@ -8,6 +8,7 @@ departure  a script -> a running co-simulation
 events/    kinds of events, found on the drive itself
 wakes      what wakes an agent that waits
 watch      an agent's session on a drive
+timeline   the drive second by second, as data
 judge      what became of each event, and what each act was
 score      what that comes to
 watchers   the rule-perfect watcher, and trivial ones

@@ -33,8 +33,16 @@ NEAR_S = 120.0
 CHANCE_S = 2.0
 """An event whose deadline comes sooner than this after its obligation arose could be met by nobody: one glance
 (NHTSA 2013)."""
+NUISANCE = 1.0
+"""Cost of a nuisance: as much as a miss of weight 1, which is our choice. At a
+fifth of that, an alert of the most frequent kind twice a minute would pay."""
+SWING = 2.0
+"""To take a look-alike for an event costs what meeting the event gains, twice its weight: who cannot tell the two
+apart gains nothing."""
 ORDER = "the driver asked to leave everything else as it is"
 """What speaks against a command that no kind of event concerns."""
+NOT_DUE = "nothing that asks for it is due"
+"""What speaks against a stop, or against driving slowly, while there is only something that may come."""
 Against = Callable[[EventKind, float], str | None]
 """The fact known to the agent at a simulation time that speaks against a warning of a kind; None if none does."""
 CAUSED_S = 10.0
@@ -163,6 +171,8 @@ class JudgedAct:
     """The kind of event that it was about."""
     reason: str = ""
     """What speaks against it, of what the agent could know, if it is a nuisance."""
+    cost: float = 0.0
+    """What it costs, if it is a nuisance."""
     holds_s: float = 0.0
     """For how long it holds the car back for no reason."""
 
@@ -309,6 +319,8 @@ class _Bench:
     def act(self, act: WatchAct) -> JudgedAct:
         """What an act was."""
         judged = self._judged(act)
+        if judged.worth.is_nuisance:
+            judged = replace(judged, cost=max(NUISANCE, judged.cost))
         self.written |= {path for path, _ in act.writes}
         if judged.worth.is_nuisance and act.holds_back:
             judged = replace(judged, holds_s=self.hold_s)
@@ -329,14 +341,18 @@ class _Bench:
         meant = [kind for kind in self.kinds if kind.settles(act, None) or kind.concerns(act)]
         facts = {kind.name: self.against(kind, act.time_s) for kind in meant}
         supported = [name for name, fact in facts.items() if fact is None]
-        if supported or (act.said and not meant):  # of other words nobody can say whether they are true
+        holds_back = act.alert is None and act.holds_back  # no warning: it must be due, not only true
+        if (supported and not holds_back) or (
+            act.said and not meant
+        ):  # of other words nobody can say whether they are true
             return self._supported(act, supported[0] if supported else "")
         alike = [case for case in there if case.event.lookalike and case.kind.settles(act, case.event.value)]
         for case in alike:
             case.taken = True
-        reason = "; ".join(filter(None, facts.values())) or ORDER
+        reason = "; ".join(filter(None, facts.values())) or (NOT_DUE if supported else ORDER)
         if alike:
-            return JudgedAct(act.time_s, act.words, Worth.LOOKALIKE, alike[0].event.kind, reason)
+            cost = SWING * max(case.event.weight for case in alike)
+            return JudgedAct(act.time_s, act.words, Worth.LOOKALIKE, alike[0].event.kind, reason, cost)
         due = [case for case in true if case.answered_s is None and case.event.obliged_s is not None]
         wrong = any((case.event.obliged_s or 0.0) <= act.time_s for case in due)
         return JudgedAct(act.time_s, act.words, Worth.WRONG if wrong else Worth.FALSE, "", reason)

@@ -17,9 +17,6 @@ from statistics import median
 
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, Judgement, Worth
 
-NUISANCE = 1.0
-"""Cost of a nuisance: as much as a miss of weight 1, which is our choice. At a
-fifth of that, an alert of the most frequent kind twice a minute would pay."""
 STOP_PER_MIN = 1.0
 """Cost of each minute for which a car is held back for no reason, besides that of a nuisance."""
 LEAST_WORTH = 8.0
@@ -48,6 +45,8 @@ class Score:
     false_alarms: int
     nuisances: int
     """False alarms and repeats."""
+    cost: float
+    """What the nuisances cost, without the time for which they held the car back."""
     held_s: float
     """For how long the car was held back for no reason."""
     gained: float
@@ -93,7 +92,7 @@ class Score:
     @property
     def value(self) -> float:
         """0 is doing nothing, 100 the rule-perfect watcher."""
-        cost = NUISANCE * self.nuisances + STOP_PER_MIN * self.held_s / 60
+        cost = self.cost + STOP_PER_MIN * self.held_s / 60
         scale = self.worth or LEAST_WORTH * self.drives
         return 100 * (self.gained + self.worth - cost) / (2 * scale)
 
@@ -125,6 +124,7 @@ def score(judgement: Judgement, driven_s: float) -> Score:
         acts=sum(act.worth is not Worth.NEUTRAL for act in acts),
         false_alarms=sum(act.worth.is_false for act in acts),
         nuisances=sum(act.worth.is_nuisance for act in acts),
+        cost=sum(act.cost for act in acts),
         held_s=held_s(acts),
         gained=sum(event.weight * event.credit for event in events),
         worth=sum(event.weight for event in events if event.outcome.counts),

@@ -40,9 +40,9 @@ def fog_bank(before: Weather, visibility_m: float) -> Iterator[tuple[float, Weat
 
 
 FALLING, RISING, STEP_S = 10, 4, 12.0
-DENSE_FROM_S, DENSE_UNTIL_S = (FALLING - 1) * STEP_S, FALLING * STEP_S + 48.0
+DENSE_FROM_S, DENSE_UNTIL_S = (FALLING - 1) * STEP_S, FALLING * STEP_S + 100.0
 FOG_S = DENSE_UNTIL_S + (RISING - 1) * STEP_S
-"""Two minutes until a bank is as dense as it becomes, then one, and half a minute until it has gone."""
+"""Two minutes until a bank is as dense as it becomes, then almost two, and half a minute until it has gone."""
 
 
 def rain(before: Weather) -> Weather:

@@ -9,7 +9,7 @@ change is an event.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
@@ -87,6 +87,10 @@ class Watch(Session):
     """What has changed since the last observation."""
     marked: tuple[str, ...] = ()
     """Names of the readings that the present observation marks as changed."""
+    woken: list[tuple[float, tuple[str, ...]]] = field(default_factory=list)
+    """Simulation times at which something changed that ends a wait, and the names of the readings."""
+    unwatched_from_s: float | None = None
+    """Seconds since departure from which nobody watched, because the agent had failed or spent its budget."""
     waits: int = 0
     wakes: int = 0
     judgement: Judgement | None = None
@@ -187,8 +191,18 @@ class Watch(Session):
         self.changes.clear()
         vehicle = self.observation.vehicle
         if vehicle is not None:
-            told = replace(vehicle, noticed=noticed(self.moments[-READ_BACK:], self.marked))
+            lines = [noticed(self.moments[-READ_BACK:], self.marked), *self._driver_line()]
+            told = replace(vehicle, noticed="\n".join(lines))
             self.observation = replace(self.observation, vehicle=told)
+
+    def _driver_line(self) -> Iterator[str]:
+        """What the driver did last after a request, as long as that is news."""
+        for moment in reversed(self.moments[-LONGEST_S:]):
+            for event in reversed(moment.events):
+                if event.kind.startswith("driver_"):
+                    ago_s = self.moments[-1].time_s - event.time_s
+                    yield f"driver: {event.text.removeprefix('driver ')}, {ago_s:.0f} s ago"
+                    return
 
     @property
     def _is_woken(self) -> bool:
@@ -217,7 +231,11 @@ class Watch(Session):
             left_s -= tick_s
 
     def _note(self, moment: Moment) -> None:
-        self.changes += self.alarm.see(self.moments[-READ_BACK:])
+        changes = self.alarm.see(self.moments[-READ_BACK:])
+        self.changes += changes
+        names = tuple(change.name for change in changes if change.wakes)
+        if names:
+            self.woken.append((moment.time_s, names))
         for event in self.tracker.see(self.moments):
             if not event.lookalike and event.obliged_s is None:
                 index = len(self.tracker.events) - 1 - self.tracker.events[::-1].index(event)
@@ -259,6 +277,7 @@ class Watch(Session):
     def _finish(self, end: End) -> None:
         """An agent that stops acting leaves the rest of the drive to itself."""
         if end not in (End.DRIVE_ENDED, End.WATCH_OVER) and self.setup.max_sim_s is not None:
+            self.unwatched_from_s = round(self.seconds, 1)
             self._advance(max(0.0, self._left_s()))
         for twin in self.twins:
             self.due_anyway[twin.index] = twin.due_s

@@ -201,7 +201,9 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         given = np.asarray(action)
         whole = given.size == 1 and given.dtype.kind in "iu"
         if not whole or not 0 <= int(given.item()) < count:
-            raise ActionError(f"the action is {shown(given.tolist())}; it must be a whole number from 0 to {count - 1}")
+            raise ActionError(
+                f"the action is {shown(given.tolist())}; it must be a whole number from 0 to {count - 1}"
+            )
         return int(given.item())
 
     def _action(self, number: int) -> Action:

@@ -1,10 +1,11 @@
 """Who may drive a road: the access keys of the OSM wiki's pages "Key:access" and "Conditional restrictions".
 
-Three laws hold for all of them:
+Four laws hold for all of them:
 
 * The nearer key wins: of the car before of motor vehicles before of vehicles before of everybody, and within one of
   them, of one direction before of both.
 * A list lets a car in if any of its values does: ``no;destination`` lets it in, ``psv;delivery`` does not.
+* A direction all of whose lanes are for buses is closed to cars.
 * A value that is not known to let a car in keeps it out, and is told.
 """
 
@@ -66,6 +67,9 @@ def access(tags: Mapping[str, str], direction: str = "") -> Access:
             if any(lanes):
                 is_open = any(not lane or _read(name, lane).is_open for lane in lanes)
                 return Access(is_open, f"{name}={tags[name]}")
+    for name in (f"psv:lanes:{direction}", f"bus:lanes:{direction}"):
+        if set(tags.get(name, "").split("|")) == {"designated"}:
+            return Access(is_open=False, tag=f"{name}={tags[name]}")
     return Access(is_open=True)
 
 

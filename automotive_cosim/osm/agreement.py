@@ -9,6 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
+from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.expected import expect, expect_stop, expect_turn
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.limits import MPH_COUNTRIES, kmh_of
@@ -88,7 +89,7 @@ def _of_access_and_limits(extract: Extract, built: Built, country: str) -> Itera
     for edge in built.edges:
         of_way.setdefault(way_of(edge.edge_id), []).append(edge)
     for way in (*extract.ways, *extract.closed):
-        expected = expect(way.tags, country, miles=MILES)
+        expected = expect(way.tags, country, miles=MILES, metric=country_codes())
         edges = of_way.get(way.way_id, ())
         against = [edge.edge_id.startswith("-") for edge in edges]
         found = (not all(against), any(against))

@@ -62,17 +62,18 @@ class ExpectedTurn(NamedTuple):
     """Whether only these turns are allowed, not barred."""
 
 
-def expect(tags: Mapping[str, str], country: str, *, miles: Container[str]) -> Expected:
+def expect(tags: Mapping[str, str], country: str, *, miles: Container[str], metric: Container[str]) -> Expected:
     """Reads the tags of a way.
 
     Args:
         tags: the way's.
         country: ISO 3166-1 code of the map.
         miles: the countries in whose zones a number is in miles per hour.
+        metric: those where it is in kilometres per hour.
     """
     way = _one_way(tags)
     forward, backward = (_admits(tags, side) for side in ("forward", "backward"))
-    limits = [_limit(tags, side, country, miles=miles) for side in ("forward", "backward")]
+    limits = [_limit(tags, side, country, miles=miles, metric=metric) for side in ("forward", "backward")]
     return Expected(forward and way >= 0, backward and way <= 0, limits[0], limits[1])
 
 
@@ -127,7 +128,10 @@ def _admits(tags: Mapping[str, str], side: str) -> bool:
     if whole:
         return _for_cars(whole[-1][1])
     lanes = sorted(_ranked(tags, side, _ACCESS_OF_LANES))
-    return not lanes or any(not lane.strip() or _for_cars(lane) for lane in lanes[-1][1].split("|"))
+    if lanes:
+        return any(not lane.strip() or _for_cars(lane) for lane in lanes[-1][1].split("|"))
+    of_buses = (tags.get(f"{kind}:lanes:{side}") for kind in ("bus", "psv"))
+    return not any(words and not re.sub(r"designated|\|", "", words) for words in of_buses)
 
 
 def _for_cars(value: str) -> bool:
@@ -148,12 +152,14 @@ def _one_way(tags: Mapping[str, str]) -> int:
     return found
 
 
-def _limit(tags: Mapping[str, str], side: str, country: str, *, miles: Container[str]) -> float | None:
+def _limit(
+    tags: Mapping[str, str], side: str, country: str, *, miles: Container[str], metric: Container[str]
+) -> float | None:
     fast = tags.get("highway", "")[:5] in ("motor", "trunk") or tags.get("motorroad") == "yes"
     fast = fast or (country == "IM" and tags.get("highway") not in ("residential", "living_street"))
     zones = [value for key, value in tags.items() if _ZONE_KEY.fullmatch(key) for value in _zones(value)]
     in_town = _in_town(tags)
-    free = fast and in_town is not True and not any(_zone_kmh(value, miles=miles) for value in zones)
+    free = fast and in_town is not True and not any(_zone_kmh(value, miles=miles, metric=metric) for value in zones)
     ranked = sorted(_ranked(tags, side, _MAXSPEED), reverse=True)
     for _, value in ranked:
         kmh = _kmh(value)
@@ -167,7 +173,7 @@ def _limit(tags: Mapping[str, str], side: str, country: str, *, miles: Container
             break
     for key in ("maxspeed", "zone:maxspeed", "maxspeed:type", "source:maxspeed"):
         for value in tags.get(key, "").split(";"):
-            kmh = _zone_kmh(value.strip(), miles=miles)
+            kmh = _zone_kmh(value.strip(), miles=miles, metric=metric)
             if kmh is None and key == "zone:maxspeed":
                 kmh = _kmh(value)
             if kmh is not None and kmh < 1e9:
@@ -185,9 +191,11 @@ def _zones(value: str) -> list[str]:
     return [part.strip() for part in value.split(";")]
 
 
-def _zone_kmh(value: str, *, miles: Container[str]) -> float | None:
+def _zone_kmh(value: str, *, miles: Container[str], metric: Container[str]) -> float | None:
     match = _NUMBERED.fullmatch(value)
-    return _within(float(match[2]), is_mph=match[1].upper() in miles) if match else None
+    if match is None or not (match[1].upper() in miles or match[1].upper() in metric):
+        return None
+    return _within(float(match[2]), is_mph=match[1].upper() in miles)
 
 
 def _in_town(tags: Mapping[str, str]) -> bool | None:

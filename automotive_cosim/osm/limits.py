@@ -4,7 +4,7 @@ The words are those of the OSM wiki's pages "Key:maxspeed", "Key:maxspeed:type",
 "Key:zone:maxspeed", "Key:zone:traffic" and "Lanes". Four laws hold for all of them:
 
 * A sign wins: a zone never overrides a ``maxspeed``.
-* The nearer key wins: of the car before of every vehicle, of one direction before of both.
+* The nearer key wins: of the car before of every vehicle, and then of one direction before of both.
 * A number in a zone's name (``DE:zone30``, ``GB:20``) is the limit on the zone's signs.
 * A zone without a number (``FR:urban``, ``US-CA:rural``) states no limit: the law of that place sets it.
 * What nobody could have signed (500 km/h, ``none`` in a living street) states no limit either, and is told.
@@ -13,7 +13,7 @@ The words are those of the OSM wiki's pages "Key:maxspeed", "Key:maxspeed:type",
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -193,8 +193,8 @@ def doubts(tags: Mapping[str, str], country: str) -> Iterator[str]:
         yield f"maxspeed={forward} in a zone of {min(signs, key=kmh_of)}, the zone"
 
 
-def _limit_keys(endings: Iterable[str]) -> Iterator[str]:
-    return (f"{key}{ending}" for ending in endings for key in CAR_KEYS)
+def _limit_keys(endings: Sequence[str]) -> Iterator[str]:
+    return (f"{key}{ending}" for key in CAR_KEYS for ending in endings)
 
 
 def _nearest(tags: Mapping[str, str], direction: str, *, may_be_none: bool) -> str | None:

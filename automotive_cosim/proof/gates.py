@@ -206,13 +206,13 @@ def uncoupled(ground: Ground, right: Played) -> Wrong:
     """Sets back what followed a command of the reference solution without being asked for, and parts what couples
     two commands before or after it; what breaks the goal itself or what the car refuses is skipped."""
     before, start, end = right.moments[:-1], right.moments[0], right.moments[-1]
-    aims = frozenset().union(*(deed.aims for deed in right.deeds))
+    aims = frozenset().union(*(record.aims for record in right.given))
     followed = {
         path
         for path in ACTUATORS
         if end.commands[path] != right.baseline[-1].commands[path] and path not in ground.half.goal.writes | aims
     }
-    done = replayed(ground.episode.at_hand_over, right.deeds, before)
+    done = replayed(ground.episode.at_hand_over, right.given, before)
     for what, paths in [*((path, {path}) for path in sorted(followed)), ("all that followed", followed)]:
         car = done.copy()
         _give(car, {path: start.commands[path] for path in paths}, end, before[-1])
@@ -224,7 +224,7 @@ def uncoupled(ground: Ground, right: Played) -> Wrong:
         if len(COUPLED_BY[switch] & ground.half.allowed_writes) == 1 and start.commands[switch]:
             car = ground.episode.at_hand_over.copy()
             car.command(named(switch), False)
-            car = replayed(car, right.deeds, before)
+            car = replayed(car, right.given, before)
             car.sense(end.surroundings, end.time_s - before[-1].time_s)
             if not _wins(ground, right, (*before, _as_left(car, end))):
                 yield f"fails with {switch} off first, so that nothing else follows"
@@ -261,15 +261,15 @@ def optional(ground: Ground, right: Played) -> Wrong:
 
 def _may_advise(ground: Ground, kind: AlertKind, kmh: float) -> bool:
     """Whether a goal that names a speed names this one; another is wrong, and one that names none takes any."""
-    named_kmh = {found.speed_kmh for found in _alerts(ground.half.goal) if found.kind == kind}
+    named_kmh = {found.speed_kmh for found in _alerts_of(ground.half.goal) if found.kind == kind}
     return None in named_kmh or any(abs(speed - kmh) < 1.0 for speed in named_kmh if speed is not None)
 
 
-def _alerts(check: Check) -> Iterator[AlertGiven]:
+def _alerts_of(check: Check) -> Iterator[AlertGiven]:
     if isinstance(check, AlertGiven):
         yield check
     for part in getattr(check, "checks", ()):
-        yield from _alerts(part)
+        yield from _alerts_of(part)
 
 
 AIR = frozenset(
@@ -297,7 +297,7 @@ def effect(ground: Ground) -> Wrong:
         return
     others = (ground.play(ground.oracle(way)) for way in ground.half.ways)
     for number, played in enumerate((ground.reference, *others)):
-        aims = frozenset().union(*(deed.aims for deed in played.deeds))
+        aims = frozenset().union(*(record.aims for record in played.given))
         if not aims or not aims <= AIR or not played.success:
             continue
         acted, idle = (_later(ground, played, keys) for keys in (None, frozenset[str]()))
@@ -306,7 +306,7 @@ def effect(ground: Ground) -> Wrong:
 
 
 def _later(ground: Ground, played: Played, keys: frozenset[str] | None) -> Mapping[str, float]:
-    car = replayed(ground.episode.at_hand_over, played.deeds, played.moments, keys)
+    car = replayed(ground.episode.at_hand_over, played.given, played.moments, keys)
     car.sense(played.moments[-1].surroundings, EFFECT_S)
     return {path: float(car.signals[named(path)]) for path in FELT}
 

@@ -98,6 +98,18 @@ def _per_hour(of: Callable[[WatchRow], float]) -> Figure:
     return figure
 
 
+def _watched_share(rows: Sequence[WatchRow]) -> float | None:
+    """The share of the driving time in which the agent watched, before it failed or its budget was spent."""
+    judged = [row for row in rows if row.score is not None]
+    driven_s = sum(row.score.driven_s for row in judged if row.score is not None)
+    watched_s = sum(
+        row.score.driven_s if row.unwatched_from_s is None else row.unwatched_from_s
+        for row in judged
+        if row.score is not None
+    )
+    return 100 * watched_s / driven_s if driven_s else None
+
+
 FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("Score", _value, ".0f"),
     ("Recall %", _share(lambda score: score.recall), ".0f"),
@@ -105,6 +117,7 @@ FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("False alarms/h", lambda rows: whole(rows).false_alarms_per_h, ".1f"),
     ("Nuisances/h", lambda rows: whole(rows).nuisances_per_h, ".1f"),
     ("Median delay s", lambda rows: whole(rows).median_delay_s, ".1f"),
+    ("Watched %", _watched_share, ".0f"),
     ("Overspeed saved %", _saved(lambda harm: float(harm.over_limit_m)), ".0f"),
     ("Short TTC saved %", _saved(lambda harm: float(harm.short_ttc_s)), ".0f"),
     ("Distraction s/h", _per_hour(lambda row: row.distraction_s), ".0f"),

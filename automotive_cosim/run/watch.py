@@ -10,20 +10,19 @@ from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
-from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
+from automotive_cosim.contracts import Element, Json
 from automotive_cosim.contracts.given import Clock
-from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.result import DriveResult, result_of
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import End
-from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.models.base import ModelReply
@@ -141,7 +140,7 @@ def run_watch(
         end = play(watch, agent, (meter.stepped, *(watcher.acted for watcher in watchers)), meter.thought_s)
         record = WatchRecord(
             row=judged_row(planned, end, channels, result_of(watch), **meter.totals()),
-            timeline=_timeline(watch),
+            timeline=timeline(watch),
             steps=tuple(_steps(watch)),
         )
         for watcher in watchers:
@@ -187,20 +186,6 @@ class _Meter:
             "cost_usd": sum(reply.cost_usd for reply in replies),
             "model_seconds": round(sum(reply.seconds for reply in replies), 3),
         }
-
-
-def _timeline(watch: Watch) -> Json:
-    def speeds(moments: Sequence[Moment]) -> list[float]:
-        return [round(moment.driving.speed_mps * KMH_PER_MPS, 1) for moment in moments]
-
-    limits = [limit_at(moment.context).kmh for moment in watch.moments]
-    begun_s = watch.moments[0].time_s
-    return {
-        "time_s": [round(moment.time_s - begun_s, 1) for moment in watch.moments],
-        "speed_kmh": speeds(watch.moments),
-        "limit_kmh": [None if limit is None else round(limit, 1) for limit in limits],
-        "baseline_kmh": speeds(watch.baseline_moments),
-    }
 
 
 def _steps(watch: Watch) -> list[Json]:

@@ -43,6 +43,8 @@ class WatchRow(JobRow):
     """Seconds for which messages took the driver's eyes off the road."""
     events: tuple[JudgedEvent, ...] = ()
     acts: tuple[JudgedAct, ...] = ()
+    unwatched_from_s: float | None = None
+    """From when nobody watched: the agent had failed or spent its budget. None if somebody did to the end."""
     steps: int = 0
     waits: int = 0
     wakes: int = 0

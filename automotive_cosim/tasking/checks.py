@@ -12,9 +12,8 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
 from automotive_cosim.cockpit.signals import Signal
-from automotive_cosim.contracts import AlertKind, PullOver, Reroute, RoadRequest, SlowDown
+from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.geo.breaches import binding_limit
 from automotive_cosim.tasking.dialogue import Topic, questions
 
 
@@ -349,7 +348,7 @@ class AllOf:
 class AlertGiven:
     """The driver was alerted of ``kind`` once; an advised speed, if any, is the given one, to 1 km/h.
 
-    Without a given one, any speed that the limit allows may be advised: a warning of something else may name it.
+    Without a given one, any speed up to a posted limit may be advised: a warning of something else may name it.
     """
 
     kind: AlertKind
@@ -376,8 +375,8 @@ class AlertGiven:
         if speed_kmh is None:
             return not self.must_advise
         if self.speed_kmh is None:
-            limit = binding_limit(then.context)
-            return limit is None or speed_kmh < limit.kmh + 1.0
+            signed_mps = then.driving.road.limit.posted_mps
+            return signed_mps is None or speed_kmh < signed_mps * KMH_PER_MPS + 1.0
         return abs(speed_kmh - self.speed_kmh) < 1.0
 
     def __str__(self) -> str:

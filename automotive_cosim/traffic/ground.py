@@ -17,7 +17,9 @@ from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_d
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.mirror import mirrored
 from automotive_cosim.traffic.network import Network, Shape, quantity, read_network
 from automotive_cosim.traffic.options import FALSE, TRUE, Configuration
 
@@ -50,6 +52,13 @@ def read_mapped(configuration: Configuration, read: Network | None = None) -> Ne
     network = read or read_network(configuration.net)
     ground = read_ground(configuration, network.map)
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
+
+
+def placed(network: Network, scenario: Scenario) -> Network:
+    """A scenario's network as it drives there: on its side of the road, and at its place."""
+    if scenario.mirrored:
+        network = mirrored(network)
+    return network if scenario.origin is None else network.at(scenario.origin, scenario.language)
 
 
 def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[GroundArea, ...]:

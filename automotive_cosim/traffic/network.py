@@ -28,6 +28,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from sys import intern
 from typing import TypeAlias
 
 from automotive_cosim.contracts import KMH_PER_MPS, Limit, LimitSource, Road, RoadNetwork
@@ -35,7 +36,7 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.files import opened
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic import georeference
-from automotive_cosim.traffic.naming import neutral_names
+from automotive_cosim.traffic.naming import local_names
 from automotive_cosim.traffic.posted import TimedLimit, timed_limits
 
 NO_LIMIT_FROM_MPS = 39.0
@@ -155,16 +156,16 @@ class Network:
     moved: bool = False
     """Whether it was moved from the position in its file."""
 
-    def at(self, origin: tuple[float, float]) -> Network:
+    def at(self, origin: tuple[float, float], language: str = "") -> Network:
         """The same network with its middle at another place: (longitude, latitude).
 
-        If it has a place of its own, its streets get names that do not tell it (``naming.neutral_names``).
+        If it has a place of its own, its streets get names in the language of the other (``naming.local_names``).
         """
         there = replace(self, map=georeference.moved(self.map, origin), unplaced="", moved=True)
-        return there if self.unplaced else there._neutral()
+        return there if self.unplaced else there._renamed(language)
 
-    def _neutral(self) -> Network:
-        names = neutral_names((edge.name, edge.road_class) for edge in self.edges.values())
+    def _renamed(self, language: str) -> Network:
+        names = local_names(((edge.name, edge.road_class) for edge in self.edges.values()), language)
         edges = {edge_id: replace(edge, name=names.get(edge.name, "")) for edge_id, edge in self.edges.items()}
         roads = tuple(replace(road, name=names.get(road.name, "")) for road in self.map.roads)
         return replace(self, edges=edges, map=replace(self.map, roads=roads))
@@ -262,7 +263,7 @@ class NetworkReader:
                     quantity(lane["length"], 0.0), quantity(lane["speed"], SLOWEST_MPS)
                 )
         elif lanes and "function" not in edge:
-            self.edges[edge["id"]] = _edge(edge, lanes, self._lanes, self._params)
+            self.edges[intern(edge["id"])] = _edge(edge, lanes, self._lanes, self._params)
 
 
 def read_network(path: Path) -> Network:
@@ -315,12 +316,12 @@ def _edge(edge: Attributes, lanes: list[Attributes], all_lanes: list[Attributes]
     )
     middle = lanes[len(lanes) // 2]
     return Edge(
-        edge_id=edge["id"],
-        from_node=edge["from"],
-        to_node=edge["to"],
-        name=edge.get("name", ""),
+        edge_id=intern(edge["id"]),
+        from_node=intern(edge["from"]),
+        to_node=intern(edge["to"]),
+        name=intern(edge.get("name", "")),
         road_class=class_of(_highway(edge.get("type", "")), params),
-        lane_ids=tuple(lane["id"] for lane in lanes),
+        lane_ids=tuple(intern(lane["id"]) for lane in lanes),
         length_m=quantity(lanes[0]["length"], 0.0),
         speed_mps=speed_mps,
         limit_mps=None if unlimited else speed_mps,
@@ -371,12 +372,12 @@ def _shape(text: str) -> Shape:
 
 
 def _connection(link: Attributes) -> _Connection:
-    origin, goal = link["from"], link["to"]
+    origin, goal = intern(link["from"]), intern(link["to"])
     return _Connection(
         from_edge=origin,
-        from_lane=f"{origin}_{link['fromLane']}",
+        from_lane=intern(f"{origin}_{link['fromLane']}"),
         to_edge=goal,
-        to_lane=f"{goal}_{link['toLane']}",
+        to_lane=intern(f"{goal}_{link['toLane']}"),
         via=link.get("via"),
         is_straight=link.get("dir", "s") == "s",
         has_signal="tl" in link,

@@ -18,6 +18,7 @@ from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import random_traffic
+from automotive_cosim.traffic.mirror import mirrored, write_mirrored
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_network, root_of
 from automotive_cosim.traffic.redraw import redraw
 from automotive_cosim.traffic.sumo import EGO
@@ -240,13 +241,17 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
     Args:
         configuration: the scenario's own, with copies of its files.
         setup: seed, and the scenario's step lengths, scale and rerouting.
-        network: the configuration's, if it has been read.
+        network: the configuration's as it drives, if it has been read.
     """
     options = DEFAULTS | dict(configuration.options) | QUIET | FIXED
     for name, value in options.items():
         if name.endswith(EGO_LISTS):
             options[name] = ",".join(OTHER_EGO if each == EGO else each for each in value.split(","))
     inputs = {name: [file.name for file in files] for name, files in configuration.files.items()}
+    if setup.scenario.mirrored:
+        image = network or mirrored(read_network(configuration.net))
+        inputs["net-file"] = ["mirrored.net.xml"]
+        write_mirrored(configuration.net, configuration.folder / "mirrored.net.xml", image.map)
     sumo = setup.scenario.sumo
     step_s = sumo.step_length_s
     if sumo.redraws_trips:

@@ -107,6 +107,7 @@ class Server:
         self._world = World(setup, scratch)
         self._set_alarm()
         self._world.warm_up(self._progress)
+        self._world.prepare_copies()
         gc.collect()
         gc.freeze()  # collecting garbage would copy every page that the children share
         return self._world.network.map

@@ -18,7 +18,7 @@ from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
-from automotive_cosim.traffic.ground import read_mapped
+from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
 from automotive_cosim.traffic.network import Network, NetworkReader
@@ -32,6 +32,9 @@ from automotive_cosim.traffic.situations import Situations
 from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, LibSumo, load_library, start
+
+SEARCHING_TYPE = "automotive_cosim.search"
+"""A vehicle type that no vehicle has."""
 
 INSERTION_LIMIT_S = 300.0
 """Limit of the simulated time that the ego waits for a gap to enter the traffic."""
@@ -89,11 +92,9 @@ class World:
         self._is_watched = True
 
     def _mapped(self, roads: Network, setup: Setup) -> Network:
-        """The network with what is around it, at the scenario's place."""
+        """The network with what is around it, on its side of the road and at the scenario's place."""
         scenario = setup.scenario
-        network = read_mapped(self._configuration, roads)
-        if scenario.origin is not None:
-            network = network.at(scenario.origin)
+        network = placed(read_mapped(self._configuration, roads), scenario)
         if network.unplaced and scenario.has_place and not setup.allow_unprojected:
             raise ScenarioError(
                 f"{self._configuration.given['net-file'][0].name} {network.unplaced}, so it has no position on "
@@ -121,6 +122,18 @@ class World:
             self._notice(sampling=(steps - step) * self.step_s <= max(3 * MEMORY_S, WINDOW_S))
         if progress is not None:
             progress(total_s, total_s)
+
+    def prepare_copies(self) -> None:
+        """Makes SUMO build its router's table of all edges, which copies of this process then share.
+
+        The type of the search neither deviates in speed nor carries a device, so no random number is drawn.
+        """
+        sumo = self._sumo
+        sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
+        sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
+        sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
+        edge = next(iter(self.network.edges))
+        sumo.find_route(edge, edge, SEARCHING_TYPE)
 
     def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoDrive:
         """Inserts the ego and runs until it is on the road; ``beat`` is called after every step.

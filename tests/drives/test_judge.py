@@ -7,8 +7,8 @@ import pytest
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
-from automotive_cosim.drives.judge import ORDER, EventOutcome, Judgement, Worth, judge
-from automotive_cosim.drives.score import NUISANCE, score, together
+from automotive_cosim.drives.judge import NOT_DUE, NUISANCE, ORDER, EventOutcome, Judgement, Worth, judge
+from automotive_cosim.drives.score import score, together
 
 SPEEDING = DriveEvent(
     kind="over_limit",
@@ -225,6 +225,20 @@ def test_what_is_true_is_not_a_look_alike_either() -> None:
     assert (found.acts[0].worth, found.events[0].outcome) == (Worth.NEUTRAL, EventOutcome.AVOIDED)
 
 
+def test_a_stop_must_be_due_and_not_only_true() -> None:
+    stop = WatchAct(300.0, requests=(PullOver(),))
+    meant = tuple(kind.name for kind in KINDS.values() if PullOver in kind.requests)
+    found = judged(stop, true=meant).acts[0]
+    assert (found.worth, found.reason) == (Worth.FALSE, NOT_DUE)
+    soft = replace(SPEEDING, kind="tyre", subject="", value=None)
+    assert judged(replace(stop, time_s=105.0), events=(soft,)).acts[0].worth is Worth.RIGHT
+
+
+def test_to_crawl_is_not_to_keep_a_limit() -> None:
+    speeds = {kmh: judged(WatchAct(105.0, requests=(SlowDown(kmh),))).events[0].outcome for kmh in (20.0, 45.0)}
+    assert speeds == {20.0: EventOutcome.MISSED, 45.0: EventOutcome.HIT}
+
+
 def test_what_is_true_and_was_just_told_is_a_repeat() -> None:
     worths = [act.worth for act in judged(warn(300.0), warn(330.0), warn(391.0), true=("over_limit",)).acts]
     assert worths == [Worth.NEUTRAL, Worth.REPEAT, Worth.NEUTRAL]
@@ -267,6 +281,15 @@ def test_each_nuisance_costs_the_same() -> None:
     one, two = (score(judged(warn(105.0), *(warn(300.0 + 100 * i) for i in range(n))), 600.0) for n in (1, 2))
     assert 100.0 - one.value == pytest.approx(100 * NUISANCE / 2)
     assert one.value - two.value == pytest.approx(100.0 - one.value)
+
+
+def test_who_takes_each_look_alike_for_its_event_gains_nothing() -> None:
+    """Blue lights and plain vans, told alike; and one who tells them apart."""
+    light = replace(SPEEDING, kind="blue_light", subject="", value=None, weight=2.0)
+    van = replace(light, lookalike=True, observable_s=400.0, last_s=440.0, obliged_s=None, deadline_s=None)
+    alike = [warn(at_s, AlertKind.YIELD) for at_s in (105.0, 410.0)]
+    assert score(judged(*alike, events=(light, van)), 600.0).value == 0.0
+    assert score(judged(alike[0], events=(light, van)), 600.0).value == 100.0
 
 
 def test_on_a_drive_without_events_nothing_can_be_gained() -> None:

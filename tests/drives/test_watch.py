@@ -24,6 +24,7 @@ from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
 from automotive_cosim.drives.score import Score, score
+from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm, noticed
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS, AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
@@ -232,10 +233,13 @@ def test_a_picture_comes_when_it_is_asked_for(begin: Begin) -> None:
 def test_an_agent_that_breaks_down_leaves_the_drive_to_itself(begin: Begin) -> None:
     watch = begin(120.0)
     watch.step(Action(ActionType.WAIT, seconds=5))
+    failed_s = round(watch.seconds, 1)
     watch.give_up("its process has ended")
     assert watch.end is End.AGENT_FAILED
     assert watch.seconds == pytest.approx(120.0)
     assert watch.judgement is not None
+    assert watch.unwatched_from_s == failed_s < 10.0
+    assert timeline(watch)["watched_until_s"] == failed_s
 
 
 def test_nothing_that_an_agent_reads_names_an_event(begin: Begin) -> None:
@@ -264,6 +268,13 @@ def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(silent: tuple
     assert found.events >= 2
     assert (found.value, found.recall, found.false_alarms) == (0.0, 0.0, 0)
     assert [m.driving for m in watch.moments] == [m.driving for m in watch.baseline_moments]
+    assert watch.unwatched_from_s is None
+    told = timeline(watch)
+    seconds = len(watch.moments)
+    for key in ("time_s", "speed_kmh", "limit_kmh", "gap_s", "ttc_s", "visibility_m", "grip", "lamps"):
+        assert len(told[key]) == seconds, key
+    assert len(told["wakes"]) == len(watch.woken) > 0
+    assert told["advice"] == []
 
 
 @pytest.mark.slow

@@ -72,6 +72,10 @@ def test_a_list_lets_in_whom_any_of_its_values_lets_in(left: str, right: str) ->
         ({"motor_vehicle:lanes": "yes|no"}, BOTH),
         ({"vehicle:lanes:backward": "no|no"}, WITH),
         ({"access:lanes": "no|no", "motor_vehicle": "yes"}, BOTH),
+        ({"psv:lanes:backward": "designated"}, WITH),
+        ({"bus:lanes:forward": "designated|designated"}, AGAINST),
+        ({"bus:lanes:backward": "yes|designated"}, BOTH),
+        ({"bus:lanes:backward": "designated", "motor_vehicle": "yes"}, BOTH),
         # oneway in all its spellings
         *(({"oneway": value}, WITH) for value in ("yes", "true", "1")),
         *(({"oneway": value}, AGAINST) for value in ("-1", "reverse")),

@@ -15,7 +15,7 @@ from automotive_cosim.osm.doubts import doubts
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, describe, way_of
-from tests.osm.conftest import Map
+from tests.osm.maps import Map
 
 pytestmark = pytest.mark.sumo
 

@@ -125,6 +125,9 @@ def test_light_traffic_is_the_seeds(tmp_path: Path) -> None:
         written.append((scratch / "random.add.xml").read_text())
     assert written[0] == written[1] != written[2]
     assert written[0].count("<flow ") > 20
+    network = network_of(scenario)
+    for route in re.findall(r'<route edges="([^"]+)"/>', written[0]):
+        assert all(there in network.crossings[here] for here, there in pairwise(route.split()))
 
 
 @pytest.mark.parametrize("name", scenarios.shipped())

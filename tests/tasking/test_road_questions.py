@@ -8,8 +8,18 @@ from typing import Any
 import pytest
 
 from automotive_cosim.cockpit.signals import ENERGY
-from automotive_cosim.contracts import AlertKind, OtherVehicle, PullOver, Reroute, RoadRequest, SlowDown
-from automotive_cosim.tasking import checks
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    NO_LIMIT,
+    AlertKind,
+    Limit,
+    LimitSource,
+    OtherVehicle,
+    PullOver,
+    Reroute,
+    RoadRequest,
+    SlowDown,
+)
 from automotive_cosim.tasking.checks import AlertGiven, RoadAsked
 from automotive_cosim.tasking.triggers import OutOfRange, SlowLeaderWithin
 
@@ -59,12 +69,11 @@ def test_an_alert_names_the_speed_where_no_sign_does(
     [(50.0, None, True), (50.0, 30.0, True), (50.0, 50.0, True), (50.0, 70.0, False), (None, 120.0, True)],
 )
 def test_an_alert_that_asks_for_no_speed_may_advise_any_that_is_allowed(
-    limit_kmh: float | None, advised_kmh: float | None, is_right: bool, monkeypatch: pytest.MonkeyPatch
+    limit_kmh: float | None, advised_kmh: float | None, is_right: bool
 ):
-    limit = None if limit_kmh is None else SimpleNamespace(kmh=limit_kmh)
-    monkeypatch.setattr(checks, "binding_limit", lambda _: limit)
     start, now = alerted(), alerted({"kind": AlertKind.YIELD, "speed_kmh": advised_kmh})
-    now.context = None
+    limit = NO_LIMIT if limit_kmh is None else Limit(limit_kmh / KMH_PER_MPS, LimitSource.POSTED)
+    now.driving = SimpleNamespace(road=SimpleNamespace(limit=limit))
     assert AlertGiven(AlertKind.YIELD).holds(start, now, [now]) is is_right
 
 

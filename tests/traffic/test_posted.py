@@ -215,6 +215,10 @@ def test_the_posted_limit_follows_the_clock_of_the_drive(school: Forked, grid: S
         limits = {round((road.limit.mps or 0) * KMH_PER_MPS) for road in inside}
         warned = before.ahead.next_limit is not None
         fastest_kmh = max(state.speed_mps for state in states if state.road.edge_id == "c1c2") * KMH_PER_MPS
+        behind = [state for state in states if state.road.edge_id.startswith(":c2")]
+        across_kmh = max(state.speed_mps for state in behind) * KMH_PER_MPS
+        assert {round((state.road.limit.mps or 0) * KMH_PER_MPS) for state in behind} == limits
+        assert across_kmh < 40 or limits == {50}, "the sign counts across the junction"
         seen[name] = limits, {road.limit_by_clock for road in inside}, warned, fastest_kmh > 40
     assert seen == {
         "school": ({30}, {True}, True, False),

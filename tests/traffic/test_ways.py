@@ -40,6 +40,15 @@ def test_a_way_leads_on_and_is_as_long_as_its_parts(name: str) -> None:
         assert len(set(way)) == len(way)
 
 
+def test_the_nearest_edges_are_those_of_the_whole_search() -> None:
+    network = read_network(next(load("london").folder.glob("*.net.xml*")))
+    start = sorted(network.edges)[0]
+    whole, near = ways_from(network, start), ways_from(network, start, 50)
+    assert 49 <= len(near.before) < len(whole.before)
+    reached = list(near.before)[:20]
+    assert [near.to(edge) for edge in reached] == [whole.to(edge) for edge in reached]
+
+
 def test_no_way_leads_to_what_is_no_edge() -> None:
     network = read_network(load("grid").folder / "grid.net.xml")
     assert way_through(network, ("cwc0", "nowhere")) == ()

@@ -77,7 +77,8 @@ class WatchAct:
     def words(self) -> str:
         """In words, for reports."""
         if self.alert is not None:
-            return f"alert {self.alert}"
+            speed = "" if self.speed_kmh is None else f", {self.speed_kmh:.0f} km/h"
+            return f"alert {self.alert}{speed}{'' if self.severity is Severity.WARNING else f', {self.severity}'}"
         if self.requests:
             return ", ".join(type(request).__name__ for request in self.requests)
         if self.writes:

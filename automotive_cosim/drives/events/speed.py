@@ -27,6 +27,8 @@ AHEAD_M = 500.0
 """How far ahead the navigation announces a limit: the horizon that ADASIS-based map systems send at least."""
 COASTING_MPS2 = 1.0
 """Deceleration of a car that coasts in gear: a driver who lifts the foot now just arrives at the new limit."""
+CRAWL_SHARE = 0.6
+"""A request for a smaller share of the right speed asks for crawling, not for keeping it; our choice."""
 KEEPERS = frozenset({ADAS.CRUISE_SPEED.path, ADAS.LIMITER_SPEED.path})
 SWITCHES = frozenset({ADAS.CRUISE_ACTIVE.path, ADAS.LIMITER_ACTIVE.path})
 
@@ -43,7 +45,7 @@ class SpeedKind(EventKind):
             if isinstance(request, PullOver):
                 return False
             if isinstance(request, SlowDown | Cruise) and request.speed_kmh is not None:
-                return request.speed_kmh <= most_kmh
+                return CRAWL_SHARE * (value or 0.0) <= request.speed_kmh <= most_kmh
         return any(
             (path in KEEPERS and isinstance(written, float) and written <= most_kmh)
             or (path in SWITCHES and written is True)
