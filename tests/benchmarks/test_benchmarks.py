@@ -55,7 +55,7 @@ CASES = {
             "--delay",
             "0",
         )
-    ),  # fmt: skip
+    ),
     "geo_context": Smallest(("2",)),
     "large_imports": Smallest(("--edges", "60")),
     "looking": Smallest(("grid", "2")),
