@@ -23,7 +23,7 @@ from automotive_cosim.calibration import CalibrationOptions, calibrate
 from automotive_cosim.calibration.driving import CountedTime, drive
 from automotive_cosim.calibration.result import Met
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.options import Setup, read_configuration, run_options
+from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 
 LEAST_PER_H = 50
 """Sites are placed where the twin has at least this much traffic."""
@@ -34,7 +34,8 @@ RATES = ("probability", "vehsPerHour", "number")
 def write_twin(scenario: Scenario, target: Path, spread: float, level: float, rng: np.random.Generator) -> None:
     """Writes the scenario's flows with other rates."""
     configuration = read_configuration(scenario.config)
-    root = ET.parse(configuration.options["route-files"]).getroot()
+    (routes,) = configuration.files["route-files"]
+    root = ET.parse(routes).getroot()
     for flow in root.iter("flow"):
         factor = level * float(np.exp(rng.normal(0.0, spread)))
         for rate in RATES:
@@ -53,8 +54,9 @@ def write_counts(scenario: Scenario, twin: Path, target: Path, share: float, rng
     configuration = read_configuration(scenario.config)
     clock = CountedTime(configuration.begin_s, scenario.sumo.warm_up_s, 1)
     scratch = target.parent
-    options = run_options(configuration, Setup(scenario, seed=99), scratch)
-    options |= {"route-files": str(twin), "step-length": "1", "default.action-step-length": "1"}
+    copies = copied(configuration, scratch)
+    options = run_options(copies, Setup(scenario, seed=99))
+    options |= {"route-files": twin.name, "step-length": "1", "default.action-step-length": "1"}
     driven = drive(scenario.name, options, clock, scratch)
     used = sorted(edge for (edge, _), flow in driven.flows.items() if flow >= LEAST_PER_H)
     sites = rng.choice(used, round(share * len(used)), replace=False).tolist()

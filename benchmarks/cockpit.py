@@ -1,4 +1,4 @@
-"""How long the cockpit takes to draw: run ``python benchmarks/cockpit.py [NETWORK ...]``.
+"""How long the cockpit takes to draw: run ``python benchmarks/cockpit.py [--frames N] [NETWORK ...]``.
 
 Each network is a SUMO ``.net.xml(.gz)``; without one, that of ``paris_centre`` is used. A car drives through its
 middle at 50 km/h, one simulated second per frame, turning slowly. Processor time, medians, milliseconds.
@@ -6,10 +6,10 @@ middle at 50 km/h, one simulated second per frame, turning slowly. Processor tim
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import statistics
-import sys
 from datetime import UTC, datetime
 from pathlib import Path
 from time import process_time
@@ -34,7 +34,6 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.traffic.network import read_network
 
-FRAMES = 60
 SPEED_MPS = 50 / 3.6
 SCREENS = ("home", "map", "climate", "media", "vehicle", "settings")
 
@@ -61,7 +60,7 @@ def outside(network: RoadNetwork, route: tuple[Road, ...], second: int) -> Surro
     return Surroundings(driving, weather, now, 40.0, None, Connectivity(True, "5g", 3))
 
 
-def measure(network: RoadNetwork, size: ScreenSize) -> dict[str, dict[str, float]]:
+def measure(network: RoadNetwork, size: ScreenSize, frames: int) -> dict[str, dict[str, float]]:
     """Milliseconds by screen: the tree, its elements, a changed, an unchanged and a redrawn frame."""
     x_min, y_min, x_max, y_max = network.bounds_m
     middle = ((x_min + x_max) / 2, (y_min + y_max) / 2)
@@ -71,7 +70,7 @@ def measure(network: RoadNetwork, size: ScreenSize) -> dict[str, dict[str, float
         cockpit = Cockpit(network, rng=np.random.default_rng(1), size=size)
         names = ("tree", "elements", "changed", "unchanged", "redrawn")
         times: dict[str, list[float]] = {name: [] for name in names}
-        for second in range(FRAMES):
+        for second in range(frames):
             cockpit.sense(outside(network, route, second), 1.0)
             cockpit.open_app("apps")
             cockpit.screenshot()
@@ -94,13 +93,16 @@ def _timed(into: list[float], call: Any) -> None:
 
 def main() -> None:
     """Measures each network and prints a JSON object for each size of screen."""
-    folder = Path(__file__).parent.parent / "sumo_scenarios"
-    paths = [Path(name) for name in sys.argv[1:]] or [folder / "paris_centre" / "paris_centre.net.xml.gz"]
-    for path in paths:
+    default = Path(__file__).parents[1] / "sumo_scenarios" / "paris_centre" / "paris_centre.net.xml.gz"
+    parser = argparse.ArgumentParser(description="How long the cockpit takes to draw.")
+    parser.add_argument("networks", nargs="*", type=Path, default=[default], help="SUMO's .net.xml or .net.xml.gz")
+    parser.add_argument("--frames", type=int, default=60, help="of each screen")
+    asked = parser.parse_args()
+    for path in asked.networks:
         network = read_network(path).map
         for size in ScreenSize:
             figures = {"network": path.name, "roads": len(network.roads), "size": size}
-            print(json.dumps(figures | {"screens": measure(network, size)}, indent=1))
+            print(json.dumps(figures | {"screens": measure(network, size, asked.frames)}, indent=1))
 
 
 if __name__ == "__main__":

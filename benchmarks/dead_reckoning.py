@@ -1,6 +1,6 @@
 """Error of the car's own position estimate while GPS is out, compared with SUMO's true position.
 
-    python benchmarks/dead_reckoning.py
+    python benchmarks/dead_reckoning.py [SCENARIO TRIP]
 
 Drives trips with a tunnel, several seeds each, and gives the median error in metres by the seconds since the last
 fix: of the last fix itself, of dead reckoning, and of dead reckoning that keeps to the map's roads; then of the
@@ -11,6 +11,7 @@ as worn tyres and a plain MEMS gyroscope do.
 from __future__ import annotations
 
 import math
+import sys
 from collections import defaultdict
 from contextlib import closing
 from dataclasses import dataclass, replace
@@ -92,7 +93,7 @@ def drive(scenario: str, trip: str, seed: int, errors: Errors) -> None:
 
 def main() -> None:
     print(f"{'trip':28}{'':12}" + "".join(f"{age:>7} s" for age in AGES_S))
-    for scenario, trip in TRIPS:
+    for scenario, trip in [sys.argv[1:]] if len(sys.argv) > 1 else TRIPS:
         errors: Errors = defaultdict(lambda: defaultdict(list))
         for seed in SEEDS:
             drive(scenario, trip, seed, errors)

@@ -87,6 +87,8 @@ def show(plan: StudyPlan, *, bare: bool) -> None:
         count = decisions(plan)
         ours_s, sumo_s = time.process_time() - begun_s, children.spent_s - spent
         wall_s = time.perf_counter() - clock_s
+    if not count:
+        raise SystemExit("these drives meet no decision; choose another trip, or a lower --delay")
     print(
         f"| {plan.replicates} | {count} | {(ours_s + sumo_s) / count:.2f} | {ours_s / count:.2f} "
         f"| {wall_s / count:.2f} |",

@@ -1,6 +1,6 @@
 """The time that one geo-context takes: at the same place again, and at a new place each time.
 
-    python benchmarks/geo_context.py            # prints one JSON object, milliseconds
+    python benchmarks/geo_context.py [ROUNDS]   # prints one JSON object, milliseconds
 
 ``same_place`` drives along one street, 1 cm a step; ``new_place`` jumps between cities of all continents, whose
 rule files have been read once; ``new_country`` reads each country's rule files for the first time; ``first`` is the
@@ -10,6 +10,7 @@ very first context of a process.
 from __future__ import annotations
 
 import json
+import sys
 from collections.abc import Iterable
 from datetime import UTC, datetime, timedelta
 from statistics import median, quantiles
@@ -27,7 +28,6 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.geo.locate import Geo
 
-ROUNDS = 2000
 CITIES = (
     *((2.285, 48.873), (13.4, 52.52), (-0.12, 51.5), (12.5, 41.9), (-3.7, 40.42), (8.54, 47.37), (18.06, 59.33)),
     *((10.75, 59.91), (-73.98, 40.75), (-118.24, 34.05), (139.76, 35.68), (151.21, -33.87), (116.4, 39.9)),
@@ -78,10 +78,11 @@ def measure(geo: Geo, places: Iterable[tuple[float, float]], *, text: bool) -> l
 
 def main() -> None:
     geo = Geo()
+    rounds = int(sys.argv[1]) if len(sys.argv) > 1 else 2000
     first = measure(geo, CITIES[:1], text=False)
     unread = measure(geo, CITIES[1:], text=False)
-    street = [(2.285 + index * 1e-7, 48.873) for index in range(ROUNDS)]
-    world = [CITIES[index % len(CITIES)] for index in range(ROUNDS)]
+    street = [(2.285 + index * 1e-7, 48.873) for index in range(rounds)]
+    world = [CITIES[index % len(CITIES)] for index in range(rounds)]
     figures = {"first_ms": first[0], "new_country_median_ms": median(unread), "new_country_worst_ms": max(unread)}
     for name, places in (("same_place", street), ("new_place", world)):
         for text in (False, True):

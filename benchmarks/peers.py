@@ -28,7 +28,7 @@ from automotive_cosim.scenery import open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration
+from automotive_cosim.traffic.options import Setup, command_line, copied, read_configuration, run_options
 
 SUMO_RL_S = 5
 """Seconds between two actions of sumo-rl, by default."""
@@ -38,13 +38,18 @@ def plain(scenario: Scenario, seconds: int) -> float:
     import libsumo
 
     with tempfile.TemporaryDirectory() as scratch:
-        libsumo.start(command_line(read_configuration(scenario.config), Setup(scenario), Path(scratch)))
+        copies = copied(read_configuration(scenario.config), Path(scratch))
+        os.chdir(scratch)
+        libsumo.start(command_line(run_options(copies, Setup(scenario))))
         for _ in range(round(scenario.sumo.warm_up_s)):
             libsumo.simulationStep()
         began_s = perf_counter()
         for _ in range(seconds):
             libsumo.simulationStep()
-        return perf_counter() - began_s
+        taken_s = perf_counter() - began_s
+        libsumo.close()
+        os.chdir(scenario.config.parent)
+    return taken_s
 
 
 def sumo_rl(scenario: Scenario, seconds: int) -> float:
@@ -53,7 +58,7 @@ def sumo_rl(scenario: Scenario, seconds: int) -> float:
     configuration = read_configuration(scenario.config)
     env = SumoEnvironment(
         str(configuration.net),
-        configuration.options["route-files"],
+        ",".join(map(str, configuration.files["route-files"])),
         num_seconds=10**6,
         delta_time=SUMO_RL_S,
         fixed_ts=True,  # with its own signals libsumo 1.28 hangs in a step on some of the networks

@@ -39,7 +39,6 @@ from automotive_cosim.studies.rows import (
 from automotive_cosim.studies.tables import mean_of, time_saved_s
 from automotive_cosim.traffic import sumo_programs
 
-STUDIES = 200
 SEEDS = 10
 POLICIES = ("always", "best")
 
@@ -122,10 +121,10 @@ def means(rows: Sequence[DriveRow]) -> tuple[SeedMean, SeedMean]:
     return always, best
 
 
-def show_invented(draws: int) -> None:
+def show_invented(draws: int, count: int) -> None:
     rng = np.random.default_rng(draws)
     for world in WORLDS:
-        studies = [means(list(invented(world, draws, rng))) for _ in range(STUDIES)]
+        studies = [means(list(invented(world, draws, rng))) for _ in range(count)]
         t, resampled = (
             fmean(
                 interval.low <= world.gain_s <= interval.high
@@ -279,6 +278,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--driven", action="store_true", help="drive small studies in SUMO instead")
     parser.add_argument("--seeds", type=int, default=60, help="seeds of a driven study")
+    parser.add_argument("--studies", type=int, default=200, help="invented studies of each world")
     parser.add_argument("--workers", type=int, default=1)
     options = parser.parse_args()
     if options.driven:
@@ -289,7 +289,7 @@ def main() -> None:
     )
     print("|---|---:|---:|---:|---:|---:|---:|")
     for draws in (1, 4):
-        show_invented(draws)
+        show_invented(draws, options.studies)
 
 
 if __name__ == "__main__":

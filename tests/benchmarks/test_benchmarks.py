@@ -1,0 +1,98 @@
+"""Every measurement in ``benchmarks/`` runs, with its smallest input."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).parents[2] / "benchmarks"
+GRID = FOLDER.parent / "sumo_scenarios" / "grid" / "grid.net.xml"
+LIMITS = {
+    "meta": {},
+    "speedLimitsByCountryCode": {"FR": [{"name": "urban", "tags": {"maxspeed": "50"}}]},
+}
+"""A table of default limits."""
+
+
+@dataclass(frozen=True)
+class Smallest:
+    """The smallest input of a script."""
+
+    words: tuple[str, ...] = ()
+    needs: tuple[str, ...] = ()
+    """Optional libraries."""
+    program: str = ""
+    """An optional program."""
+
+
+CASES = {
+    "calibration": Smallest(("--scenario", "grid", "--rounds", "1")),
+    "cockpit": Smallest(("--frames", "1", str(GRID))),
+    "dead_reckoning": Smallest(("grid", "tunnel")),
+    "decisions": Smallest(("--decisions", "40", "--envs", "1", "--only", "flat")),
+    "default_limits": Smallest(("limits.json",)),
+    "drives": Smallest(("--minutes", "0")),
+    "eta": Smallest(("grid", "--seeds", "1", "--at", "5", "--step", "1")),
+    "futures": Smallest(
+        (
+            "--scenario",
+            "grid",
+            "--trips",
+            "round",
+            "--departures",
+            "0",
+            "--per-drive",
+            "1",
+            "--replicates",
+            "1",
+            "--delay",
+            "0",
+        )
+    ),
+    "geo_context": Smallest(("2",)),
+    "large_imports": Smallest(("--edges", "60")),
+    "looking": Smallest(("grid", "2")),
+    "pages": Smallest(("1",), needs=("playwright",), program="chromium"),
+    "peers": Smallest(("grid", "--seconds", "5", "--repeats", "1")),
+    "ppo_flat": Smallest(("--steps", "64", "--rounds", "1"), needs=("torch", "stable_baselines3")),
+    "studies": Smallest(("--studies", "2")),
+    "towns": Smallest(("4",)),
+}
+
+
+def test_every_script_has_a_case() -> None:
+    if not FOLDER.is_dir():
+        pytest.skip("not run from a checkout")
+    assert {file.stem for file in FOLDER.glob("*.py")} == CASES.keys()
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+@pytest.mark.long
+@pytest.mark.parametrize("name", CASES)
+def test_it_measures(name: str, tmp_path: Path) -> None:
+    case = CASES[name]
+    if not (FOLDER / f"{name}.py").is_file():
+        pytest.skip("not run from a checkout")
+    missing = [library for library in case.needs if find_spec(library) is None]
+    if case.program and shutil.which(case.program) is None:
+        missing.append(case.program)
+    if missing:
+        pytest.skip(f"{', '.join(missing)} not installed")
+    (tmp_path / "limits.json").write_text(json.dumps(LIMITS), encoding="utf-8")
+    done = subprocess.run(
+        [sys.executable, FOLDER / f"{name}.py", *case.words],
+        cwd=tmp_path, capture_output=True, text=True, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert any(character.isdigit() for character in done.stdout)
+    if name == "peers":  # a way that fails is a line of its table, as where sumo-rl is not installed
+        failed = [line.split("  ")[0] for line in done.stdout.splitlines() if "Error" in line]
+        assert set(failed) <= {"sumo-rl, libsumo", "sumo-rl, traci"}, done.stdout
