@@ -27,15 +27,17 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, Contents, counts, file_sha256, read_contents
-from automotive_cosim.publish.episodes import ROWS, check_episode
-from automotive_cosim.publish.problems import Problem, differences
+from automotive_cosim.publish.episodes import check_trial
+from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.run.coverage import Coverage, coverage
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.jobs import TrialJob
 from automotive_cosim.run.moments import judged_file
-from automotive_cosim.run.plan import EpisodeJob, make_plan
+from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import as_json
-from automotive_cosim.run.store import read_evaluation, read_rows, trace_file
+from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.store import read_evaluation, trace_file
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
 from automotive_cosim.traffic.fork import Simulations
 
@@ -107,12 +109,12 @@ def _verified(
     contents = None if bundle is None else read_contents(folder)
     problems = [] if contents is None else hash_problems(folder, contents)
     problems += [] if bundle is None else _archive_problems(folder, bundle)
-    manifest, rows = read_evaluation(folder), read_rows(folder, EpisodeRow)
+    manifest, rows = read_evaluation(folder), read_trials(folder)
     found = coverage(manifest, rows)
     jobs = {job.id: job for job in make_plan(manifest["plan"]).jobs()}
     problems += _manifest_problems(manifest, jobs)
     problems += _line_problems(folder, rows, strict=contents is not None)
-    problems += [Problem(ROWS, name, "is not an episode of the plan") for name in rows if name not in jobs]
+    problems += [Problem(ROWS, name, "is not a trial of the plan") for name in rows if name not in jobs]
     problems += _file_problems(folder, rows)
     if contents is not None:
         problems += [] if "episodes" in manifest else [Problem(MANIFEST, "episodes", "is missing")]
@@ -124,13 +126,13 @@ def _verified(
     facts = [
         *([f"{counted(len(contents.files), 'file')}, sha256 of {NAME} {contents.sha256}"] if contents else []),
         str(found),
-        f"{counted(sum(row.success is not None for row in planned.values()), 'verdict')} recomputed",
+        f"{counted(sum(row.outcome is not None for row in planned.values()), 'verdict')} recomputed",
         f"{counted(len(drawn), 'drive')} replayed" + (f", drawn with seed {seed}" if drawn else ""),
         *(f"  {name}" for name in drawn),
         *_versions(manifest),
     ]
     unknown = [*UNKNOWN]
-    if len(drawn) < sum(row.success is not None for row in planned.values()):
+    if len(drawn) < sum(row.outcome is not None for row in planned.values()):
         unknown.append(UNKNOWN_WITHOUT_REPLAY)
     if contents is None:
         unknown.append(UNKNOWN_WITHOUT_HASHES)
@@ -164,7 +166,7 @@ def _archive_problems(folder: Path, bundle: Path) -> Iterator[Problem]:
             yield Problem(bundle.name, "", "is not, to the byte, the archive that `bundle` makes of its files")
 
 
-def _manifest_problems(manifest: Json, jobs: Mapping[str, EpisodeJob]) -> Iterator[Problem]:
+def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator[Problem]:
     plan, starts = manifest["plan"], manifest.get("starts") or []
     for name in manifest.keys() - {"format", "plan", "episodes", "starts"}:
         yield Problem(MANIFEST, name, "is not a field of a manifest")
@@ -190,7 +192,7 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, EpisodeJob]) -> Iterat
         yield Problem(MANIFEST, "starts", "are not in order")
 
 
-def _line_problems(folder: Path, rows: Mapping[str, EpisodeRow], *, strict: bool) -> Iterator[Problem]:
+def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) -> Iterator[Problem]:
     """Lines with unknown fields; in a bundle, also lines that are there twice or not in their only valid form."""
     known = {"untouched_drive", *(name for row in rows.values() for name in as_json(row))}
     texts = (folder / ROWS).read_text(encoding="utf-8").splitlines() if (folder / ROWS).is_file() else []
@@ -206,7 +208,7 @@ def _line_problems(folder: Path, rows: Mapping[str, EpisodeRow], *, strict: bool
         yield Problem(ROWS, "", "is not sorted by id")
 
 
-def _file_problems(folder: Path, rows: Mapping[str, EpisodeRow]) -> Iterator[Problem]:
+def _file_problems(folder: Path, rows: Mapping[str, TrialRow]) -> Iterator[Problem]:
     """Files in ``traces`` that belong to no judged episode."""
     known = {path.name for name in rows for path in (trace_file(folder, name), judged_file(folder, name))}
     for path in sorted((folder / "traces").glob("*")):
@@ -215,7 +217,7 @@ def _file_problems(folder: Path, rows: Mapping[str, EpisodeRow]) -> Iterator[Pro
 
 
 def _count_problems(
-    contents: Contents, manifest: Json, found: Coverage, rows: Mapping[str, EpisodeRow]
+    contents: Contents, manifest: Json, found: Coverage, rows: Mapping[str, TrialRow]
 ) -> Iterator[Problem]:
     told = json.loads(contents.text())
     whole = json.loads(
@@ -231,15 +233,15 @@ def _count_problems(
 
 def _episode_problems(
     folder: Path,
-    jobs: Mapping[str, EpisodeJob],
-    rows: Mapping[str, EpisodeRow],
+    jobs: Mapping[str, TrialJob],
+    rows: Mapping[str, TrialRow],
     workers: int,
     tell: Callable[[int, int], None],
 ) -> list[Problem]:
     names = sorted(rows)
     found: list[Problem] = []
     check, theirs, mine = (
-        partial(check_episode, folder),
+        partial(check_trial, folder),
         [jobs[name] for name in names],
         [rows[name] for name in names],
     )
@@ -253,14 +255,14 @@ def _episode_problems(
     return found
 
 
-def _sample(rows: Mapping[str, EpisodeRow], count: int, seed: int) -> list[str]:
+def _sample(rows: Mapping[str, TrialRow], count: int, seed: int) -> list[str]:
     """Judged episodes, drawn with this seed."""
-    names = sorted(name for name, row in rows.items() if row.success is not None)
+    names = sorted(name for name, row in rows.items() if row.outcome is not None)
     drawn = np.random.default_rng(seed).permutation(len(names))[:count]
     return [names[number] for number in sorted(drawn)]
 
 
-def _replayed(folder: Path, job: EpisodeJob, row: EpisodeRow) -> list[Problem]:
+def _replayed(folder: Path, job: TrialJob, row: TrialRow) -> list[Problem]:
     try:
         with closing(Simulations()) as simulations:
             return list(replay(folder, job, row, simulations))

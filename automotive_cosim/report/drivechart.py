@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.judge import EventOutcome, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn
-from automotive_cosim.run.watch_row import WatchRow
+from automotive_cosim.run.drive_row import DriveTrialRow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +39,7 @@ LEAST_S = 6.0
 ROW_IN, SPEED_IN = 0.24, 1.7
 
 
-def timeline_chart(row: WatchRow, timeline: Json) -> tuple[str, str]:
+def timeline_chart(row: DriveTrialRow, timeline: Json) -> tuple[str, str]:
     """The timeline as SVG, for a wide page and a narrow one.
 
     Args:
@@ -53,7 +53,7 @@ def timeline_chart(row: WatchRow, timeline: Json) -> tuple[str, str]:
     return drawn(f"{row.id}", drawing, WIDE_IN), drawn(f"{row.id}", drawing, NARROW_IN)
 
 
-def _drawing(row: WatchRow, timeline: Json) -> Drawing:
+def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
     kinds = _kinds(row.events)
     height_in = 0.9 + ROW_IN * (len(kinds) + 1) + SPEED_IN
 
@@ -115,7 +115,7 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> 
                 axes.plot(event.acted_s, place, "o", color=INK, markersize=3.5)
 
 
-def _acts(axes: Axes, row: WatchRow) -> None:
+def _acts(axes: Axes, row: DriveTrialRow) -> None:
     for act in row.acts:
         name = "false" if act.worth.is_false else act.worth.value
         mark, colour = MARKS[name]

@@ -1,13 +1,15 @@
 """What earlier versions wrote, in the present form; nothing else reads theirs.
 
 0.1    had modes: ``prompted``, which every episode is now, and ``monitoring``, now drives
-0.2    had each condition as a field of rows, setups and results, ``latency`` for ``latency_s`` and one clock a plan
+0.2    had each condition as a field of rows, setups and results; in plans ``latency`` for ``latency_s``, and one
+       clock; plans of drives apart from those of tasks, with their own ``wall_s``; and files for timelines
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import Json
@@ -32,6 +34,8 @@ def plan_values(values: Mapping[str, Any], where: str) -> dict[str, Any]:
     made = _without_mode(values, where)
     if "latency" in made:
         made.setdefault("latency_s", made.pop("latency"))
+    if "wall_s" in made:  # a plan of drives
+        made["limits"] = made.get("limits", {}) | {"drive_wall_s": made.pop("wall_s")}
     return {
         name: [value] if name in NAMES and isinstance(value, str | int | float) else value
         for name, value in made.items()
@@ -56,6 +60,12 @@ def with_conditions(values: Mapping[str, Any]) -> dict[str, Any]:
         return dict(values)
     found = {"feedback": str(FeedbackDetail.VERBOSE)} | {name: values[name] for name in NAMES & values.keys()}
     return {name: value for name, value in values.items() if name not in NAMES} | {"conditions": found}
+
+
+def former_timeline(folder: Path, drive: str) -> Json | None:
+    """The timeline of a drive of 0.2, which had a file of its own; None if there is none."""
+    path = folder / "timelines" / f"{drive}.json"
+    return json.loads(path.read_text("utf-8")) if path.is_file() else None
 
 
 def line_of(line: bytes) -> bytes | None:

@@ -1,0 +1,64 @@
+"""The row of a drive, from which its report is made."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Annotated
+
+from automotive_cosim.drives.harm import Harm
+from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
+from automotive_cosim.drives.score import Score
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.run.row import InColumns
+from automotive_cosim.run.trial_row import TrialRow
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveTrialRow(TrialRow):
+    """One drive. Times of events and acts are seconds since departure."""
+
+    family: str
+    """Family of drives that it was drawn from."""
+    season: str
+    score: Annotated[Score | None, InColumns("score")] = None
+    """None without a judgement."""
+    value: float | None = None
+    """The headline figure: 0 is doing nothing, 100 is the rule-perfect watcher."""
+    harm: Annotated[Harm | None, InColumns("harm")] = None
+    baseline_harm: Annotated[Harm | None, InColumns("baseline_harm")] = None
+    """The same for the do-nothing run."""
+    distraction_s: float = 0.0
+    """Seconds for which messages took the driver's eyes off the road."""
+    events: tuple[JudgedEvent, ...] = ()
+    acts: tuple[JudgedAct, ...] = ()
+    waits: int = 0
+    wakes: int = 0
+    """Waits and acts after which something had changed."""
+    calls: int = 0
+    """Answers of the model."""
+    channels: tuple[Channel, ...] = ()
+    """What the agent was given; the answers to its queries depend on it."""
+
+    @property
+    def subject(self) -> str:
+        """The family."""
+        return self.family
+
+    @property
+    def instance(self) -> tuple[Hashable, ...]:
+        """What two contestants must share to be compared."""
+        return self.family, self.scenario, self.seed, self.repeat
+
+    @property
+    def outcome(self) -> bool | None:
+        """Whether every event was met and nothing was a nuisance; None without a judgement."""
+        return None if self.score is None else self.score.met == self.score.events and not self.score.nuisances
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """Events that were not met, and whether something was a nuisance."""
+        if self.score is None:
+            return ()
+        lost = [event.kind for event in self.events if event.outcome.counts and not event.outcome.is_credited]
+        return (*dict.fromkeys(lost), *(["nuisances"] if self.score.nuisances else []))
