@@ -68,16 +68,13 @@ def former_timeline(folder: Path, drive: str) -> Json | None:
     return json.loads(path.read_text("utf-8")) if path.is_file() else None
 
 
-def line_of(line: bytes) -> bytes | None:
-    """A row's line in the present form; None if an earlier version did not write it either.
-
-    Raises:
-        ValueError: it is not JSON.
-    """
-    values = json.loads(line)
-    if not isinstance(values, dict) or "conditions" in values:
-        return None
-    return json.dumps(with_conditions(values)).encode()
+def present(line: bytes) -> bytes:
+    """A row's line of 0.2 in the present form; one that is no JSON object, as it is."""
+    try:
+        values = json.loads(line)
+    except ValueError:
+        return line
+    return json.dumps(with_conditions(values)).encode() if isinstance(values, dict) else line
 
 
 def _without_mode(values: Mapping[str, Any], where: str) -> Json:

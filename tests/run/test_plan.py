@@ -248,7 +248,7 @@ def test_a_broken_file_is_told(tmp_path):
 
 def test_a_plan_of_more_than_can_be_run_is_refused_at_once():
     plan = make_plan({"agents": ["oracle"], "seeds": list(range(1000)), "repeats": 1000})
-    with pytest.raises(UserError, match="000,000 runs of tasks; give fewer seeds"):
+    with pytest.raises(UserError, match="000,000 runs; give fewer seeds"):
         plan.jobs()
 
 

@@ -68,7 +68,7 @@ def test_a_row_comes_back_from_its_line_equal_and_typed(row):
 @pytest.mark.parametrize(
     ("kind", "required"),
     [
-        (EpisodeRow, "id task half pair dimension module scenario agent model seed repeat"),
+        (EpisodeRow, "id task half pair dimension module scenario agent model seed"),
         (DriveRow, "id scenario share seed departure_s trip"),
         (Proof, "id task seed"),
     ],
