@@ -18,6 +18,7 @@ from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
+from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.conditions import ConditionLists, combined, lists_of
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
@@ -103,6 +104,9 @@ class Plan(ConditionLists):
             open_scenario(name)
             for family in families_named(self.drives)[:1]:
                 elsewhere(family_named(family).draw(0), name)
+        for job in self.jobs():
+            if isinstance(job, DriveJob):
+                DriveSpec(job.setup.family, conditions=job.setup.conditions).check()
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
         for agent, model, conditions in {(job.setup.agent, job.model, job.setup.conditions) for job in self.jobs()}:
