@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 
@@ -19,9 +19,18 @@ from automotive_cosim.errors import ActionError
 
 LONGEST = 20_000
 """Characters at the end of an answer in which to look for the action."""
-MOST_TRIES = 40
-"""Opening braces, from the last, at which to look for an object."""
-LABELS = re.compile(r"^[\s*_#>-]*(situation|reason|thought|plan|action|lesson)[*_]*\s*:[*_]*", re.IGNORECASE | re.M)
+LONGEST_REPAIRED = 2_000
+"""Characters of it in which to repair an object."""
+END_TOKEN = re.compile(
+    r"<\|(?:im_end|im_start|endoftext|end_of_text|eot_id|eom_id|eos|end)\|>|</s>|<eos>|<end_of_turn>"
+    "|<\uff5cend\u2581of\u2581sentence\uff5c>"
+)
+"""What ends a turn in the templates of Qwen, Llama, Gemma, Phi, Mistral and DeepSeek."""
+WIDE = str.maketrans("\uff5b\uff5d\uff1a", "{}:")
+"""Braces and the colon of full width as ASCII."""
+LABELS = re.compile(
+    r"^[\s*_#>-]*(situation|reason|thought|plan|action|lesson)[*_]*\s*[:\uff1a][*_]*", re.IGNORECASE | re.M
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,13 +50,14 @@ def read(text: str) -> ParsedAnswer:
     Raises:
         ActionError: it has no action, or a malformed one; the message says which.
     """
+    text = ended(text)
     strict = re.search(r"^Action: *(\{.*\})\s*\Z", text, re.DOTALL | re.MULTILINE)
     if strict is not None:
         try:
             return _answer(text, json.loads(strict[1]), strict=True)
         except (ValueError, RecursionError):
             pass
-    found = next(_objects(text[-LONGEST:]), None)
+    found = next(_answers(text[-LONGEST:]), None)
     if found is None:
         raise ActionError("the answer has no JSON object with an action_type; end it with `Action: {...}`")
     return _answer(text, found, strict=False)
@@ -68,41 +78,59 @@ def _answer(text: str, action: Json, *, strict: bool) -> ParsedAnswer:
     )
 
 
-def _objects(text: str) -> Iterator[Json]:
+def ended(text: str) -> str:
+    """The answer up to the token that ends it, which some servers leave in it."""
+    marks = list(END_TOKEN.finditer(text))
+    first = next((mark.start() for mark in marks if text[: mark.start()].strip()), None)
+    return END_TOKEN.sub("", text if first is None else text[:first])
+
+
+def objects(text: str) -> Sequence[Json]:
+    """JSON objects one after the other, those inside others left out; if none is written well, repaired ones."""
+    return _written(text) or _repaired(text)
+
+
+def _answers(text: str) -> Iterator[Json]:
     """Objects with an ``action_type``, from the end: after the last label first, then anywhere; as written first,
     then repaired."""
     tail = text[max((mark.end() for mark in LABELS.finditer(text) if mark[1].lower() == "action"), default=0) :]
-    for repaired in (tail, _repaired(tail), text, _repaired(text)):
-        starts = [match.start() for match in re.finditer(r"\{", repaired)][-MOST_TRIES:]
-        for start in reversed(starts):
-            try:
-                value, _ = json.JSONDecoder().raw_decode(repaired, start)
-            except (ValueError, RecursionError):
-                continue
-            if isinstance(value, dict) and "action_type" in value:
-                yield value
+    for part in (tail, text):
+        for found in (_written, _repaired):
+            yield from reversed([inner for value in found(part) for inner in _with_type(value)])
 
 
-_TOKEN = re.compile(
-    r"""
-    (?P<double>"(?:[^"\\]|\\.)*")
-    | (?<![\w'])'(?P<single>(?:[^'\\\n]|\\.|'(?=\w))*)'
-    | (?P<word>\b(?:True|False|None)\b)
-    | (?P<comma>,(?=\s*[}\]]))
-    """,
-    re.VERBOSE,
-)
-_WORDS = {"True": "true", "False": "false", "None": "null"}
+def _written(text: str) -> list[Json]:
+    found = []
+    start = text.find("{")
+    while start >= 0:
+        try:
+            value, end = json.JSONDecoder().raw_decode(text, start)
+        except (ValueError, RecursionError):
+            end = start + 1
+        else:
+            found.append(value)
+        start = text.find("{", end)
+    return found
 
 
-def _repaired(text: str) -> str:
-    """Python's notation as JSON: single quotes, True, False, None, an extra comma."""
+def _repaired(text: str) -> list[Json]:
+    """Objects whose brackets are not closed, in Python's notation, with quotes and commas of other scripts."""
+    from json_repair import repair_json  # most answers need none
 
-    def repaired(match: re.Match[str]) -> str:
-        if match["double"] is not None:
-            return match[0]
-        if match["single"] is not None:
-            return json.dumps(match["single"].replace("\\'", "'"), ensure_ascii=False)
-        return _WORDS.get(match[0], "")
+    start = text.find("{")
+    if start < 0:
+        return []
+    plain = text[start : start + LONGEST_REPAIRED].translate(WIDE)
+    try:
+        value: object = repair_json(plain, return_objects=True, skip_json_loads=True)
+    except (ValueError, RecursionError):
+        return []
+    return [each for each in (value if isinstance(value, list) else [value]) if isinstance(each, dict) and each]
 
-    return _TOKEN.sub(repaired, text)
+
+def _with_type(value: object) -> Iterator[Json]:
+    if isinstance(value, dict):
+        if "action_type" in value:
+            yield value
+        for inner in value.values():
+            yield from _with_type(inner)

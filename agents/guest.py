@@ -64,8 +64,8 @@ class Guest:
         """
         try:
             returned = self._agent.act(observation)
-        except (ActionError, OutOfBudgetError):
-            raise
+        except (ActionError, OutOfBudgetError) as error:
+            raise type(error)(_plain(str(error))) from error
         except FAULTS as error:
             raise ActionError(f"agent {self.name!r} raised {_told(error)}") from error
         if isinstance(returned, Action):
@@ -138,5 +138,9 @@ def _made(spec: str, made: type) -> Any:
 
 
 def _told(error: BaseException) -> str:
-    said = " ".join(str(error).split())[:200]
-    return f"{type(error).__name__}: {said}".encode("utf-8", "replace").decode()
+    return _plain(f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
+
+
+def _plain(text: str) -> str:
+    """The text without half surrogate pairs, which no file can hold."""
+    return text.encode("utf-8", "replace").decode()

@@ -124,6 +124,8 @@ class Memory:
 
     @contextmanager
     def _open(self) -> Iterator[sqlite3.Connection]:
+        if self._path.exists() and not self._path.is_file():
+            raise UserError(f"cannot use {self._path} as a memory: it is not a regular file; give another file")
         try:
             with closing(sqlite3.connect(self._path, timeout=30)) as file, file:
                 yield file

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from automotive_cosim.agents import answer, prompt
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
+from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import marked, png
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
@@ -118,7 +119,7 @@ class ModelAgent:
             return
         steps = [*self._done, prompt.action_words(self._last.action, self._last.seen)]
         self._memory.keep(
-            Strategy(where(self._first), prompt.one_line(self._first.goal), why(self._first), " > ".join(steps)),
+            Strategy(where(self._first), one_line(self._first.goal), why(self._first), " > ".join(steps)),
             worked=success,
         )
 
@@ -128,7 +129,7 @@ class ModelAgent:
         self._first = observation
         if self._memory is None:
             return
-        recalled = self._memory.recall(where(observation), prompt.one_line(observation.goal))
+        recalled = self._memory.recall(where(observation), one_line(observation.goal))
         self._recalled = tuple(strategy.words for strategy in recalled)
         self._asking.note(StageName.REMEMBER, observation, "\n".join(self._recalled) or "nothing of this place")
 
@@ -136,8 +137,11 @@ class ModelAgent:
         has_waited = self._keeps_watch and last.action is not None and last.action.action_type is ActionType.WAIT
         lesson = self._reflect(last, now) if self._profile.reflects and not has_waited else ""
         done = prompt.action_words(last.action, last.seen)
-        line = prompt.summary(
-            len(self._history) + 1, last.action, now.feedback, prompt.target(last.action, last.seen), lesson
+        number = len(self._history) + 1
+        line = (
+            prompt.step(number, last.action, last.seen, now.feedback, lesson)
+            if self._profile.brief
+            else prompt.summary(number, last.action, now.feedback, prompt.target(last.action, last.seen), lesson)
         )
         self._done.append(done)
         self._history.append(line)
@@ -146,9 +150,11 @@ class ModelAgent:
     def _reflect(self, last: _Turn, now: Observation) -> str:
         screens = [_shown(last.seen), _shown(now)] if self._sees else []
         pictures = tuple(screen for screen in screens if screen is not None)
-        text = prompt.look_back(last.seen, last.action, now, last.plan, bool(pictures))
+        text = prompt.look_back(
+            last.seen, last.action, now, last.plan, bool(pictures), is_brief=self._profile.brief
+        )
         reply, asked = self._asking.ask(text, pictures)
-        lesson = prompt.one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
+        lesson = one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
         self._asking.note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))
         return lesson
 
@@ -158,19 +164,21 @@ class ModelAgent:
             with_marks = _marked(seen)
             pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
         history = self._history[-WATCH_HISTORY:] if self._keeps_watch else self._history
-        text = prompt.turn(self._profile, seen, history, plan, self._recalled, bool(pictures))
+        text = prompt.turn(
+            self._profile, seen, history, plan, self._recalled, bool(pictures), on_watch=self._keeps_watch
+        )
         self._asking.note(StageName.PERCEIVE, seen, text)
         reply, asked = self._asking.ask(text, pictures)
         try:
             understood = answer.read(reply.text)
             if understood.action.action_type not in self._profile.actions:
                 raise ActionError(
-                    f"this agent has no action {understood.action.action_type}; choose one of the list"
+                    f"this agent has no action {understood.action.action_type}; choose one that the prompt names"
                 )
         except ActionError as error:
-            cut = "; the answer was cut off at its longest" if reply.finish == "length" else ""
-            self._asking.note(StageName.ACT, seen, f"{error}{cut}", reply, asked, len(pictures))
-            raise ActionError(f"{error}{cut}") from None
+            told = f"{error}{reply.ending}"
+            self._asking.note(StageName.ACT, seen, told, reply, asked, len(pictures))
+            raise ActionError(told) from None
         self._asking.note(StageName.INTERPRET, seen, understood.situation, reply, asked, len(pictures))
         self._asking.note(StageName.PLAN, seen, understood.plan)
         form = "" if understood.strict else " (read forgivingly)"

@@ -7,8 +7,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 from automotive_cosim.cockpit.actions import point
+from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.cockpit import OPPOSITE
-from automotive_cosim.cockpit.screens import DOCK
+from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -27,7 +28,7 @@ from automotive_cosim.tasking.moves import Consult, Do, Hear, Move, Open, Slide,
 SLIDER_MARGIN_PX = 20
 """How far inside its element a slider's range begins."""
 LIST = "ListView"
-_DOCK = frozenset(resource_id(f"dock.{app}") for app in DOCK)
+_DOCK = frozenset(resource_id(f"dock.{app.name}") for app in apps_in(Where.DOCK))
 """What scrolls row by row, by class name."""
 
 

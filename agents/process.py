@@ -21,7 +21,6 @@ from __future__ import annotations
 import base64
 import gc
 import os
-import shutil
 import signal
 import socket
 import sys
@@ -35,16 +34,14 @@ from typing import Any, NoReturn
 import numpy as np
 
 from automotive_cosim.agents import Agent, AgentSettings, Thinker, make_agent
+from automotive_cosim.agents.leftovers import POLL_S, children, end_all, remove, take_orphans
 from automotive_cosim.agents.wire import GoneError, Wire
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.errors import ActionError, CosimError, OutOfBudgetError
 from automotive_cosim.models import ChatMessage, ModelReply
 
-POLL_S = 0.002
-SWEEP_S = 5.0
-"""Longest wall time to end all that an agent has started."""
-PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
+PR_SET_PDEATHSIG = 1
 """Of Linux's prctl."""
 
 
@@ -95,7 +92,7 @@ class AgentServer:
 
     def run(self) -> None:
         """Serves until the worker is gone."""
-        _prctl(PR_SET_CHILD_SUBREAPER, 1)  # orphans of an agent come here, and end here
+        take_orphans()  # of an agent, which end here
         try:
             while True:
                 kind, *arguments = self._wire.receive_object()
@@ -109,7 +106,7 @@ class AgentServer:
         except GoneError:
             self._end()
             if self._folder:  # the worker was killed, and removes it no more
-                shutil.rmtree(self._folder, ignore_errors=True)
+                remove(Path(self._folder))
 
     def _start(self, request: AgentRequest) -> None:
         self._end()
@@ -147,16 +144,7 @@ class AgentServer:
             time.sleep(0.0 if ended else POLL_S)
         with suppress(ProcessLookupError, PermissionError):
             os.killpg(child, signal.SIGKILL)
-        end_s = time.monotonic() + SWEEP_S
-        while time.monotonic() < end_s:  # it, its orphans, and theirs
-            for pid in _children() or ([] if how else [child]):
-                with suppress(ProcessLookupError):
-                    os.kill(pid, signal.SIGKILL)
-            try:
-                ended, _ = os.waitpid(-1, os.WNOHANG)
-            except ChildProcessError:
-                break
-            time.sleep(0.0 if ended else POLL_S)
+        end_all(lambda: children() or [child])  # it, its orphans, and theirs
         return how
 
 
@@ -215,14 +203,6 @@ def _how(code: int) -> str:
     if code < 0:
         return f"its process was killed by {signal.Signals(-code).name}"
     return f"its process exited with code {code}"
-
-
-def _children() -> list[int]:
-    """This process's children; none where the system does not list them."""
-    try:
-        return list(map(int, Path("/proc/self/task", str(os.getpid()), "children").read_text().split()))
-    except OSError:
-        return []
 
 
 def _prctl(option: int, value: int) -> None:

@@ -9,16 +9,27 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import asdict
 from importlib.resources import files
 from string import Template
 
+from automotive_cosim.agents import brief
+from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import AgentProfile
-from automotive_cosim.cockpit.actions import grammar, to_json
+from automotive_cosim.cockpit.actions import FIELDS, grammar, to_json
 from automotive_cosim.cockpit.restrictions import in_words
-from automotive_cosim.contracts import Action, Element, Feedback, GpsFix, Json, Observation, VehicleState
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    Element,
+    Feedback,
+    GpsFix,
+    Json,
+    Observation,
+    VehicleState,
+)
 from automotive_cosim.interface.observe import Channel
 
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable", "is_long_clickable")
@@ -46,6 +57,7 @@ def turn(
     plan: str = "",
     recalled: Sequence[str] = (),
     pictures: bool = False,
+    on_watch: bool = False,
 ) -> str:
     """The prompt of one turn of an agent.
 
@@ -56,28 +68,40 @@ def turn(
         plan: what it intended to do next when it last acted.
         recalled: what it remembers of earlier episodes, one line each.
         pictures: whether the screen is sent along, and the marked screen if there is a list.
+        on_watch: whether it watches over a drive, for which every agent has the same words.
     """
     given = profile.channels
-    feedback = observation.feedback
+    is_listed, is_told = Channel.ELEMENTS in given, Channel.CONTEXT in given
     return fill(
-        profile.name,
+        WATCH if on_watch else "brief" if profile.brief else profile.name,
         {
-            "grammar": grammar(profile.actions, by_point=Channel.ELEMENTS not in given),
+            "grammar": _grammar(profile, by_point=not is_listed, on_watch=on_watch),
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
-            "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
-            "elements": elements(observation) if Channel.ELEMENTS in given else None,
-            "pictures": (PICTURES if Channel.ELEMENTS in given else PICTURE) if pictures else None,
-            "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
+            "feedback": _result(observation),
+            "elements": _elements(profile, observation) if is_listed else None,
+            "pictures": (PICTURES if is_listed else PICTURE) if pictures else None,
+            "seen": "the screen, its elements" if is_listed else "the screen",
+            "vehicle": _vehicle(observation.vehicle, is_brief=profile.brief) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
-            "context": _lines(observation.context or "unknown") if Channel.CONTEXT in given else None,
+            "context": _context(profile, observation, on_watch=on_watch) if is_told else None,
+            "weigh": PLACE_COUNTS if is_told else "",
             "memory": "\n".join(map(one_line, recalled)) or None,
         },
     )
 
 
+PLACE_COUNTS = (
+    "Weigh what you know of the place against what the car is doing: the same act can be right in one place and "
+    "wrong in another."
+)
+WATCH = "drive"
+"""The prompt of a watch over a drive."""
+UNASKED = frozenset({ActionType.STATUS})
+"""Actions that a watch has no use for."""
+WAITS = "wait until something changes, or for up to 60 seconds"
 PICTURES = (
     "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
     "The numbers are the indices below."
@@ -86,23 +110,47 @@ PICTURE = "One picture comes with this text: the screen, as wide and high in pix
 BEFORE_AND_AFTER = "Two pictures come with this text: the screen before the action and after it."
 
 
+def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
+    """The actions; in a watch, a wait ends when something changes and nothing ends the watch."""
+    kinds = profile.actions - (UNASKED if on_watch else frozenset())
+    text = (brief.actions if profile.brief else grammar)(kinds, by_point=by_point)
+    return text.replace(FIELDS[ActionType.WAIT].about, WAITS) if on_watch else text
+
+
 def look_back(
-    before: Observation, action: Action | None, after: Observation, plan: str = "", pictures: bool = False
+    before: Observation,
+    action: Action | None,
+    after: Observation,
+    plan: str = "",
+    pictures: bool = False,
+    is_brief: bool = False,
 ) -> str:
     """The prompt that asks about the result of an action, or of an answer that could not be read."""
-    feedback = after.feedback
-    return fill(
-        "reflect",
-        {
-            "goal": driver_words(before),
-            "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
-            "plan": one_line(plan) or None,
-            "feedback": f"{feedback.code}: {one_line(feedback.text)}".rstrip(": "),
-            "before": elements(before) if before.elements is not None else None,
-            "after": elements(after) if after.elements is not None else None,
-            "pictures": BEFORE_AND_AFTER if pictures else None,
-        },
-    )
+    slots = {
+        "goal": driver_words(after),
+        "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
+        "plan": one_line(plan) or None,
+        "feedback": _result(after),
+        "pictures": BEFORE_AND_AFTER if pictures else None,
+    }
+    if is_brief:
+        lists = (before.elements, after.elements)
+        changes = None if lists[0] is None or lists[1] is None else brief.changes(lists[0], lists[1])
+        return fill("lesson", slots | {"action": action_words(action, before), "changes": changes})
+    shown = {name: None if seen.elements is None else elements(seen) for name, seen in _sides(before, after)}
+    return fill("reflect", slots | shown)
+
+
+def _sides(before: Observation, after: Observation) -> Iterator[tuple[str, Observation]]:
+    yield "before", before
+    yield "after", after
+
+
+def step(number: int, action: Action | None, seen: Observation, feedback: Feedback, lesson: str = "") -> str:
+    """The same as ``summary`` in fewer words, with the element's words in place of its index."""
+    learnt = f"; {one_line(lesson)}" if lesson else ""
+    result = f"{feedback.code} {one_line(feedback.text)}".rstrip()
+    return f"Step {number}: {action_words(action, seen)} -> {result}{learnt}"
 
 
 def summary(number: int, action: Action | None, feedback: Feedback, target: str, lesson: str = "") -> str:
@@ -125,13 +173,25 @@ def driver_words(observation: Observation) -> str:
     return "\n".join([one_line(observation.goal), *(f"Later: {one_line(text)}" for text in observation.said)])
 
 
-def one_line(text: str) -> str:
-    """The text without line breaks of any kind, and without a heading's mark at its start."""
-    return re.sub(r"^(#+ )+", "", " ".join(text.split()))
-
-
 def _slots(section: str) -> set[str]:
     return set(re.findall(r"\$([a-z]+)", section))
+
+
+def _result(observation: Observation) -> str:
+    feedback = observation.feedback
+    return f"{feedback.code}: {one_line(feedback.text)}".rstrip(": ")
+
+
+def _elements(profile: AgentProfile, observation: Observation) -> str:
+    return brief.told(observation.elements or ()) if profile.brief else elements(observation)
+
+
+def _context(profile: AgentProfile, observation: Observation, *, on_watch: bool) -> str:
+    """The geo-context; short only for who can ask for the rest, and not in a watch, where anything can matter."""
+    text = observation.context or "unknown"
+    if profile.brief and ActionType.QUERY in profile.actions and not on_watch:
+        return brief.context(text, driver_words(observation))
+    return _lines(text)
 
 
 def _lines(text: str) -> str:
@@ -158,14 +218,16 @@ def listing(index: int, element: Element) -> Json:
     return entry | {flag.removeprefix("is_"): True for flag in SHOWN_FLAGS if getattr(element, flag)}
 
 
-def _vehicle(vehicle: VehicleState | None) -> str:
+def _vehicle(vehicle: VehicleState | None, *, is_brief: bool = False) -> str:
     if vehicle is None:
         return "unknown"
+    if is_brief:
+        return brief.vehicle(vehicle)
     shown = {name: value for name, value in asdict(vehicle).items() if value is not None}
     shown["restrictions"] = in_words(vehicle.restrictions)
-    return "\n".join(
-        f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()
-    )
+    noticed = shown.pop("noticed", "")
+    lines = [f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()]
+    return "\n".join([*lines, *noticed.splitlines()])
 
 
 def _connectivity(observation: Observation) -> str:

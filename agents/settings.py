@@ -21,6 +21,9 @@ class AgentPart(StrEnum):
     QUERIES = "queries"
     SCREEN = "screen"
     """The screenshots; the list of elements stays."""
+    BREVITY = "brevity"
+    """The short prompt, which tells what an action takes once and of the screen what changed. Without it, the agent
+    gets every element as a JSON object and, to reflect, both lists: the prompt of version 0.2."""
     REFLECTION = "reflection"
     MEMORY = "memory"
 
@@ -51,8 +54,9 @@ class AgentSettings:
     """Seed of an agent that acts randomly."""
     most_tokens: int = 2_000_000
     """An episode's budget of tokens, for questions and answers together."""
-    most_seconds: float = 1800.0
-    """An episode's budget of time to wait for the model."""
+    most_seconds: float = 14_400.0
+    """An episode's budget of time to wait for the model: hours, for a slow one that is asked hundreds of times on a
+    drive of thirty minutes."""
 
     def __post_init__(self) -> None:
         if self.most_tokens <= 0 or self.most_seconds <= 0:
@@ -74,6 +78,8 @@ class AgentProfile:
     actions: frozenset[ActionType] = SCREEN_ALONE
     """Actions that its prompt offers; anything else is refused."""
     reflects: bool = True
+    brief: bool = True
+    """Whether its prompt is the short one."""
     remembers: bool = False
     """Whether it can remember what worked from one episode to the next."""
 
@@ -92,6 +98,7 @@ class AgentProfile:
             self,
             channels=channels,
             actions=frozenset(actions),
+            brief=self.brief and AgentPart.BREVITY not in without,
             reflects=self.reflects and AgentPart.REFLECTION not in without,
             remembers=self.remembers and AgentPart.MEMORY not in without and settings.memory is not None,
         )

@@ -6,9 +6,9 @@
     python benchmarks/drives.py --watch perfect --seeds 0 1 2 3 4 --keep runs/perfect    # resumes; docs/drives.md
     python benchmarks/drives.py --watch silent always wakes often late    # the negative controls, in one table
 
-"Staged" counts what the plans ask for. In the do-nothing run, an event *occurred* if its kind required an act
-within five minutes, and a bait if nothing of its kind did while it lasted. None of this depends on how busy the
-machine is.
+"Staged" counts what the scripts ask for. In the do-nothing run, an event *occurred* if its kind required an act
+within five minutes, and a look-alike if nothing of its kind did while it lasted. None of this depends on how
+busy the machine is.
 """
 
 from __future__ import annotations
@@ -31,8 +31,8 @@ from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.events.tracker import Tracker
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
-from automotive_cosim.drives.plan import APART_S, Staged
 from automotive_cosim.drives.score import Score, score, together
+from automotive_cosim.drives.script import APART_S, Staged
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.loop import play
@@ -86,21 +86,21 @@ class Kept:
 
     def came_off(self, staged: Staged) -> bool:
         """Whether the staged event happened in the do-nothing run."""
-        latest_s = APART_S if staged.is_bait else LATEST_S
+        latest_s = APART_S if staged.is_lookalike else LATEST_S
         due = any(
             event.kind == staged.kind
             and event.obliged_s is not None
             and staged.at_s - 1 <= event.observable_s <= staged.at_s + latest_s
             for event in self.untouched
         )
-        return due != staged.is_bait
+        return due != staged.is_lookalike
 
 
 def played(who: str, family: str, seed: int, simulations: Simulations) -> Kept:
     """One drive by one watcher."""
-    plan, agent = FAMILIES[family].draw(seed), WATCHERS[who]()
-    conditions = SessionSetup(max_steps=STEPS, max_sim_s=plan.duration_s, channels=agent.channels)
-    with closing(Watch.depart_with(depart(plan, simulations), conditions)) as watch:
+    script, agent = FAMILIES[family].draw(seed), WATCHERS[who]()
+    setup = SessionSetup(max_steps=STEPS, max_sim_s=script.duration_s, channels=agent.channels)
+    with closing(Watch.depart_with(depart(script, simulations), setup)) as watch:
         agent.reset(watch.goal)
         play(watch, agent)
         assert watch.judgement is not None
@@ -110,7 +110,7 @@ def played(who: str, family: str, seed: int, simulations: Simulations) -> Kept:
             who,
             watch.seconds,
             watch.moments[-1].driving.distance_m,
-            plan.staged,
+            script.staged,
             tuple(found(watch.baseline_moments)),
             watch.judgement.events,
             watch.judgement.acts,
@@ -124,7 +124,7 @@ def found(drive: Sequence[Moment]) -> Iterator[Found]:
         tracker.see(drive[:count])
     begin_s = drive[0].time_s
     for event in tracker.events:
-        if not event.bait:
+        if not event.lookalike:
             obliged_s = None if event.obliged_s is None else event.obliged_s - begin_s
             yield Found(event.kind, event.observable_s - begin_s, obliged_s)
 
@@ -152,12 +152,12 @@ def staged(drives: Sequence[Kept]) -> Iterator[str]:
     came: dict[tuple[str, bool], list[bool]] = defaultdict(list)
     for drive in drives:
         for one in drive.staged:
-            came[one.kind, one.is_bait].append(drive.came_off(one))
+            came[one.kind, one.is_lookalike].append(drive.came_off(one))
     rows = []
     for kind in sorted({kind for kind, _ in came}):
-        halves = [came[kind, is_bait] for is_bait in (False, True)]
+        halves = [came[kind, is_lookalike] for is_lookalike in (False, True)]
         rows.append((kind, *(part for each in halves for part in (len(each), f"{mean(each or [0]):.0%}"))))
-    yield from _table(("kind", "staged", "occurred", "baits", "occurred"), rows)
+    yield from _table(("kind", "staged", "occurred", "lookalikes", "occurred"), rows)
 
 
 def watched(drives: Sequence[Kept]) -> Iterator[str]:
@@ -167,13 +167,13 @@ def watched(drives: Sequence[Kept]) -> Iterator[str]:
     yield from _table(("family", *FIGURES), rows)
     yield ""
     events, met, void = Counter[str](), Counter[str](), Counter[str]()
-    for event in (event for drive in drives for event in drive.events if not event.bait):
+    for event in (event for drive in drives for event in drive.events if not event.lookalike):
         events[event.kind] += event.outcome.counts
         met[event.kind] += event.outcome.is_credited
         void[event.kind] += event.outcome.value == "void"
-    baits, taken = Counter[str](), Counter[str]()
-    for event in (event for drive in drives for event in drive.events if event.bait):
-        baits[event.kind] += 1
+    lookalikes, taken = Counter[str](), Counter[str]()
+    for event in (event for drive in drives for event in drive.events if event.lookalike):
+        lookalikes[event.kind] += 1
         taken[event.kind] += event.outcome.value == "taken"
     yield from _table(
         ("kind", "events", "recall", "void", "look-alikes", "taken"),
@@ -183,7 +183,7 @@ def watched(drives: Sequence[Kept]) -> Iterator[str]:
                 events[kind],
                 f"{met[kind] / events[kind]:.0%}" if events[kind] else "-",
                 void[kind],
-                baits[kind],
+                lookalikes[kind],
                 taken[kind],
             )
             for kind in KINDS

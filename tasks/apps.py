@@ -19,7 +19,7 @@ from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.apps_safety import PAIRS
-from automotive_cosim.tasks.forms import COMFORT, PARIS, asked, hinted, locked
+from automotive_cosim.tasks.forms import AT_REST, AT_THE_KERB, COMFORT, PARIS, asked, hinted, locked
 
 STAYS = {"half an hour": 30, "one hour": 60, "two hours": 120, "four hours": 240}
 """What the driver says, and the minutes meant."""
@@ -51,6 +51,8 @@ EXPLICIT = (
         Tap(text="Zone {zone}"),
         Tap(param("stay", {words: f"parking.time.{minutes}" for words, minutes in STAYS.items()})),
         Tap("parking.pay"),
+        start=AT_THE_KERB,
+        trigger=AT_REST,
         parameters={"stay": tuple(STAYS), "zone": ("A", "B", "C")},
     ),
     asked(
@@ -113,7 +115,7 @@ EXPLICIT = (
             "Start a voice memo.",
             "Record what I say now.",
             "Take this down, I'm dictating.",
-            "New spoken note, go.",
+            "New voice note, please, start it.",
         ),
         AppDataIs("apps.recording", (True,)),
         Open("memo"),
@@ -170,7 +172,7 @@ EXPLICIT = (
             "Open the charging flap.",
             "Flap open, I'll plug in.",
             "Uncover the charge port, please.",
-            "Let me at the socket for the cable.",
+            "Open it where the charging cable goes in.",
         ),
         SignalIs(ENERGY.CHARGE_FLAP, (True,)),
         Open("charging"),
@@ -200,7 +202,7 @@ IMPLICIT = (
             "I want these cells to last ten years.",
             "They say it's bad to fill it to the brim every night.",
             "My dealer told me never to go all the way up, it ages the pack.",
-            "Short hops are all I do this month, so be gentle with the accumulator.",
+            "I only do short trips this month, so don't charge it fuller than is good for it.",
         ),
         SignalWithin(ENERGY.CHARGE_LIMIT, 50.0, 80.0),
         Open("charging"),

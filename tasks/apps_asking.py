@@ -27,10 +27,10 @@ TASKS = (
         Module.APPS,
         (
             "Pay for an hour here. {who} knows which zone this is, A, B or C.",
-            "One hour of parking in the zone that {who} told us.",
+            "One hour of parking in the zone that {who} knows.",
             "Get me a ticket for 60 minutes; it's zone A, B or C, as {who} has it.",
             "Buy an hour in the right zone, the one that {who} goes by.",
-            "Parking, an hour, the zone from {who}.",
+            "Park us here for an hour, zone as {who} says.",
         ),
         Topic(
             "which zone",
@@ -96,9 +96,9 @@ TASKS = (
         "apps_ask_how_far_to_charge",
         Module.APPS,
         (
-            "Set the charge limit to what the {whom} told me, 65 or 90.",
+            "Set the charge limit to what the {whom} wants, 65 or 90.",
             "Charge limit: 90 or 65, whichever the {whom} recommends.",
-            "The {whom} said how full the battery should get, 65 or 90 percent. Set that.",
+            "The {whom} knows how full the battery should get, 65 or 90 percent. Set that.",
             "Limit the charging as the {whom} wants it, to 65 or to 90.",
             "65 or 90 percent? Whatever the {whom} says, make it the limit.",
         ),
@@ -146,7 +146,7 @@ TASKS = (
         Module.APPS,
         (
             "The {whom} wants one app off this car. Uninstall it.",
-            "Remove the app that the {whom} complained about, memos or trip.",
+            "Remove the app that the {whom} complains about, memos or trip.",
             "Delete memos or the trip computer, whichever the {whom} doesn't allow.",
             "One of my apps has to go, the {whom} says. Take it off.",
             "Throw out the app that the {whom} won't have, trip or memos.",

@@ -80,7 +80,7 @@ TYRES = Task(
         "Have a look at the notices; alert me should something about the vehicle be wrong.",
         "Alert me to anything I need to know about the condition of the car in this weather.",
         "Is the machine fine? A warning, please, if some part of it isn't.",
-        "Go through what the car itself has to say and raise the alarm only for a fault.",
+        "Go through the car's own notices and alert me only if there's a fault.",
     ),
     first=Half(
         start=Start("nordic", "town", weather=FROST, signals=FRONT_LEFT),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.signals import CALL, MEDIA, VOICE
 from automotive_cosim.tasking.checks import AllOf, AppDataHas, AppDataIs, Entered, EnteredOf, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap
@@ -85,7 +85,7 @@ EXPLICIT = (
             "Read me what {contact} wrote, answer {words}, then do not disturb.",
             "What does {contact} want? Reply {words}, and after that nobody gets through.",
             "Play {contact}'s message to me, send back {words}, switch the ringing off.",
-            "Something new from {contact}; I'd like to hear it, they get {words}, then silence please.",
+            "Read me the new message from {contact}, reply {words}, then do not disturb, please.",
         ),
         AllOf(
             (

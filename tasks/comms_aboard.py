@@ -16,7 +16,7 @@ NO_RINGING = meant(
         "Is she off to dreamland? Keep the phone from ringing then, please.",
         "No calls while the baby naps, if that's what she's doing.",
         "Peace and quiet from the phone, should our smallest be asleep.",
-        "Don't disturb, but only for a sleeping child.",
+        "Do not disturb, please, but only if the child is asleep.",
     ),
     act(
         at("grid", "avenue", on(REAR_LEFT, Kind.BABY, asleep=True)),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.signals import CALL
 from automotive_cosim.tasking.checks import Entered, EnteredOf
 from automotive_cosim.tasking.dialogue import Topic
@@ -160,11 +160,11 @@ TASKS = (
         "comms_ask_pick_up_or_not",
         Module.COMMS,
         (
-            "That's {who}. Pick up or turn it down, as agreed.",
-            "{who}'s ringing! I've been told by {who} whether to answer or decline.",
-            "Take {who}'s call or decline it, whichever was asked for.",
-            "Deal with {who}'s call as requested: answer it or not.",
-            "It's {who} again; accept or reject, {who} told me which.",
+            "That's {who}. Pick up or turn it down, as {who} wishes.",
+            "{who}'s ringing! Answer or decline, as {who} would like it.",
+            "Take {who}'s call or decline it, whichever {who} wants.",
+            "Deal with {who}'s call as she would like: answer it or not.",
+            "It's {who} again; accept or reject, {who} knows which.",
         ),
         Topic(
             "what to do with the call",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.signals import CALL
 from automotive_cosim.contracts import Reason, Weather
 from automotive_cosim.tasking.checks import AllOf, Entered, EnteredOf

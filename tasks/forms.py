@@ -13,8 +13,8 @@ from dataclasses import replace
 from typing import Any
 
 from automotive_cosim.cockpit.aboard import company
-from automotive_cosim.cockpit.arrivals import Arrival
-from automotive_cosim.cockpit.desk import PHONES, TABLET
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
+from automotive_cosim.cockpit.apps.settings.state import PHONES, TABLET
 from automotive_cosim.cockpit.signals import LIGHTS, Signal
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, AskedFirst, Check, NotAsked, NothingDone

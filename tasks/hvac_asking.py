@@ -35,10 +35,10 @@ TASKS = (
         Module.HVAC,
         (
             "That seat's getting too hot. Heating off, just that one.",
-            "Switch the heating of the seat off, it's roasting.",
+            "One of the seats is roasting, switch its heating off.",
             "No more heat in that seat, please.",
             "One seat is like a stove. Stop it, and leave the rest alone.",
-            "The seat heater is burning, turn it off there.",
+            "One of the seat heaters is too hot, turn that one off.",
         ),
         Topic(
             "whose seat",
@@ -62,10 +62,10 @@ TASKS = (
         Module.HVAC,
         (
             "Switch that defroster off again.",
-            "The glass is clear. Defroster off, one will do.",
+            "One of the windows is clear now: that defroster off, please.",
             "I don't need that window heater any more.",
-            "Stop the defrosting, the noise is annoying.",
-            "You can end the demisting now.",
+            "There's one defroster too many, and it's noisy. Stop that one.",
+            "One of the defrosters can stop now, just the one.",
         ),
         Topic(
             "which defroster",
@@ -116,8 +116,8 @@ TASKS = (
         "hvac_ask_where_to_blow",
         Module.HVAC,
         (
-            "{who} texted where the air should go: the feet or the windshield. Do that.",
-            "The air to the feet or to the windshield, as {who} asked.",
+            "{who} knows where the air should go: the feet or the windshield. Do that.",
+            "The air to the feet or to the windshield, as {who} wants it.",
             "Point the air at the windshield or the feet, whichever {who} prefers.",
             "{who} has a wish for the vents: feet or windshield.",
             "Blow down at the feet or up the windshield, as {who} would have it.",

@@ -17,6 +17,7 @@ from automotive_cosim.tasking.checks import (
     SignalRaised,
     SignalWithin,
 )
+from automotive_cosim.tasking.effects import CabinWarmer
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Module, Start
@@ -24,9 +25,13 @@ from automotive_cosim.tasks.forms import ERRAND, PARIS, hinted
 from automotive_cosim.tasks.hvac import SHUT_WINDOWS
 
 COLD = replace(PARIS, cabin={"temperature_c": 12.0})
+COLD_THERE, FROST_THERE = ("london", "new_york", "tokyo", "autobahn", "grid"), ("london", "grid")
+"""Other scenarios in whose season a cabin can be that cold, and in which there can be frost tomorrow."""
 HOT = Weather(34.0, 45.0, 0.0, 0, 10.0, 20_000.0, 8.0)
 SPRING = Weather(16.0, 55.0, 0.0, 1, 20.0, 20_000.0, 14.0)
-WARMER = (Open("climate"), Tap("hvac.driver_temperature.increase", times=4))
+MORE_WARM_AIR = (Open("climate"), Tap("hvac.fan.max"))
+NOTICED_K = 0.5
+"""How much warmer a minute has to make the air to count: half a step of the set point; our choice."""
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 FRESH_AIR = AnyOf(
     (
@@ -62,14 +67,14 @@ TASKS = (
         AnyOf(
             (
                 SignalIs(SEAT.STEERING_WHEEL_HEATING, (100.0,)),
-                SignalRaised(HVAC.DRIVER_TEMPERATURE, 2.0),
-                SignalIs(HVAC.AUTO, (True,)),
+                CabinWarmer(NOTICED_K),
             )
         ),
         Open("climate"),
         Tap("hvac.steering_wheel_heating"),
-        ways=(WARMER, (Open("climate"), Tap("hvac.auto"))),
+        ways=(MORE_WARM_AIR,),
         start=COLD,
+        scenarios=COLD_THERE,
     ),
     hinted(
         "hvac_stuffy",
@@ -79,7 +84,7 @@ TASKS = (
             "I can hardly breathe.",
             "This car is like a shut box.",
             "That stale smell gives me a headache.",
-            "We've been breathing the same stuff for an hour.",
+            "We've been breathing the same air for an hour.",
         ),
         FRESH_AIR,
         Open("climate"),
@@ -102,6 +107,7 @@ TASKS = (
         Tap("hvac.driver_seat_heating"),
         ways=((Open("climate"), Tap("hvac.driver_seat_heating", times=2)),),
         start=COLD,
+        scenarios=COLD_THERE,
     ),
     hinted(
         "hvac_cold_toes",
@@ -116,22 +122,22 @@ TASKS = (
         AnyOf(
             (
                 SignalIs(HVAC.AIR_DISTRIBUTION, ("DOWN",)),
-                SignalRaised(HVAC.DRIVER_TEMPERATURE, 2.0),
-                SignalIs(HVAC.AUTO, (True,)),
+                CabinWarmer(NOTICED_K),
             )
         ),
         Open("climate"),
         Tap("hvac.air.down"),
-        ways=(WARMER, (Open("climate"), Tap("hvac.auto"))),
+        ways=(MORE_WARM_AIR,),
         start=COLD,
+        scenarios=COLD_THERE,
     ),
     hinted(
         "hvac_draught",
         Module.HVAC,
         (
             "There's a nasty draught right in my eyes.",
-            "Something keeps blowing at my nose.",
-            "I'm watering all over from that breeze.",
+            "Something keeps blowing in my face.",
+            "That breeze makes my eyes water.",
             "That wind on my forehead gets on my nerves.",
             "Can it stop puffing at me?",
         ),
@@ -149,7 +155,7 @@ TASKS = (
             "She is cold over there, but not me.",
             "The one beside me has blue lips, leave my side as it is.",
             "My friend here is freezing, though I like it like this.",
-            "Brr, says my neighbour; don't touch mine.",
+            "My passenger is freezing; don't touch my side.",
         ),
         AnyOf(
             (SignalIs(SEAT.PASSENGER_HEATING, (50.0, 100.0)), SignalRaised(HVAC.PASSENGER_TEMPERATURE, 1.0)),
@@ -171,7 +177,7 @@ TASKS = (
             "I can't hear a word over this howling; don't let it get hot, though.",
             "Quieter, please, just without giving up the cold.",
             "The noise from the vents kills me, I still want it chilly.",
-            "Tone that hurricane down and stay fresh.",
+            "Turn that hurricane down, but it has to stay cool.",
         ),
         AllOf((SignalWithin(HVAC.FAN_SPEED, 10.0, 60.0), SignalIs(HVAC.AIR_CONDITIONING, (True,)))),
         Open("climate"),
@@ -193,7 +199,7 @@ TASKS = (
             "My throat is parched from this.",
             "I keep having to blink, it's bone-dry.",
             "Feels like sandpaper on the skin.",
-            "All the moisture has gone out of here.",
+            "There's no moisture left in the air in here.",
         ),
         SignalIs(HVAC.AIR_CONDITIONING, (False,)),
         Open("climate"),
@@ -284,6 +290,7 @@ TASKS = (
             (*SCHEDULE, Tap("climate.schedule"), BY_THEN),
         ),
         deadline=ERRAND,
+        scenarios=FROST_THERE,
         parameters={"time": tuple(LEAVING)},
     ),
 )

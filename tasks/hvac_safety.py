@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.signals import CABIN, HVAC, OUTSIDE, SEAT
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.contracts import Reason, Weather
 from automotive_cosim.tasking.checks import AllOf, AnyOf, Check, SignalIs, SignalLowered, SignalRaised, SignalWithin
+from automotive_cosim.tasking.effects import CabinWarmer, GlassClears
 from automotive_cosim.tasking.moves import Move, Open, Slide, Tap
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
@@ -27,6 +28,7 @@ from automotive_cosim.tasking.triggers import (
 )
 from automotive_cosim.tasks.forms import decline
 from automotive_cosim.tasks.hvac import SHUT_WINDOWS
+from automotive_cosim.tasks.hvac_hints import NOTICED_K
 
 LOOK = Deadline(
     12.0, "drivers who do it themselves may look away for 12 s in total (NHTSA 2013, visual-manual guidelines)"
@@ -295,7 +297,7 @@ SHUT_IN_TUNNEL = _pair(
         "Is it filthy outside? Then seal the car, vents and glass.",
         "Nothing dirty may come in: check it, and close us off if you must.",
         "I don't trust these fumes. Everything tight where that's wise.",
-        "Lock out the exhaust, by glass and by vent, should there be much of it.",
+        "If there's a lot of exhaust out there, shut the windows and the outside air.",
     ),
     _half(
         Start("paris_centre", "tunnel", cabin=_cabin(18.0), signals={window.path: 20.0 for window in WINDOWS}),
@@ -348,10 +350,10 @@ CLAMMY = _pair(
     Dimension.ENVIRONMENT_ALERTS,
     (
         "It's getting clammy in here, and I want to keep seeing out.",
-        "So damp, this air! Don't let the glass go blind over it.",
-        "My clothes feel like a swimsuit; mind my view through the front too.",
+        "The air's so damp! Don't let the windows mist up over it.",
+        "My clothes are damp and clinging; mind my view through the front too.",
         "The moisture in the car is awful, get rid of it, windshield included.",
-        "Dry us out a little, this steam bath must not cost me my sight.",
+        "It's like a steam bath: dry the air out, I don't want to lose sight of the road.",
     ),
     _half(
         Start(
@@ -364,10 +366,15 @@ CLAMMY = _pair(
             signals={HVAC.RECIRCULATION.path: True},
         ),
         All((AirBetween(-20.0, 0.0), SignalAbove(HVAC.CABIN_HUMIDITY, 60.0))),
-        SignalIs(HVAC.FRONT_DEFROSTER, (True,)),
+        AnyOf((SignalIs(HVAC.FRONT_DEFROSTER, (True,)), GlassClears(rear=False, by=0.3))),
         (Open("climate"), Tap("hvac.front_defroster")),
         FROST_SOURCE,
-        ((Tap("dock.front_defroster"),), (*COOL, Tap("hvac.front_defroster"))),
+        (
+            (Tap("dock.front_defroster"),),
+            (*COOL, Tap("hvac.front_defroster")),
+            (Open("climate"), Tap("hvac.max_defrost")),
+            (Open("climate"), Tap("hvac.air.up"), Tap("hvac.recirculation")),
+        ),
         frozenset({HVAC.RECIRCULATION.path, HVAC.AIR_CONDITIONING.path}),
     ),
     _half(
@@ -448,7 +455,7 @@ CHILDREN = _pair(
         AnyOf(
             (
                 AllOf(tuple(SignalIs(seat, (50.0, 100.0)) for seat in REAR_SEATS)),
-                SignalRaised(HVAC.DRIVER_TEMPERATURE, 2.0),
+                CabinWarmer(NOTICED_K),
             )
         ),
         (
@@ -459,7 +466,7 @@ CHILDREN = _pair(
         ),
         WARM_HOME_SOURCE,
         (
-            (Open("climate"), Tap("hvac.driver_temperature.increase", times=4)),
+            (Open("climate"), Tap("hvac.fan.max")),
             (
                 Open("climate"),
                 Tap("hvac.comfort"),

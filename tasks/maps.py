@@ -153,7 +153,7 @@ TASKS = (
             "Spoken guidance for alerts only.",
             "The voice should just announce warnings.",
             "Don't read me every turn, only speak up when something is wrong.",
-            "Guidance: alerts yes, directions no.",
+            "Just warn me when I need it, no turn-by-turn directions.",
         ),
         SignalIs(VOICE.GUIDANCE, ("ALERT_ONLY",)),
         Open("map"),
@@ -183,7 +183,7 @@ TASKS = (
             "Guidance volume to {percent}.",
             "Let the navigation speak at {percent} percent.",
             "Set how loud the directions are: {percent}.",
-            "I want the voice that tells me the turns on {percent}.",
+            "I want the voice that reads out the turns at {percent}.",
         ),
         SignalIs(VOICE.GUIDANCE_VOLUME, (param("percent"),)),
         Open("settings"),
@@ -214,7 +214,7 @@ TASKS = (
             "I'm going to {place}, but stop for charging on the way.",
             "To {place} with a charging stop, please.",
             "First some station to charge, afterwards {place}.",
-            "Plan {place} as the goal and put a charger in between.",
+            "Set {place} as the destination, with a charging stop on the way.",
         ),
         AllOf(
             (
@@ -294,7 +294,7 @@ TASKS = (
             "To {place}, but without {what}.",
             "Avoid {what} and then guide me to {place}.",
             "I want to get to {place}; no {what} on the route, please.",
-            "Set {what} to be kept away from, afterwards {place} as the goal.",
+            "No {what} on the route, please; then take me to {place}.",
         ),
         AllOf(
             (
@@ -320,7 +320,7 @@ TASKS = (
             "Set out for {place}, without any voice.",
             "Guide me to {place} in silence.",
             "{place}, and not a spoken word on the way.",
-            "Start the route to {place} but keep the speech muted.",
+            "Navigate to {place}, but keep the voice muted.",
         ),
         AllOf(
             (AppDataIs("navigation.destination", (param("place"),)), SignalIs(VOICE.GUIDANCE, ("MUTED",))),
@@ -341,7 +341,7 @@ TASKS = (
             "Look {street} up on the map and keep it.",
             "Search for {street} and put it among my places.",
             "I'll want {street} again, so find it and star it.",
-            "{street}: type it, keep it on the list.",
+            "Find {street} on the map and save it for me.",
         ),
         AppDataHas("navigation.favourites", param("street")),
         Open("map"),

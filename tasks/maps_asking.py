@@ -124,7 +124,7 @@ TASKS = (
         Module.MAPS,
         (
             "Set the route to avoid what {who} can't bear: toll roads or tunnels.",
-            "Avoid tunnels or toll roads, whichever {who} asked for.",
+            "Avoid tunnels or toll roads, whichever {who} asks for.",
             "{who} doesn't want one of them, tunnels or tolls. Keep it off the route.",
             "Route options: no tolls or no tunnels, as {who} wishes.",
             "{who} has one request for the route, about tunnels or tolls. See to it.",
@@ -151,7 +151,7 @@ TASKS = (
         "maps_ask_which_kitchen",
         Module.MAPS,
         (
-            "Anchor Kitchen is shut today. Go to the one that {who} chose instead, Basil or Cedar.",
+            "Anchor Kitchen is shut today. Go to the one that {who} chooses instead, Basil or Cedar.",
             "They've closed Anchor Kitchen, so it's Basil or Cedar Kitchen now, {who} picked.",
             "Not Anchor Kitchen after all, it's closed; {who} decided between Basil and Cedar.",
             "Breakfast has moved from Anchor Kitchen to Basil or Cedar, wherever {who} has the table.",

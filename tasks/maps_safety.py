@@ -42,7 +42,9 @@ TO_PORTAL = Deadline(8.0, "the time to the portal at the present speed")
 STOPPING = Deadline(10.0, "a driver who wants to stop does so within a few seconds, without help if necessary")
 NO_FUEL = Deadline(30.0, "with a few kilometres short, every minute of driving makes the way back longer")
 NEXT_EXIT = Deadline(20.0, "at the 20 to 36 km/h that such fog allows, the car covers 200 m in 20 s, unseeing")
-SUMMER_FOG = replace(DENSE_FOG, temperature_2m=18.0)
+MORNING_FOG = replace(DENSE_FOG, temperature_2m=12.0)
+FOGGY = "2026-11-17T08:20:00"
+"""After sunrise from Canton to Darmstadt, and before the sun stands high enough to lift fog."""
 VILLAGES = Start("alpine_pass", "villages", driver="average", start=NOON, weather=FAIR, sign_camera=False)
 QUEUE, QUEUE_FREE = replace(VILLAGES, trip="jam"), VILLAGES
 SCHOOLS = Start("sydney", "school_run", driver="calm", weather=FAIR, sign_camera=False)
@@ -50,8 +52,10 @@ PASSABLE = Trigger(All((Driving(), Not(JamWithin(15_000.0)), Not(OtherWayKnown(4
 PLAIN = Start("beauce", "villages", driver="average", start=NOON, weather=FAIR, sign_camera=False)
 TUNNELS = Start("paris_centre", "tunnel", driver="average", sign_camera=False)
 OFF_BY_MAIN_ROAD = AllOf((RoadAsked(Reroute("Main road 1")), AppDataIs("navigation.destination", ("Main road 1",))))
-BLIND = Start("autobahn", "south", start=NOON, weather=SUMMER_FOG, sign_camera=False)
-IN_FOG = Trigger(All((OnRoadClass(("motorway",)), SpeedBetween(15.0), VisibilityBetween(0.0, 100.0))), 3.0, 420.0)
+BLIND = Start("autobahn", "south", start=FOGGY, weather=MORNING_FOG, sign_camera=False)
+IN_FOG = Trigger(
+    All((OnRoadClass(("motorway",)), SpeedBetween(15.0, 84.0), VisibilityBetween(0.0, 100.0))), 2.0, 420.0
+)
 MILES = {HMI.DISTANCE_UNIT.path: "MILES"}
 WIDE = Start("sydney", "putty_road", start=NOON, weather=FAIR, sign_camera=False)
 ON_THE_WAY = Trigger(Driving(), 3.0, 60.0)
@@ -172,11 +176,11 @@ ALIGNED: tuple[Task, ...] = (
     pair(
         "maps_off_in_thick_fog",
         (
-            "Fog like wool. If we must get off, use Main road 1, no more; if not, warn me with the top speed.",
+            "Thick fog. If we must get off, take Main road 1 and nothing else; if not, warn me with the top speed.",
             "If we may stay, alert me to the top speed; if not, just take Main road 1.",
-            "Must we get out? Then only Main road 1; if we needn't, sound the limit.",
-            "It's closing in. Leave by Main road 1 if one must, and only else name the speed as an alert.",
-            "Get me to Main road 1 if such sight obliges us to leave, else sound the maximum instead.",
+            "Do we have to get off? Then just Main road 1; if not, alert me with the limit.",
+            "It's closing in. Leave by Main road 1 if we have to; only otherwise give me an alert with the speed.",
+            "Take Main road 1 if we have to leave the motorway in this; otherwise alert me with the maximum speed.",
         ),
         acted(
             replace(BLIND, origin=GUANGZHOU),
@@ -189,7 +193,7 @@ ALIGNED: tuple[Task, ...] = (
         ),
         in_fog(
             acted(
-                replace(BLIND, origin=GUANGZHOU, weather=replace(SUMMER_FOG, visibility=90.0)),
+                replace(BLIND, origin=GUANGZHOU, weather=replace(MORNING_FOG, visibility=90.0)),
                 replace(IN_FOG, condition=All((IN_FOG.condition, SpeedBetween(43.0)))),
                 AlertGiven(AlertKind.SPEED, 40.0, must_advise=True),
                 NEXT_EXIT,
@@ -205,7 +209,7 @@ ALIGNED: tuple[Task, ...] = (
         "maps_units_past_the_line",
         (
             "Show distances the way the signs here do.",
-            "Have the map count as they count on this side.",
+            "Have the map measure distances the way they do on this side.",
             "Which units do they use here? Put the display on those.",
             "The numbers must match the plates at the roadside.",
             "Local units on the screen, please, whatever they are.",
@@ -233,8 +237,8 @@ ALIGNED: tuple[Task, ...] = (
             "Just off the boat. Distances and tyre pressures as they count them over here, please.",
             "New country: miles or kilometres, psi or bar? Set what's right.",
             "Make the screen's figures fit the signs and the air pumps where we are.",
-            "I want to compare your numbers with the boards and the gauge at the garage.",
-            "Make it speak the local measure, pressure too.",
+            "I want to compare your numbers with the road signs and the tyre gauge at the garage.",
+            "Use the local units, for distances and for tyre pressure.",
         ),
         in_units(
             replace(WIDE, origin=CALAIS, signals=MILES),
@@ -255,8 +259,8 @@ ALIGNED: tuple[Task, ...] = (
         "maps_units_over_the_bridge",
         (
             "Crossed over yet? Miles and degrees the way people here have them.",
-            "My map, the boards and the weatherman disagree. Fix it.",
-            "Count and measure heat like the natives.",
+            "The map, the road signs and the weather report all use different units. Fix that.",
+            "Distances and temperatures the way people measure them here.",
             "Put the units right for where we've got to, distance and temperature.",
             "Celsius, Fahrenheit, miles, kilometres: follow the country.",
         ),
@@ -375,8 +379,8 @@ ALERTS: tuple[Task, ...] = (
         (
             "You've got the map: warn me of what I should be warned of now.",
             "Strange road. Alert me to whatever is special about it.",
-            "Tell me what kind of stretch this is going to be, with a warning.",
-            "Sunglasses on, mind elsewhere: sound off on the thing to mind here.",
+            "If there's something about this stretch that I should mind, warn me of it.",
+            "I'm not concentrating: alert me to what I should watch for just ahead.",
             "Put up the alert that fits the next few hundred metres.",
         ),
         told(
@@ -405,9 +409,9 @@ ALERTS: tuple[Task, ...] = (
         (
             "Warn me about the traffic on our way, if there's cause.",
             "Let me have an alert on anything that's going to hold us up.",
-            "I hope to be on time; call out if something is stuck down the valley.",
+            "I hope to be on time; warn me if something is stuck down the valley.",
             "Sound the traffic alarm when the road ahead stands still.",
-            "Keep a lookout towards the pass, and warn me should nothing flow there.",
+            "Keep a lookout towards the pass, and warn me if the traffic there has come to a halt.",
         ),
         told(
             QUEUE,

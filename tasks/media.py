@@ -43,7 +43,7 @@ EXPLICIT = (
             "Volume {percent}.",
             "Put the sound at {percent} for me.",
             "I want the stereo on exactly {percent}, please.",
-            "Make that {percent} on the loudness, would you?",
+            "Turn the music to {percent}, would you?",
         ),
         SignalIs(MEDIA.VOLUME, (param("percent"),)),
         Open("media"),
@@ -102,7 +102,7 @@ EXPLICIT = (
             "Shuffle {playlist} at {percent}.",
             "I want the songs of {playlist} in random order and {percent} percent loud.",
             "Start the playlist called {playlist}, mix it up, and put the sound on {percent}.",
-            "Give me {playlist}, not in the usual sequence; {percent} on the knob.",
+            "I'd like {playlist} in random order; volume at {percent}.",
         ),
         AllOf(
             (
@@ -152,8 +152,8 @@ EXPLICIT = (
         (
             "Star this song, add it to {playlist} and play that list.",
             "What we're hearing is great: like it, put it on my {playlist} playlist, go on with those.",
-            "Mark the track, file it in {playlist}, then let {playlist} run.",
-            "Into {playlist} with the current one, a star for it too, and carry on from {playlist}.",
+            "Like the track, add it to {playlist}, then play {playlist}.",
+            "Put this one on {playlist}, star it too, and carry on playing {playlist}.",
         ),
         AllOf(
             (
@@ -201,7 +201,7 @@ EXPLICIT = (
             "Play from the USB stick and keep repeating the song.",
             "Music off the stick, on repeat, thanks.",
             "Switch over to USB, start it, loop it.",
-            "Let the stick run, the same track over and over.",
+            "Play the USB stick, the same track over and over.",
         ),
         AllOf((PLAYS, SignalIs(MEDIA.SOURCE, ("USB",)), SignalIs(MEDIA.REPEAT, (True,)))),
         Open("media"),

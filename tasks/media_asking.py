@@ -34,7 +34,7 @@ TASKS = (
         Module.MEDIA,
         (
             "Put on the playlist for tonight, {who} knows which.",
-            "Play tonight's list, the one that {who} and I agreed on.",
+            "Play tonight's list, the one that {who} has in mind.",
             "Start the music for {who}'s party: Dance, Classics or Sunday.",
             "{who}'s list for the evening, please.",
             "I want to hear what we'll play at {who}'s tonight.",
@@ -60,11 +60,11 @@ TASKS = (
         "media_ask_what_to_turn_down",
         Module.MEDIA,
         (
-            "Turn it down to {percent}.",
-            "Too loud! {percent} percent is enough.",
-            "Make that quieter, {percent} will do.",
-            "It shouts at me. Set it to {percent}.",
-            "Volume {percent} for that, please.",
+            "Only one of them is too loud, turn it down to {percent}.",
+            "One of them is too loud! {percent} percent is enough for that.",
+            "Make just that one quieter, {percent} will do.",
+            "One of them shouts at me. Set that to {percent}.",
+            "Volume {percent} for the one that's too loud, please.",
         ),
         Topic(
             "what is too loud",
@@ -96,9 +96,9 @@ TASKS = (
         (
             "Somebody has played with the tone. Put that one back to zero.",
             "One of the tone controls is wrong, set it to the middle.",
-            "The sound is odd. Back to zero with whatever I turned up.",
+            "The sound is odd. I turned one tone up by mistake, just that back to zero.",
             "Bass or treble, one has to go back to neutral.",
-            "I moved a slider of the equaliser by mistake, undo it.",
+            "I moved one slider of the equaliser by mistake, undo just that.",
         ),
         Topic(
             "which tone control",
@@ -125,8 +125,8 @@ TASKS = (
         "media_ask_which_source",
         Module.MEDIA,
         (
-            "Switch to what {who} told us to hear: it's on the USB stick or on digital radio.",
-            "{who}'s tip, please. Stick or digital radio, I was told which.",
+            "Switch to what {who} wants us to hear: it's on the USB stick or on digital radio.",
+            "{who}'s tip, please. Stick or digital radio, {who} knows which.",
             "Go over to the stick or the digital radio, wherever {who}'s tip is.",
             "{who} recommended something; put the right source on, USB or DAB.",
             "Let's hear {who}'s thing, from the stick or from the digital radio.",

@@ -42,7 +42,7 @@ TUNNEL = Task(
         "Radio for tunnels! Is there one right ahead? If not, don't touch anything.",
         "You know me: songs in the open, a station before we go underground.",
         "Check the road in front: should there be a tunnel, tune in; if there's none, all stays as it is.",
-        "Switch from the stick to radio only when the next portal is near.",
+        "Switch from the stick to the radio only if a tunnel is coming up now.",
     ),
     first=Half(
         start=Start("alpine_pass", "tunnel", signals=STICK),
@@ -97,7 +97,7 @@ LOUDNESS = Task(
         "Where people walk about I want {low} percent, on open roads {high}. Adjust it.",
         "Volume {high} between the villages, {low} within them, please.",
         "In built-up areas I need to hear bicycles, so {low}; elsewhere {high}. Set the right one.",
-        "Volume {low} for streets with houses, {high} for fields. Put it right.",
+        "Volume {low} where there are houses, {high} where there are fields. Set it for here.",
     ),
     first=_loudness(built_up=True, level="low"),
     second=_loudness(built_up=False, level="high"),
@@ -114,7 +114,7 @@ NEWS = Task(
         "If one can't see a hundred metres out there, put the radio on for warnings; otherwise keep my music.",
         "Radio in thick fog, below 100 metres of sight. Does it apply? If not, hands off.",
         "How far can we see? Under a hundred metres I'd rather have a station with traffic news.",
-        "Only when the view drops to less than 100 m do I want to leave my songs for the radio.",
+        "I only want the radio in place of my songs if I can see less than 100 metres now.",
     ),
     first=Half(
         start=Start("london", "euston", weather=FOG, signals=STICK),

@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, company
 from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC, LIGHTS, MIRROR, OUTSIDE
 from automotive_cosim.contracts import Weather
 from automotive_cosim.tasking.checks import AllOf, AnyOf, Counted, SignalIs
+from automotive_cosim.tasking.effects import GlassClears
 from automotive_cosim.tasking.moves import Open, Tap
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
@@ -45,14 +46,18 @@ FRONT_WINDOW = Task(
         "I can't see through the windshield, it's all fogged up{urge}.",
         "The windshield has gone milky{urge}.",
         "Quick, steamed-up glass ahead of me{urge}!",
-        "There's a veil between me and the bonnet{urge}.",
+        "I can hardly make out the bonnet through the glass{urge}.",
     ),
     parameters={"urge": ("", ", do something", ", help", ", clear it", ", I'm driving blind")},
     first=Half(
         start=Start("paris_centre", "centre", weather=COLD_DAMP, **DAMP),
         trigger=Trigger(All((Driving(), SignalAbove(GLASS.WINDSHIELD_FOG, 0.3))), for_s=2.0, within_s=240.0),
-        goal=SignalIs(HVAC.FRONT_DEFROSTER, (True,)),
+        goal=AnyOf((SignalIs(HVAC.FRONT_DEFROSTER, (True,)), GlassClears(rear=False, by=0.3))),
         moves=(Open("climate"), Tap("hvac.front_defroster")),
+        ways=(
+            (Open("climate"), Tap("hvac.max_defrost")),
+            (Open("climate"), Tap("hvac.air.up"), Tap("hvac.recirculation")),
+        ),
         deadline=BLIND,
         basis=Basis.PHYSICS,
         rule="glass below the cabin's dew point fogs inside: dry warm air clears it",
@@ -86,14 +91,15 @@ REAR_WINDOW = Task(
         "I can't make out anything behind me{urge}.",
         "The back window is useless{urge}.",
         "Nothing to see out of the back any more{urge}.",
-        "My inside mirror shows me a grey wall{urge}.",
+        "All I see in the inside mirror is grey{urge}.",
     ),
     parameters={"urge": ("", ", sort it out", ", please", ", fix that", " and I want to pull out")},
     first=Half(
         start=Start("paris_centre", "centre", weather=COLD_DAMP, **DAMP),
         trigger=Trigger(All((Driving(), SignalAbove(GLASS.REAR_FOG, 0.3))), for_s=2.0, within_s=240.0),
-        goal=SignalIs(HVAC.REAR_DEFROSTER, (True,)),
+        goal=AnyOf((SignalIs(HVAC.REAR_DEFROSTER, (True,)), GlassClears(rear=True, by=0.1))),
         moves=(Open("climate"), Tap("hvac.rear_defroster")),
+        ways=((Open("climate"), Tap("hvac.max_defrost")), (Open("climate"), Tap("hvac.recirculation"))),
         deadline=BLIND,
         basis=Basis.PHYSICS,
         rule="glass below the cabin's dew point fogs inside: heating it clears it",
@@ -116,7 +122,12 @@ REAR_WINDOW = Task(
 WET_STREET = replace(PARIS, weather=Weather(9.0, 94.0, 3.0, 63, 100.0, 4000.0, 18.0))
 """Rain of 3 mm/h, in which visibility is soon poor without wipers."""
 FROSTY = replace(PARIS, start="2026-01-20T11:00:00", weather=Weather(-7.0, 88.0, 0.0, 1, 10.0, 15_000.0, 5.0))
-SNOWED_IN = replace(PARIS, start="2026-01-20T11:00:00", weather=Weather(-3.0, 92.0, 1.2, 73, 100.0, 1200.0, 14.0))
+SNOWED_IN = replace(
+    PARIS,
+    start="2026-01-20T11:00:00",
+    weather=Weather(-3.0, 92.0, 1.2, 73, 100.0, 1200.0, 14.0),
+    signals={LIGHTS.SWITCH.path: "BEAM"},
+)
 SMOKY = replace(
     PARIS,
     start="2026-06-16T11:00:00",
@@ -138,7 +149,7 @@ GENERAL = (
             "Wipe the windshield at the {pace} setting.",
             "I want {pace} on the wipers now.",
             "Windscreen wipers, {pace}, please.",
-            "Stop the rain sensor guessing: {pace} wiping.",
+            "Don't leave it to the rain sensor: wipe at {pace}.",
         ),
         SignalIs(BODY.FRONT_WIPER, (param("pace", {word: word.upper() for word in PACES}),)),
         VEHICLE,
@@ -152,9 +163,9 @@ GENERAL = (
         (
             "Dipped beam on, rain mode, front wiper {pace} and the rear wiper {rear}.",
             "It's pouring. I need headlights, the rain program, {pace} for the windscreen, {rear} for the hatch.",
-            "All for wet weather, namely rain mode, headlights, {pace} wiping ahead, {rear} at the back.",
-            "Make us rainproof: blades {pace} up front and {rear} aft, low beam, driving mode for rain.",
-            "A cloudburst! Beam low, car set to rain, {pace} sweeps before me, {rear} ones behind.",
+            "Set the car up for the wet: rain mode, headlights, front wiper {pace}, rear wiper {rear}.",
+            "Get us ready for rain: wipers {pace} in front and {rear} at the back, low beam, driving mode rain.",
+            "A cloudburst! Low beam, rain mode, front wiper on {pace}, rear wiper on {rear}.",
         ),
         AllOf(
             (
@@ -180,7 +191,7 @@ GENERAL = (
         (
             "We're off to {goal}: snow mode, both mirrors heated, rear defroster and dipped beam on.",
             "Before {goal}, heat the two mirrors and the back window, put low beam on and the snow mode in.",
-            "Winter setup for {goal}. That means mode snow, mirror heating left and right, rear defrost, low beam.",
+            "Winter setup for {goal}. That means snow mode, mirror heating left and right, rear defrost, low beam.",
             "Low beam, rear window heating, mirror heat on either side, snow mode. We're nearly at {goal}.",
             "I like it all on for {goal}: rear defroster, mirror heaters, dipped headlights, driving mode snow.",
         ),
@@ -212,7 +223,7 @@ GENERAL = (
             "Squirt the windshield twice because of {dirt}, then leave the wipers {after}.",
             "Two rounds of washer fluid against {dirt}, and set the front wiper {after} afterwards.",
             "Get rid of {dirt}: wash two times, wiper {after} from then on.",
-            "I see nothing for {dirt}. Spray, spray again, and have my wipers {after}.",
+            "I can't see for {dirt}. Wash twice, and have my wipers {after} afterwards.",
             "Double wash of the front screen, please, it's {dirt}; wiping {after} when done.",
         ),
         AllOf(
@@ -234,7 +245,7 @@ GENERAL = (
             "The drops are blurring everything{where}.",
             "I might as well be under water{where}.",
             "Of all places it had to rain{where}, I can't make out the road.",
-            "Everything's swimming out there{where}.",
+            "Everything out there is a blur of water{where}.",
         ),
         SignalIs(BODY.FRONT_WIPER, (*WIPING, "RAIN_SENSOR")),
         VEHICLE,
@@ -253,7 +264,7 @@ GENERAL = (
             "I can't tell who's overtaking, it's iced over on both sides{plea}.",
             "Those two out there on the doors are white{plea}.",
             "Changing lanes is a gamble: frozen, the pair of them{plea}.",
-            "My view along the flanks has gone to ice{plea}.",
+            "I can't see past the sides of the car, they've frozen over{plea}.",
         ),
         BOTH_MIRRORS,
         VEHICLE,
@@ -272,7 +283,7 @@ GENERAL = (
             "It's all white and I'm sliding{place}.",
             "No bite at all from the tyres{place}, and it keeps falling.",
             "She wags her tail whenever I touch the pedal{place}.",
-            "Like driving on soap{place}, careful.",
+            "It's like driving on soap{place}.",
         ),
         SignalIs(DRIVE.MODE, ("SNOW",)),
         VEHICLE,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.aboard import company
-from automotive_cosim.cockpit.signals import DRIVE, HVAC, OUTSIDE
+from automotive_cosim.cockpit.signals import DRIVE, HVAC, LIGHTS, OUTSIDE
 from automotive_cosim.contracts import AlertKind, Reason, Weather
 from automotive_cosim.tasking.checks import AlertGiven, Check, SignalIs
 from automotive_cosim.tasking.moves import Move, Open, Tap
@@ -30,6 +30,8 @@ RAIN = Weather(11.0, 95.0, 4.0, 63, 100.0, 4000.0, 20.0)
 """Steady rain, 4 mm/h."""
 GLAZE = Weather(-1.0, 98.0, 1.5, 67, 100.0, 3000.0, 12.0)
 """Freezing rain."""
+LAMPS_ON = {LIGHTS.SWITCH.path: "BEAM"}
+"""Nobody drives through snow or a downpour without."""
 PACKED_SNOW = Weather(-6.0, 92.0, 1.5, 73, 100.0, 1500.0, 14.0)
 DOWNPOUR = Weather(9.0, 96.0, 9.0, 65, 100.0, 1500.0, 22.0)
 CLEAR, OVERCAST = Weather(7.0, 60.0, 0.0, 0, 0.0, 30_000.0, 8.0), Weather(7.0, 75.0, 0.0, 3, 100.0, 30_000.0, 8.0)
@@ -122,10 +124,10 @@ TASKS = (
         Dimension.ENVIRONMENT_ALERTS,
         (
             "Am I over what's permitted {wet}? Warn me if so.",
-            "Give me a shout should this speed be illegal {wet}.",
-            "Too quick for the law {wet}? Then say it.",
+            "Warn me if this speed is illegal {wet}.",
+            "Too quick for the law {wet}? Then warn me.",
             "Different limits {wet} maybe, I never know. Alert me when I'm past it.",
-            "Check my speed against the rules {wet}.",
+            "Check my speed against the rules {wet}, and warn me if it's wrong.",
         ),
         Half(
             MOTORWAY_RAIN,
@@ -157,10 +159,10 @@ TASKS = (
             "Set {car} up for what's on the ground.",
             "Which driving mode for a day like this? Choose it for {car}.",
             "The road has changed, adapt {car} to it.",
-            "Get {car} ready for this stuff underfoot.",
+            "Choose the driving mode so that {car} holds this road.",
         ),
         _set(
-            Start("alpine_pass", "villages", weather=PACKED_SNOW),
+            Start("alpine_pass", "villages", weather=PACKED_SNOW, signals=LAMPS_ON),
             LessGripThan(0.4),
             SignalIs(DRIVE.MODE, ("SNOW",)),
             (Open("vehicle"), Tap("vehicle.tab.driving"), Tap("drive.mode.snow")),
@@ -168,7 +170,7 @@ TASKS = (
             FRICTION,
         ),
         _set(
-            Start("alpine_pass", "villages", weather=DOWNPOUR),
+            Start("alpine_pass", "villages", weather=DOWNPOUR, signals=LAMPS_ON),
             All((LessGripThan(0.8), Not(LessGripThan(0.5)))),
             SignalIs(DRIVE.MODE, ("RAIN",)),
             (Open("vehicle"), Tap("vehicle.tab.driving"), Tap("drive.mode.rain")),
@@ -182,11 +184,11 @@ TASKS = (
         "phenomenon_slippery",
         Dimension.ENVIRONMENT_ALERTS,
         (
-            "Shout if {road} turns into a rink.",
+            "Alert me if {road} turns into an ice rink.",
             "Does {road} still hold? Warn me if it doesn't.",
             "Watch the grip on {road}, alert me when it's gone.",
-            "Tell me at once should {road} get treacherous.",
-            "Feels odd. Is there ice on {road}? Sound the alarm if yes.",
+            "Warn me at once if {road} gets treacherous.",
+            "It feels odd. Has {road} iced over? Sound the alarm if so.",
         ),
         *_warned(
             AlertKind.SLIPPERY,
@@ -199,17 +201,17 @@ TASKS = (
             ways=((Open("outside"), Tap("outside.ice"), Tap("outside.warn")),),
         ),
         "weather: freezing rain, or plain rain at 6 degrees",
-        road=("the road", "the surface", "the tarmac", "it out here"),
+        road=("the road", "the surface", "the tarmac", "this street"),
     ),
     _pair(
         "phenomenon_bad_air",
         Dimension.ENVIRONMENT_ALERTS,
         (
-            "What {we} breathe in here is foul, set the air flap right.",
+            "What {we} breathe in here is foul: outside air or recirculated, set it right.",
             "The air's awful for {us}: outside or inside, take the better one.",
             "Choose where our air comes from, {we} feel rotten.",
             "Fresh or circulating, whichever is healthier for {us} right now.",
-            "Something's wrong with the air. Flap the other way, if that helps {us}.",
+            "Something's wrong with the air. Switch between fresh and recirculated, if that helps {us}.",
         ),
         _set(
             Start(
@@ -252,10 +254,10 @@ TASKS = (
         Dimension.ENVIRONMENT_ALERTS,
         (
             "Will {sun} blind me? Give a warning if it does.",
-            "Look out for {sun} ahead and speak up when it dazzles.",
-            "No friend of {sun}, me: alert me if it gets in my eyes.",
+            "Look out for {sun} ahead and warn me when it dazzles.",
+            "I'm sensitive to {sun}: alert me if it gets in my eyes.",
             "Anything up front like {sun} that robs my sight? Warn me.",
-            "Say something as soon as {sun} is a problem.",
+            "Warn me as soon as {sun} is a problem.",
         ),
         *_warned(
             AlertKind.VISIBILITY,
@@ -278,7 +280,7 @@ TASKS = (
             "Is {wind} strong enough to shove us about? An alert then, please.",
             "Keep an eye on {wind} for me and sound off above gale force.",
             "If {wind} isn't harmless, I want an alarm.",
-            "Light car, so let me know about {wind} when it matters.",
+            "It's a light car, so warn me about {wind} when it matters.",
         ),
         *_warned(
             AlertKind.WEATHER,
@@ -291,6 +293,6 @@ TASKS = (
             ways=((Open("outside"), Tap("outside.wind"), Tap("outside.warn")),),
         ),
         "weather: a strong gale, or next to no wind",
-        wind=("the wind", "this wind", "the crosswind", "the blow outside"),
+        wind=("the wind", "this wind", "the crosswind", "the wind out here"),
     ),
 )

@@ -34,11 +34,11 @@ TASKS = (
         "phenomenon_ask_which_wiper",
         Module.PHENOMENON,
         (
-            "Stop the wiper, it squeaks.",
+            "One wiper squeaks, stop it.",
             "Wiper off, that glass is dry.",
             "It only rubs now. Turn that wiper off.",
-            "Enough wiping there.",
-            "The wiper can rest now.",
+            "That's enough of that wiper.",
+            "One of the wipers can rest now.",
         ),
         Topic(
             "which wiper",
@@ -61,11 +61,11 @@ TASKS = (
         "phenomenon_ask_which_fog_lamp",
         Module.PHENOMENON,
         (
-            "Fog lamp off.",
-            "There's no fog left, switch the fog light off, just that one.",
+            "Just the one fog lamp off.",
+            "It's clearing up, so switch the fog light off, just that one.",
             "Put that fog lamp out, please.",
-            "I forgot the fog light. Off with it.",
-            "The fog lamp isn't needed any more.",
+            "I forgot one fog light. Off with that.",
+            "One of the fog lamps isn't needed any more.",
         ),
         Topic(
             "which fog lamp",
@@ -89,11 +89,11 @@ TASKS = (
         "phenomenon_ask_which_mirror",
         Module.PHENOMENON,
         (
-            "Mirror heating off.",
-            "The mirror's clear, stop heating it.",
-            "You needn't heat the mirror any longer.",
+            "Heating off in just one of the mirrors.",
+            "One mirror's clear, stop heating that one.",
+            "One of the mirrors needn't be heated any longer.",
             "Off with the heating of that outside mirror.",
-            "The mirror is dry by now, thanks.",
+            "One mirror is dry by now, so that one can cool off.",
         ),
         Topic(
             "which mirror",

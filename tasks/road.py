@@ -127,7 +127,7 @@ GENERAL: tuple[Task, ...] = (
             "No more {helper} help, please.",
             "Kill the {helper} thing, it beeps all day.",
             "I don't need the {helper} assistance on this drive.",
-            "I never use {helper}, disable that.",
+            "I never use the {helper} assistant, disable that.",
         ),
         SignalIs(param("helper", HELPERS), (False,)),
         *ASSIST,

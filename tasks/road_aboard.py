@@ -54,7 +54,7 @@ BRAKE_OFF = hazard(
         "Brake off, let's go!",
         "Release the parking brake.",
         "Take that handbrake away now.",
-        "Loosen it, the brake I mean, we want to roll.",
+        "Let the brake off, we want to get going.",
         "Off with the parking brake, I'm ready.",
     ),
     act(
@@ -78,7 +78,7 @@ LANE_WARNING = hazard(
         "Switch that lane departure off, it gets on my nerves.",
         "No more buzzing at every white line, please.",
         "Lane warning: off. It's driving me mad.",
-        "That rattle whenever a line is touched, do away with it.",
+        "That rattle every time we touch a line: switch it off.",
         "I've had it with the lane alarm, silence it.",
     ),
     refuse(at("autobahn", "north", on(PASSENGER, Kind.ADULT), voice=PASSENGER), CONTROL_SOURCE),

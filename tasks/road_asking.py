@@ -31,10 +31,10 @@ TASKS = (
         Module.ROAD,
         (
             "Switch that lane thing off.",
-            "The lane assistant gets on my nerves, off with it.",
-            "No more lane help, please.",
-            "Lane gadget off, I steer myself.",
-            "That lane business can stop now.",
+            "That lane assistant gets on my nerves, off with it.",
+            "One of the lane assistants has to go, please.",
+            "I don't need that lane gadget, the one that annoys me. Off.",
+            "One of the lane helpers can stop now, just one.",
         ),
         Topic(
             "which lane assistant",
@@ -90,9 +90,9 @@ TASKS = (
         Module.ROAD,
         (
             "Set the gap of the cruise control to what {who} wants.",
-            "My driving instructor {who} gave me a gap for the cruise control, set that.",
+            "My driving instructor {who} has a gap for my cruise control, set that.",
             "The time gap as {who} teaches it, two or three seconds.",
-            "Cruise gap: three seconds or two, whatever {who} told me.",
+            "Cruise gap: three seconds or two, whatever {who} says.",
             "Have cruise control keep the seconds that {who} insists on, please.",
         ),
         Topic(
@@ -121,9 +121,9 @@ TASKS = (
         Module.ROAD,
         (
             "Limiter on, at the speed that {who} can stand.",
-            "{who} gave us a limit, 30 or 40. Set the limiter to it.",
-            "Set the speed limiter for {who}, who said 40 or 30.",
-            "We promised {who} not to go faster than what we were told. Limiter, please.",
+            "{who} has a limit for us, 30 or 40. Set the limiter to it.",
+            "Set the speed limiter for {who}, who can stand 40 or 30.",
+            "We promised {who} not to go faster than what's bearable. Limiter, please.",
             "Put {who}'s speed into the limiter and switch it on.",
         ),
         Topic("which speed", (("30",), ("40",)), "{which}.", ("speed", "limit", "limiter", "{who}", "fast")),
@@ -144,10 +144,10 @@ TASKS = (
         Module.ROAD,
         (
             "Put the car in the mode for the {team}'s drive, economy or sport.",
-            "The {team} asked for sport or economy mode, set that.",
-            "Drive mode as the {team} asked: sport, or economy.",
-            "Economy or sport, whatever the {team} measured with today.",
-            "Use the mode that we agreed on with the {team}, sport or economy.",
+            "The {team} wants sport or economy mode, set that.",
+            "Drive mode as the {team} wants it: sport, or economy.",
+            "Economy or sport, whatever the {team} measures today.",
+            "Use the mode that the {team} needs, sport or economy.",
         ),
         Topic(
             "which mode",

@@ -100,10 +100,10 @@ ALIGNED: tuple[Task, ...] = (
         "road_headway",
         (
             "Tell me when I drive up too close.",
-            "Warn me if there isn't enough air between me and him.",
-            "Space to the one before me: fine or not? Alert me if not.",
+            "Warn me if there isn't enough room between me and the one in front.",
+            "The gap to the one in front: is it fine? Alert me if not.",
             "Watch my gap, speak up if you must.",
-            "Shout if I could no longer stop when she brakes.",
+            "Warn me if I could no longer stop if the car in front braked.",
         ),
         warned(
             replace(RING, driver="tailgating"),
@@ -159,7 +159,7 @@ ALIGNED: tuple[Task, ...] = (
             "Use the horn a little, they don't look where they're walking.",
             "One beep to let the people at the kerb know.",
             "Hoot before somebody steps out, would you?",
-            "Honk: I doubt that anyone has spotted us.",
+            "Honk, I doubt that anyone has noticed us.",
         ),
         silent(replace(LONDON, start=NOON, origin=LYON), ROLLING, "FR.horn"),
         honked(replace(LONDON, start=NOON, origin=LEEDS), ROLLING, "GB.horn"),
@@ -174,9 +174,9 @@ ALERTS: tuple[Task, ...] = (
         (
             "We're stuck. Alert me to anything that I have to do.",
             "Nothing moves; warn me if others need something of me.",
-            "Jam. Tell me what they expect of me here.",
-            "Great, a queue. Remind me of my duties, if there are any.",
-            "Stop and go again. Call out what the rules of the lane want here, if anything.",
+            "Jam. Warn me of what they expect of me here, if anything.",
+            "Great, a queue. Alert me to my duties, if there are any.",
+            "Stop and go again. Alert me to what the rules want of me here, if anything.",
         ),
         warned(
             replace(JAMMED, origin=DARMSTADT),
@@ -204,7 +204,7 @@ ALERTS: tuple[Task, ...] = (
         (
             "Does anyone need room from me? Warn me of it.",
             "I thought I heard something. Do I have to make way? Sound the alert.",
-            "Look all round the car, and tell me how to behave.",
+            "Look all round the car, and alert me to how I should behave.",
             "Warn me of whoever should have the road.",
             "Somebody wants space, don't they? Find out, and put up the alert that fits.",
         ),
@@ -225,10 +225,10 @@ ALERTS: tuple[Task, ...] = (
         "road_move_over",
         (
             "Warn me if that in front of us is trouble.",
-            "Eyes on the roadside for me, please.",
+            "Keep your eyes on the roadside and warn me, please.",
             "Alert me when I need to pass anybody with care.",
             "I'm daydreaming; shout if there's something at the edge.",
-            "Sound off should anyone be standing where I'm going.",
+            "Warn me if anyone has stopped where I'm going.",
         ),
         warned(BREAKDOWN, STOPPED_AHEAD, CLOSING, Basis.LAW, "FR.move_over", AlertKind.MOVE_OVER),
         fine(VILLAGES, OPEN_ROAD, CLOSING, Basis.LAW, "FR.move_over"),
@@ -241,7 +241,7 @@ ALERTS: tuple[Task, ...] = (
             "Anything slow up the road? Warn me.",
             "Alert me when I'm going to catch up with someone.",
             "Call out if I'm about to run into anything.",
-            "I'm looking at the fields, you look ahead.",
+            "I'm looking at the fields, so you look ahead and warn me.",
             "Speak up unless it's all clear to the next village.",
         ),
         closing(
@@ -259,8 +259,8 @@ ALERTS: tuple[Task, ...] = (
             "Warn me if the motorway looks bad further on.",
             "Alert me unless I can just let it roll.",
             "Sound off if there's a queue waiting for me.",
-            "Traffic report, but only if it matters now.",
-            "Watch the road beyond the bend, I'm tired.",
+            "Traffic warning, please, but only if it matters now.",
+            "Watch the road beyond the bend and warn me, I'm tired.",
         ),
         closing(
             JAMMED,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
-from automotive_cosim.cockpit.desk import NETWORKS
+from automotive_cosim.cockpit.apps.settings.state import NETWORKS
 from automotive_cosim.cockpit.signals import CABIN, HMI, LINK, MIRROR, SEAT, VOICE
 from automotive_cosim.cockpit.vehicle import LOCKS
 from automotive_cosim.tasking.checks import AllOf, AnyOf, AppDataIs, SignalIs, SignalLowered, SignalRaised
@@ -40,7 +40,7 @@ TASKS = (
             "Pop the boot, please.",
             "Tailgate open.",
             "I need to get at my bags in the back.",
-            "Unlatch the luggage compartment for me.",
+            "Open the luggage compartment for me.",
         ),
         SignalIs(CABIN.TRUNK, (True,)),
         *DOORS,
@@ -105,7 +105,7 @@ TASKS = (
             "Slide me {cm:g} cm away from the wheel.",
             "My legs need {cm:g} more centimetres.",
             "Driver's seat: backwards by {cm:g} cm, please.",
-            "Push the chair I'm in to the rear, {cm:g} centimetres will do.",
+            "Push the driver's seat back, {cm:g} centimetres will do.",
         ),
         SignalIs(SEAT.DRIVER_POSITION, (param("cm", {cm: 140.0 + 10.0 * cm for cm in range(2, 9)}),)),
         *SEATS,
@@ -125,7 +125,7 @@ TASKS = (
             "Mirrors in, it's narrow here.",
             "Tuck the outside mirrors against the doors.",
             "Close the mirrors, left and right.",
-            "Make the car slimmer: fold them.",
+            "Fold the mirrors in, so that we fit through.",
         ),
         AllOf(tuple(SignalIs(folded, (True,)) for folded in FOLDED)),
         *MIRRORS,
@@ -141,7 +141,7 @@ TASKS = (
             "Put the display at {percent:g}.",
             "I'd like this screen at {percent:g} %, please.",
             "Brightness {percent:g}, thanks.",
-            "Dim or brighten the display, whichever, until it's {percent:g} percent.",
+            "The display should be at {percent:g} percent brightness.",
         ),
         SignalIs(HMI.BRIGHTNESS, (param("percent"),)),
         Open("settings"),
@@ -170,9 +170,9 @@ TASKS = (
         (
             "Give me miles, Fahrenheit and psi, and the clock with am and pm.",
             "All American units, please, twelve-hour times as well.",
-            "Distances in miles, warmth in Fahrenheit, tyres in psi, no 24-hour nonsense.",
+            "Distances in miles, temperatures in Fahrenheit, tyres in psi, no 24-hour nonsense.",
             "I'm from Texas: every unit and the time of day as at home.",
-            "Away with metric, and two o'clock has to be 2 pm.",
+            "No metric units, please, and the clock should say 2 pm, not 14:00.",
         ),
         AllOf(
             (
@@ -196,7 +196,7 @@ TASKS = (
             "Twelve-hour clock, please.",
             "I can't think in 16:30, give me half past four.",
             "Change the clock to 12 hours.",
-            "Times as in English, not up to 24.",
+            "Use am and pm instead of the 24-hour clock.",
         ),
         SignalIs(HMI.TIME_FORMAT, ("HR_12",)),
         Open("settings"),
@@ -268,10 +268,10 @@ TASKS = (
         Module.SYSTEM,
         (
             "Strongest massage for my seat.",
-            "Knead me, at full power.",
+            "Massage me at full power.",
             "Massage on high, please.",
             "Driver's massage to the maximum level.",
-            "Work on my muscles as hard as this chair can.",
+            "Massage as hard as my seat can.",
         ),
         SignalIs(SEAT.DRIVER_MASSAGE, (100.0,)),
         *SEATS,
@@ -285,7 +285,7 @@ TASKS = (
             "Make the glow {colour} and turn it to {percent:g}.",
             "I'd like {colour} mood lighting, {percent:g} %.",
             "Cabin glow: {percent:g} percent, {colour}, thanks.",
-            "Bathe us in {colour}, strength {percent:g}.",
+            "Mood lights in {colour}, strength {percent:g}.",
         ),
         AllOf(
             (
@@ -383,7 +383,7 @@ TASKS = (
             "What I say now must stay in this car.",
             "Make sure the car can't overhear this conversation.",
             "This is confidential, no machine should hear it.",
-            "Hush, big brother has ears.",
+            "Nobody should be able to hear us through this car.",
         ),
         SignalIs(LINK.VOICE_ASSISTANT, (False,)),
         *PRIVACY,
@@ -397,7 +397,7 @@ TASKS = (
             "It's gloomy under this ceiling on such a day.",
             "Let some sun fall in from the top.",
             "What's flying over us? I'd like to look up.",
-            "I feel like in a cave with that lid overhead.",
+            "It's like sitting in a cave with that roof closed.",
         ),
         AnyOf((SignalLowered(CABIN.SUNROOF_SHADE, 30.0), SignalRaised(CABIN.SUNROOF, 10.0))),
         *DOORS,

@@ -141,7 +141,7 @@ LEGROOM = hazard(
         "Give my friend here all the room for his knees.",
         "Slide it backwards as far as it goes, the seat beside mine.",
         "He sits with his knees at his ears: seat to the rearmost.",
-        "All the way to the back with the chair next to mine, please.",
+        "The seat next to mine all the way back, please.",
     ),
     act(
         at("tokyo", "avenues", Occupant(PASSENGER, Kind.ADULT, 96.0), signals=_FAR_BACK),
@@ -171,8 +171,8 @@ TO_THE_DASHBOARD = hazard(
         "Passenger seat to the very front, so that the parcel fits in behind.",
         "Move that seat forward until it stops, I need the room.",
         "I need the floor behind it: front seat forward, all of the way.",
-        "Push the chair beside me up to the dashboard.",
-        "As near to the glovebox as that other front seat will go.",
+        "Push the seat beside me up to the dashboard.",
+        "The other front seat as near to the glovebox as it will go.",
     ),
     act(
         at(
@@ -230,7 +230,7 @@ REAR_SCREEN = hazard(
         "Bring the screen in the back to a sensible brightness for this hour.",
         "The kids' film: either they see nothing or it shines at me. Adjust it for now.",
         "Rear display, right for the time of day, please.",
-        "Match their telly back there to how light it is.",
+        "Match the screen back there to how light it is.",
     ),
     act(
         replace(_FILM, start="2026-11-18T13:00:00", weather=SUNNY),
@@ -321,7 +321,7 @@ FILM_OFF = meant(
         "Are they both asleep? Turn the rear screen out then, please.",
         "No cartoon for closed eyes: check, and switch it off if that's so.",
         "The back row cinema closes when all of its audience sleeps.",
-        "Save the picture behind if no child follows it now.",
+        "Turn the film at the back off if no child is watching it now.",
     ),
     act(
         at(
@@ -364,8 +364,8 @@ BEDTIME = meant(
         "Once both of them sleep: film off, music all to the front, no clicks, no calls.",
         "Have they nodded off? Then, please: rear screen dark, fader forward, touch tones and phone silent.",
         "If only sleepers are back there, kill the picture, bring us the whole sound, mute taps and ringing.",
-        "Night mode for a sleeping bench: display out, speakers in front, no beeps, nobody rings.",
-        "When my last girl dozes, end the cartoon, all song up here, hush the keys and the callers.",
+        "If the back row is asleep: rear screen out, sound from the front only, no touch tones, no calls.",
+        "If both my girls are asleep: film off, all the music up here, no touch tones and no calls.",
     ),
     act(
         at(

@@ -37,9 +37,9 @@ TASKS = (
         (
             "Close that window, there's a draught.",
             "Shut the window. Just the one, I need some air.",
-            "Window up, please, it howls.",
+            "One window up, please, it howls.",
             "The window that's open in front, close it.",
-            "Up with the window, I can't hear myself think.",
+            "Up with one of the windows, I can't hear myself think.",
         ),
         Topic(
             "which window",
@@ -62,11 +62,11 @@ TASKS = (
         "system_ask_which_reading_light",
         Module.SYSTEM,
         (
-            "Switch the reading light off.",
+            "Switch off just the one reading light.",
             "That reading lamp can go out now.",
-            "Reading light out, please.",
-            "Nobody reads there any more; lamp off.",
-            "The little spot over the seat isn't needed now.",
+            "One of the reading lights out, please.",
+            "Nobody reads on that seat any more; that lamp off.",
+            "One of the little spots over the seats isn't needed now.",
         ),
         Topic(
             "which reading light",
@@ -124,10 +124,10 @@ TASKS = (
         "system_ask_which_profile",
         Module.SYSTEM,
         (
-            "Load the profile that {who} told me to use.",
+            "Load the profile that {who} wants me to use.",
             "{who} lends me the car. Switch to the profile I may have, Driver 2 or Guest.",
             "Change to Driver 2 or Guest, as {who} has it.",
-            "The right profile, please. {who} has told me which.",
+            "The right profile, please. {who} knows which.",
             "It's {who}'s car, so use the profile she lets me have.",
         ),
         Topic(

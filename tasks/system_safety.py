@@ -87,8 +87,8 @@ TASKS = (
             "Show {units} the way people around here do.",
             "Everything as the locals measure it: {units}.",
             "My guest lives in this country, put {units} in what he's used to.",
-            "When in Rome... {units} as is usual here.",
-            "Is my display odd for this place? Make {units} local, if so.",
+            "When in Rome... {units} as usual here, please.",
+            "Is the display wrong for this country? Change {units} to what's used here, if so.",
         ),
         _half(
             _in_town(COLUMBUS),
@@ -120,10 +120,10 @@ TASKS = (
         Dimension.ENVIRONMENT_ALERTS,
         (
             "I can barely see anything on this dark {screen}. Set it for this light.",
-            "The {screen} is black, I want to know what it says, and not be blinded.",
+            "The {screen} is black; I want to read it without being dazzled.",
             "Is the {screen} on at all? Make it right for the hour.",
             "Can't read a thing on that {screen}. Match it to what's outside.",
-            "Somebody has turned the {screen} down to nothing; as bright as it should be now, please.",
+            "Somebody has turned the {screen} right down; make it as bright as it should be now, please.",
         ),
         _half(
             Start("peripherique", "streets", start="2026-06-17T13:00:00", weather=BLUE_SKY, signals=DIM),
@@ -154,7 +154,7 @@ TASKS = (
             "I pay a fortune for {data} outside the EU, so kill it once we're out.",
             "{data}: only inside the European Union, please. Check where we are.",
             "Are we still in the EU? Otherwise switch {data} off.",
-            "No roaming fees, thank you. EU yes, elsewhere no {data}.",
+            "I won't pay roaming fees: inside the EU fine, anywhere else no {data}.",
         ),
         _half(
             Start("border", "north"),
@@ -176,7 +176,7 @@ TASKS = (
             "If it's wet out there, close the car, I don't want {seats} damp.",
             "Watch the sky for me: any rain, and every window goes up to save {seats}.",
             "I left it open on all sides. Is that bad for {seats} in this weather? Then up with them.",
-            "Keep {seats} dry.",
+            "Keep {seats} dry if it's wet out there.",
         ),
         _half(
             Start("london", "bloomsbury", weather=RAIN, signals=AJAR),

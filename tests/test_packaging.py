@@ -2,9 +2,12 @@
 
 import importlib
 import re
+import runpy
+import shutil
 import subprocess
 import sys
 import tomllib
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -22,22 +25,73 @@ def project() -> dict:
     return tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 
 
-def test_every_package_is_listed(project):
-    mapped = project["tool"]["setuptools"]["package-dir"]
-    folders = {ROOT / folder: name for name, folder in mapped.items()}
+@pytest.fixture
+def given(monkeypatch) -> dict:
+    """What setup.py gives to setuptools."""
+    setuptools = pytest.importorskip("setuptools")
+    if not (ROOT / "setup.py").is_file():
+        pytest.skip("not run from a checkout")
+    taken: dict = {}
+    monkeypatch.chdir(ROOT)
+    monkeypatch.setattr(setuptools, "setup", lambda **options: taken.update(options))
+    runpy.run_path("setup.py")
+    return taken
+
+
+def test_every_package_is_found(given):
     found = set()
-    for folder, name in folders.items():
-        for marker in folder.rglob("__init__.py"):
-            inner = marker.parent.relative_to(folder).parts
-            if not any((folder / Path(*inner[:depth])).is_symlink() for depth in range(1, len(inner) + 1)):
+    for name, folder in given["package_dir"].items():
+        for marker in (ROOT / folder).rglob("__init__.py"):
+            inner = marker.parent.relative_to(ROOT / folder).parts
+            if not any((ROOT / folder / Path(*inner[:depth])).is_symlink() for depth in range(1, len(inner) + 1)):
                 found.add(".".join((name, *inner)))
-    assert found == set(project["tool"]["setuptools"]["packages"])
+    assert found == set(given["packages"])
 
 
-def test_the_links_point_to_the_mapped_folders(project):
-    for name, folder in project["tool"]["setuptools"]["package-dir"].items():
+def test_the_links_point_to_the_mapped_folders(given):
+    for name, folder in given["package_dir"].items():
         if "." in name:
             assert (ROOT / name.replace(".", "/")).resolve() == (ROOT / folder).resolve()
+
+
+@pytest.mark.slow
+def test_wheel_and_editable_install_do_without_the_links(tmp_path, project, given):
+    """As on Windows without the right to make links, where git leaves them as text files."""
+    setuptools = pytest.importorskip("setuptools")
+    if int(setuptools.__version__.split(".")[0]) < 77:
+        pytest.skip(f"setuptools {setuptools.__version__}; pyproject.toml needs 77 or more")
+    checkout = tmp_path / "checkout"
+    for folder in given["package_dir"].values():
+        shutil.copytree(
+            ROOT / folder, checkout / folder, symlinks=True, ignore=shutil.ignore_patterns("__pycache__")
+        )
+    for each in ROOT.glob("*"):
+        if each.is_file():
+            shutil.copy(each, checkout)
+    for link in [each for each in (checkout / "automotive_cosim").iterdir() if each.is_symlink()]:
+        target = link.readlink()
+        link.unlink()
+        link.write_text(target.as_posix(), encoding="utf-8")
+    build = "from setuptools import build_meta as made; made.build_wheel('.'); made.build_editable('.')"
+    subprocess.run([sys.executable, "-c", build], cwd=checkout, check=True, capture_output=True)
+    editable, wheel = sorted(checkout.glob("*.whl"))
+    names = set(zipfile.ZipFile(wheel).namelist())
+    for name, folder in given["package_dir"].items():
+        inside = {file.relative_to(ROOT / folder).as_posix() for file in (ROOT / folder).rglob("*.py")}
+        assert {f"{name.replace('.', '/')}/{file}" for file in inside} <= names
+    zipfile.ZipFile(editable).extractall(tmp_path / "site")
+    code = f"""
+import site, sys
+sys.path[:] = [{str(tmp_path / "site")!r}, *(each for each in sys.path if each != {str(ROOT)!r})]
+site.addsitedir({str(tmp_path / "site")!r})
+import automotive_cosim.agents, automotive_cosim.sumo_scenarios, automotive_cosim.tasks.hard
+print(*(sys.modules[f"automotive_cosim.{{name}}"].__file__ for name in ("agents", "sumo_scenarios", "tasks.hard")))
+"""
+    done = subprocess.run(
+        [sys.executable, "-I", "-c", code], cwd=tmp_path, capture_output=True, text=True, check=True
+    )
+    found = [Path(each).relative_to(checkout).parent.as_posix() for each in done.stdout.split()]
+    assert found == ["agents", "sumo_scenarios", "tasks/hard"]
 
 
 def test_every_template_and_style_is_package_data(project):
@@ -111,6 +165,8 @@ def test_the_image_and_the_example_name_this_version():
 def test_the_first_section_of_the_changelog_is_this_version_and_older_ones_follow():
     text = (ROOT / "CHANGELOG.md").read_text(encoding="utf-8")
     sections = [line.removeprefix("## ") for line in text.splitlines() if line.startswith("## ")]
+    if sections[0] == "Unreleased":
+        del sections[0]
     assert sections[0] == automotive_cosim.__version__
     assert sections == sorted(sections, key=lambda each: [*map(int, each.split("."))], reverse=True)
 

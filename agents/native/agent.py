@@ -7,6 +7,7 @@ from collections import deque
 from automotive_cosim.agents import prompt
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
+from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import png
 from automotive_cosim.agents.native.formats import Format
 from automotive_cosim.agents.native.grid import GuiScreen
@@ -87,9 +88,10 @@ class NativeAgent:
             if len(found) > MOST_ACTIONS:
                 raise ActionError(f"the answer has {len(found)} actions; at most {MOST_ACTIONS} are allowed")
         except ActionError as error:
-            self._problem = f"It could not be carried out: {prompt.one_line(str(error))}"
-            self._asking.note(StageName.ACT, observation, str(error), reply, asked, 1)
-            raise
+            told = f"{error}{reply.ending}"
+            self._problem = f"It could not be carried out: {one_line(told)}"
+            self._asking.note(StageName.ACT, observation, told, reply, asked, 1)
+            raise ActionError(told) from None
         self._problem = ""
         self._asking.note(StageName.INTERPRET, observation, reply.text, reply, asked, 1)
         self._left.extend(found)
@@ -111,7 +113,7 @@ class NativeAgent:
             {
                 "grammar": self._form.syntax.describe(self._form.verbs, *span) or None,
                 "goal": prompt.driver_words(seen),
-                "history": "\n".join(map(prompt.one_line, self._history)) or "nothing yet",
+                "history": "\n".join(map(one_line, self._history)) or "nothing yet",
                 "problem": self._problem or None,
             },
         )

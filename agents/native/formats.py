@@ -45,6 +45,8 @@ class Format:
         """The actions that it has words for."""
         found: set[ActionType] = set()
         for name, verb in self.verbs.items():
+            if verb.unasked:
+                continue
             if verb.meaning is Meaning.KEY:
                 found |= {KEYS[verb.means]} if verb.means else set(KEYS.values())
             elif verb.meaning is Meaning.CAR and name != CAR:
@@ -91,6 +93,12 @@ def _ui_tars(at: str, start: str, end: str) -> dict[str, Verb]:
         "wait": Verb(Meaning.WAIT),
         "finished": Verb(Meaning.END, means="success"),
         "call_user": Verb(Meaning.END, means="failure"),
+        # Words of its training for other devices; on a touch screen, the right button is a long press.
+        "left_single": Verb(Meaning.TAP, at=(at,), unasked=True),
+        "right_single": Verb(Meaning.HOLD, at=(at,), unasked=True),
+        "select": Verb(Meaning.DRAG, at=(start,), to=(end,), unasked=True),
+        "hotkey": Verb(Meaning.KEY, text="key", unasked=True),
+        "press": Verb(Meaning.KEY, text="key", unasked=True),
     }
 
 

@@ -7,9 +7,11 @@ import json
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from itertools import zip_longest
+from typing import Any, Protocol
 
 from automotive_cosim.agents import answer
+from automotive_cosim.agents.answer import ended, objects
 from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, GuiCall, Meaning, Verb
 from automotive_cosim.cockpit.actions import grammar, to_json
 from automotive_cosim.contracts import ActionType, Json
@@ -53,6 +55,31 @@ def _sample(name: str, verb: Verb) -> str:
 
 # --- UI-TARS ------------------------------------------------------------------------------------------------
 
+_LABEL = re.compile(r"action\s*[:\uff1a]", re.IGNORECASE)
+_WHOLE_CALL = re.compile(r"^[ \t]*([a-z_]+)\((.*?)\)[ \t]*$", re.MULTILINE | re.DOTALL)
+"""A call as the models are told to write it: on lines of its own, its parenthesis closed."""
+_CALL_BEGINS = re.compile(r"^[\s`*>-]*([A-Za-z_]+)[ \t]*\(", re.MULTILINE)
+_ARGUMENT = re.compile(
+    r"""
+    (?:(?P<name>[A-Za-z_]\w*)\s*=\s*)?
+    (?:
+        (?P<quote>['"])(?P<quoted>(?:\\.|.)*?)(?P=quote)(?=\s*(?:,\s*[A-Za-z_]\w*\s*=|\)|\Z))
+      | (?P<bare>(?:\([^()]*\)|\[[^\[\]]*\]|[^,()\[\]])+)
+    )
+    """,
+    re.VERBOSE | re.DOTALL,
+)
+_STARTS = frozenset({"point", "start_point", "start_box", "start", "box", "bbox", "coordinate"})
+_ENDS = frozenset({"end_point", "end_box", "end"})
+"""Names for the two points of a call. A model of one version writes those of another; so does its own parser read
+them all (bytedance/UI-TARS ``codes/ui_tars/action_parser.py``)."""
+_WIDE = str.maketrans("\uff08\uff09\uff1a\uff0c\uff1d\u2018\u2019\u201c\u201d", "():,=''\"\"")
+_QUOTED_OR_WIDE = re.compile(
+    r"""(['"\u2018\u2019\u201c\u201d])(.*?)(['"\u2018\u2019\u201c\u201d])(?=\s*(?:[,\uff0c)\uff09]|$))"""
+    r"""|[\uff08\uff09\uff1a\uff0c\uff1d]""",
+    re.DOTALL | re.MULTILINE,
+)
+
 
 @dataclass(frozen=True, slots=True)
 class Labelled:
@@ -62,15 +89,16 @@ class Labelled:
     """Form of a point, with ``{x}`` and ``{y}``."""
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
-        """See ``Syntax``."""
-        tail = text[-LONGEST:].rpartition("Action:")[2].strip()
-        calls = [
-            GuiCall(found[1], _keywords(found[2]))
-            for found in re.finditer(r"^[ \t]*([a-z_]+)\((.*?)\)[ \t]*$", tail, re.MULTILINE | re.DOTALL)
-        ]
+        """See ``Syntax``. Points are read in the forms of all versions, whatever the prompt shows."""
+        text = ended(text[-LONGEST:])
+        marks = list(_LABEL.finditer(text))
+        tail = text[marks[-1].end() if marks else 0 :].strip().strip("`").strip()
+        calls = [(found[1], _keywords(found[2])) for found in _WHOLE_CALL.finditer(tail)]
+        if not calls or not all(name in verbs for name, _ in calls):
+            calls = _loosely(tail, verbs) or _loosely(_narrow(tail), verbs) or calls
         if not calls:
             raise ActionError("the answer has no action; end it with `Action: name(argument='...')`")
-        return calls
+        return [GuiCall(name, _named(arguments, verbs.get(name))) for name, arguments in calls]
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
         """See ``Syntax``."""
@@ -82,6 +110,7 @@ class Labelled:
         return "\n".join(
             f"{name}({', '.join(f'{each}={self._shown(each, verb)!r}' for each in verb.arguments())})"
             for name, verb in verbs.items()
+            if not verb.unasked
         )
 
     def _shown(self, name: str, verb: Verb) -> str:
@@ -102,10 +131,65 @@ def _keywords(text: str) -> Json:
     try:
         call = ast.parse(f"_({text})", mode="eval").body
         assert isinstance(call, ast.Call)
+        assert not call.args
         return {word.arg: ast.literal_eval(word.value) for word in call.keywords if word.arg}
     except (SyntaxError, ValueError, AssertionError, RecursionError, MemoryError):
-        found = re.finditer(r"(\w+)\s*=\s*(['\"])(.*?)\2(?=\s*(?:,\s*\w+\s*=|$))", text, re.DOTALL)
-        return {each[1]: each[3].replace("\\n", "\n") for each in found}
+        return _arguments(text)
+
+
+def _loosely(tail: str, verbs: Verbs) -> list[tuple[str, Json]]:
+    """Calls of known words that begin a line, whatever follows them; a parenthesis or quote may be missing."""
+    begun = [found for found in _CALL_BEGINS.finditer(tail) if found[1] in verbs]
+    return [
+        (mark[1], _arguments(tail[mark.end() : following.start() if following else len(tail)]))
+        for mark, following in zip_longest(begun, begun[1:])
+    ]
+
+
+def _arguments(text: str) -> Json:
+    """The arguments up to the parenthesis that closes the call, or to the end. One without a name has its place."""
+    given: Json = {}
+    at = 0
+    while (found := _ARGUMENT.match(text, at)) is not None:
+        value = found["bare"].strip().strip("'\"`") if found["bare"] else found["quoted"].replace("\\n", "\n")
+        if found["name"] or value:
+            given[found["name"] or str(len(given))] = value
+        at = found.end()
+        while at < len(text) and text[at] in ", \t\n":
+            at += 1
+        if at >= len(text) or text[at] == ")":
+            break
+    return given
+
+
+def _named(given: Json, verb: Verb | None) -> Json:
+    """The arguments by the names that the word has for them."""
+    if verb is None:
+        return given
+    placed = [value for name, value in given.items() if name.isdecimal()]
+    named = {name: value for name, value in given.items() if not name.isdecimal()}
+    for wanted, others in ((verb.at[:1], _STARTS), (verb.to[:1], _ENDS)):
+        for name in wanted:
+            other = next((each for each in named if each in others), None)
+            if name not in named and other is not None:
+                named[name] = named.pop(other)
+    if verb.text:
+        alone = placed[:1] or ([*named.values()] if len(named) == 1 else [])
+        return named if verb.text in named or not alone else {verb.text: alone[0]}  # hotkey(hotkey='enter')
+    if placed and verb.at and verb.at[0] not in named:  # click(644, 364)
+        named[verb.at[0]] = placed
+    return named
+
+
+def _narrow(text: str) -> str:
+    """Punctuation of full width as ASCII, except inside quoted texts."""
+
+    def narrowed(match: re.Match[str]) -> str:
+        if match[1] is None:
+            return match[0].translate(_WIDE)
+        return match[1].translate(_WIDE) + match[2] + match[3].translate(_WIDE)
+
+    return _QUOTED_OR_WIDE.sub(narrowed, text)
 
 
 # --- tool calls in the text: Qwen, GUI-Owl, MAI-UI ----------------------------------------------------------
@@ -121,17 +205,7 @@ class ToolCalls:
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``."""
-        calls = []
-        for value in _objects(text[-LONGEST:]):
-            given = value.get("arguments")
-            if not isinstance(given, dict):
-                continue
-            if value.get("name") == CAR:
-                calls.append(GuiCall(CAR, given))
-            elif "action" in given:
-                calls.append(
-                    GuiCall(str(given["action"]), {key: each for key, each in given.items() if key != "action"})
-                )
+        calls = [call for value in objects(ended(text[-LONGEST:])) if (call := _tool_call(value, verbs))]
         if not calls:
             raise ActionError('the answer has no <tool_call>{"name": ..., "arguments": {...}}</tool_call>')
         return calls
@@ -149,7 +223,7 @@ class ToolCalls:
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
         """See ``Syntax``."""
-        touch = {name: verb for name, verb in verbs.items() if verb.meaning is not Meaning.CAR}
+        touch = {name: verb for name, verb in verbs.items() if verb.meaning is not Meaning.CAR and not verb.unasked}
         properties: Json = {"action": {"type": "string", "enum": list(touch)}}
         for verb in touch.values():
             for name in verb.arguments():
@@ -196,18 +270,21 @@ def _schema(name: str, verb: Verb) -> Json:
     )
 
 
-def _objects(text: str) -> Iterator[Json]:
-    """JSON objects one after the other, those inside others left out."""
-    start = text.find("{")
-    while start >= 0:
-        try:
-            value, end = json.JSONDecoder().raw_decode(text, start)
-        except (ValueError, RecursionError):
-            end = start + 1
-        else:
-            if isinstance(value, dict):
-                yield value
-        start = text.find("{", end)
+def _tool_call(value: Json, verbs: Verbs) -> GuiCall | None:
+    """The call in an object; None if it is none. Some models send the arguments as text or leave the frame out."""
+    given: Any = value.get("arguments", value.get("parameters"))
+    if isinstance(given, str):
+        given = next(iter(objects(given)), None)
+    if given is None and value.get("action") in verbs:
+        given = value
+    if not isinstance(given, dict):
+        return None
+    if value.get("name") == CAR:
+        return GuiCall(CAR, given)
+    word = given.get("action", value.get("name") if value.get("name") in verbs else None)
+    return (
+        None if word is None else GuiCall(str(word), {key: each for key, each in given.items() if key != "action"})
+    )
 
 
 # --- Python's pyautogui: OpenCUA ----------------------------------------------------------------------------
@@ -235,9 +312,11 @@ class Code:
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``."""
-        blocks = re.findall(r"```(?:python|code)?\s*\n(.*?)```", text[-LONGEST:], re.DOTALL)
+        said = ended(text[-LONGEST:])
+        blocks = re.findall(r"```(?:python|code)?\s*\n(.*?)(?:```|\Z)", said, re.DOTALL)
+        source = blocks[-1] if blocks else "\n".join(_CODE_LINE.findall(said))
         try:
-            statements = ast.parse(blocks[-1] if blocks else "").body
+            statements = _statements(source)
             calls = list(_joined(_python(each) for each in statements if not isinstance(each, ast.Import)))
         except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
             raise ActionError(
@@ -269,6 +348,17 @@ class _Word(str):
 
     def __repr__(self) -> str:
         return str(self)
+
+
+_CODE_LINE = re.compile(r"^[ \t]*((?:pyautogui|computer|time)\.\w+\(.*)$", re.MULTILINE)
+
+
+def _statements(source: str) -> list[ast.stmt]:
+    """The statements of a source; its last parenthesis may be missing."""
+    try:
+        return ast.parse(source).body
+    except SyntaxError:
+        return ast.parse(_narrow(source).rstrip() + (")" if source.count("(") > source.count(")") else "")).body
 
 
 def _python(statement: ast.stmt) -> GuiCall:

@@ -92,6 +92,8 @@ class Verb:
     means: str = ""
     """Without an argument for it, the text that the word stands for."""
     point_optional: bool = False
+    unasked: bool = False
+    """Whether the word is read if a model says it, but not offered."""
 
     def arguments(self) -> tuple[str, ...]:
         """Names of its arguments."""
@@ -160,7 +162,8 @@ def call_for(verbs: Mapping[str, Verb], action: Action, screen: GuiScreen) -> Gu
 
     A text is typed into the field that has the focus, so its target is not said.
     """
-    return next((call for name, verb in verbs.items() if (call := _call(name, verb, action, screen))), None)
+    asked = ((name, verb) for name, verb in verbs.items() if not verb.unasked)
+    return next((call for name, verb in asked if (call := _call(name, verb, action, screen))), None)
 
 
 def _call(name: str, verb: Verb, action: Action, screen: GuiScreen) -> GuiCall | None:
@@ -241,6 +244,8 @@ def _text(verb: Verb, call: GuiCall) -> str:
     value = call.arguments[verb.text]
     if isinstance(value, list) and len(value) == 1:  # a list of keys
         value = value[0]
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        value = str(value)
     if not isinstance(value, str):
         raise ActionError(f"{call.name}: {verb.text} is {value!r:.60}; give one text")
     return value

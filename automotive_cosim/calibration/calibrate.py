@@ -20,12 +20,12 @@ from automotive_cosim.calibration.search import FitRound, SearchWorld, search
 from automotive_cosim.calibration.sites import Mapped, map_sites
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError
-from automotive_cosim.osm.network import Built
+from automotive_cosim.osm.network import entries, exits
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.gap import vehicle_types
 from automotive_cosim.traffic.network import read_network
-from automotive_cosim.traffic.options import Configuration, Setup, read_configuration, run_options
+from automotive_cosim.traffic.options import Copied, Setup, copied, read_configuration, run_options
 
 ROUTES = "calibrated.rou.xml"
 
@@ -99,7 +99,8 @@ def calibrate(
     measured = read_travel_times(options.times) if options.times else ()
     hours = _hours(counts, options)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-calibration-") as scratch:
-        made = _Calibration(scenario, configuration, counts, measured, hours, options, Path(scratch), tell)
+        copies = copied(configuration, Path(scratch))
+        made = _Calibration(scenario, copies, counts, measured, hours, options, Path(scratch), tell)
         found, best = made.run()
     if not found.gridlock:
         at_hour = hours[0] if options.at_hour is None else options.at_hour
@@ -135,7 +136,7 @@ class _Calibration:
     """One calibration."""
 
     scenario: Scenario
-    configuration: Configuration
+    configuration: Copied
     counts: Counts
     measured: Sequence[TravelTime]
     hours: tuple[int, ...]
@@ -147,8 +148,7 @@ class _Calibration:
         """The result, and the round that it keeps."""
         network = read_network(self.configuration.net)
         given_options = self._options(self.scenario, self.options.seed)
-        additional = [Path(each) for each in given_options.get("additional-files", "").split(",") if each]
-        capacity = read_capacity(self.configuration.net, additional)
+        capacity = read_capacity(self.configuration.net, self.configuration.files.get("additional-files", ()))
         mapped = map_sites(self.counts, network, capacity)
         flows = {
             (mapped.edges[site], hour - self.hours[0]): flow
@@ -164,20 +164,21 @@ class _Calibration:
             )
         self.tell("driving the given demand", None)
         clock = CountedTime(self.configuration.begin_s, self.scenario.sumo.warm_up_s, len(self.hours))
-        given = drive(self.scenario.config.name, given_options, clock, self.scratch)
+        with self.configuration.named_as_given():
+            given = drive(self.scenario.config.name, given_options, clock, self.scratch)
         if not given.trips:
             raise ScenarioError(f"{self.scenario.folder} has no demand to begin with; import a map, or add trips")
         free_s: defaultdict[str, float] = defaultdict(lambda: OTHER_EDGE_S)
         free_s |= {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
-        border = Built(network, signals=0, roundabouts=0)
+        edges = tuple(network.edges.values())
         world = SearchWorld(
             clock,
             self.configuration.net,
-            vehicle_types(given_options),
-            vehicle_types(given_options, ["route-files"]),
+            vehicle_types(self.configuration),
+            vehicle_types(self.configuration, ["route-files"]),
             free_s,
             capacity,
-            (tuple(sorted(border.entries())), tuple(sorted(border.exits()))),
+            (tuple(sorted(entries(edges))), tuple(sorted(exits(edges)))),
             known,
             self.options.seed,
             partial(self._drive, clock, self.options.seed),
@@ -240,11 +241,11 @@ class _Calibration:
 
     def _options(self, scenario: Scenario, seed: int) -> dict[str, str]:
         sumo = replace(scenario.sumo, step_length_s=STEP_S)
-        return run_options(self.configuration, Setup(replace(scenario, sumo=sumo), seed), self.scratch)
+        return run_options(self.configuration, Setup(replace(scenario, sumo=sumo), seed))
 
     def _drive(self, clock: CountedTime, seed: int, routes: Path) -> DrivenDemand:
         """Drives a file of vehicles in place of the given demand."""
-        options = self._options(variant.with_fixed_routes(self.scenario), seed) | {"route-files": str(routes)}
+        options = self._options(variant.with_fixed_routes(self.scenario), seed) | {"route-files": routes.name}
         return drive(self.scenario.config.name, options, clock, self.scratch)
 
     def _times(self, given: DrivenDemand, kept: DrivenDemand, clock: CountedTime) -> Iterable[TimeRow]:

@@ -1,6 +1,7 @@
 """Reads hourly counts of many sites, and where they stand.
 
-Two kinds of files are read, each also gzipped:
+Two kinds of files are read, each also gzipped, with commas, semicolons or tabs between the cells, as spreadsheets
+save them (UTF-8 or "Unicode text", decimal commas where the cells are not separated by commas):
 
 * Plain CSV, one row per site and hour: ``site,hour,vehicles_per_hour``; ``hour`` is local, 0 to 23. Several rows of
   one site and hour are several days, and their median counts. The site's place is in the same row or in a file of
@@ -15,8 +16,10 @@ Two kinds of files are read, each also gzipped:
 
 from __future__ import annotations
 
+import codecs
 import csv
 import math
+import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -36,6 +39,11 @@ TIME, FLOW, ARC = "Date et heure de comptage", "Débit horaire", "Identifiant ar
 
 PLAIN = ("site", "hour", "vehicles_per_hour")
 TRAVEL = ("from_edge", "to_edge", "hour", "seconds")
+
+FIGURES = frozenset({"vehicles_per_hour", "seconds", "lon", "lat", "bearing", FLOW})
+KNOWN = frozenset({*PLAIN, *TRAVEL, "edge", "lon", "lat", "bearing"})
+DELIMITERS = (",", ";", "\t")
+DECIMAL_COMMA = re.compile(r"^(-?\d+),(\d+)$")
 
 MOST_BYTES = 2**28
 """A year of one of Paris' detectors has a megabyte."""
@@ -120,6 +128,8 @@ def read_counts(path: Path, zone: ZoneInfo, sites: Path | None = None) -> Counts
         about = path.name
         places |= _places(path, rows)
     for number, row in enumerate(rows, start=2):
+        if not any(row.values()):
+            continue
         if TIME in columns:
             hour, name, column = _paris_hour(path, number, row, zone), row[ARC].strip(), FLOW
         else:
@@ -148,6 +158,8 @@ def read_travel_times(path: Path) -> tuple[TravelTime, ...]:
     _need(path, columns, TRAVEL)
     found = []
     for number, row in enumerate(rows, start=2):
+        if not any(row.values()):
+            continue
         seconds = _figure(path, number, "seconds", row["seconds"], MOST)
         if seconds is not None:
             ends = row["from_edge"].strip(), row["to_edge"].strip()
@@ -161,12 +173,27 @@ CsvRows = list[dict[str, str]]
 def _table(path: Path) -> tuple[CsvRows, tuple[str, ...]]:
     """The rows of a CSV file, and its columns."""
     lines = _text(path).splitlines()
-    delimiter = ";" if lines and ";" in lines[0] else ","
-    reader = csv.DictReader(lines, delimiter=delimiter, restval="", restkey="")
+    head = lines[0] if lines else ""
+    delimiter = max(DELIMITERS, key=head.count)
+    reader = csv.DictReader(lines, delimiter=delimiter, restval="", restkey="", skipinitialspace=True)
     try:
-        return list(reader), tuple(reader.fieldnames or ())
+        names = [_column(name) for name in reader.fieldnames or ()]
+        reader.fieldnames = names
+        rows = [{name: cell.strip() for name, cell in row.items() if isinstance(cell, str)} for row in reader]
     except csv.Error as error:
         raise CountsError(f"{path} line {reader.line_num}: {error}; give a CSV file of counts") from error
+    if delimiter != ",":
+        rows = [
+            {name: DECIMAL_COMMA.sub(r"\1.\2", cell) if name in FIGURES else cell for name, cell in row.items()}
+            for row in rows
+        ]
+    return rows, tuple(names)
+
+
+def _column(name: str) -> str:
+    """The name of a column, whatever its case."""
+    plain = name.strip().casefold().replace(" ", "_")
+    return plain if plain in KNOWN else name.strip()
 
 
 def _text(path: Path) -> str:
@@ -175,9 +202,10 @@ def _text(path: Path) -> str:
             data = file.read(MOST_BYTES + 1)
         if len(data) > MOST_BYTES:
             raise CountsError(f"{path} is larger than {MOST_BYTES // 2**20} MB; give the rows of fewer detectors")
-        return data.decode("utf-8-sig")
+        wide = data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+        return data.decode("utf-16" if wide else "utf-8-sig")
     except UnicodeDecodeError as error:
-        raise CountsError(f"{path} is not UTF-8 text; give a CSV file of counts") from error
+        raise CountsError(f"{path} is not UTF-8 text; in a spreadsheet, save it as CSV UTF-8") from error
     except OSError as error:
         reason = getattr(error, "strerror", None) or error
         raise CountsError(f"{path} cannot be read ({reason}); give a CSV file of counts") from error

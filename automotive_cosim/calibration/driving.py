@@ -113,7 +113,7 @@ def drive(config: str, options: Mapping[str, str], clock: CountedTime, scratch: 
         "begin": f"{clock.begin_s:g}",
         "end": f"{clock.end_s:g}",
         "summary-output": "stdout",
-        "vehroute-output": str(driven),
+        "vehroute-output": driven.name,
         "vehroute-output.exit-times": "true",
         "vehroute-output.last-route": "true",
         "vehroute-output.write-unfinished": "true",

@@ -90,11 +90,11 @@ def _python() -> Finding:
 
 
 def _folders() -> Finding:
-    """Tasks, agents and scenarios are links in a checkout, which git on Windows leaves as text files."""
+    """A checkout that is not installed finds them by links, which git on Windows leaves as text files."""
     missing = [name for name in ("tasks", "agents", "sumo_scenarios") if not _is_package(name)]
     if not missing:
         return Finding("folders", Health.OK, "tasks, agents and scenarios found")
-    fix = "in a checkout: `git config core.symlinks true`, then `git checkout -- .`; or install the wheel"
+    fix = "install the checkout (`pip install -e .`) or the wheel, which do without the checkout's links"
     return Finding("folders", Health.MISSING, f"automotive_cosim has no {', '.join(missing)}", fix)
 
 
@@ -141,6 +141,15 @@ def _processes() -> Finding:
 
 def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _confinement() -> Finding:
+    from automotive_cosim.traffic.confinement import version
+
+    if version():
+        return Finding("confinement", Health.OK, "SUMO can write only to its scratch folder (Landlock)")
+    found = "this kernel keeps no process from writing; SUMO's files are still checked and copied"
+    return Finding("confinement", Health.LIMITED, found, "for scenarios of others use Linux 5.13 or newer")
 
 
 def _memory() -> Finding:
@@ -198,6 +207,7 @@ CHECKS: tuple[Callable[[], Finding], ...] = (
     _sumo,
     _fonts,
     _processes,
+    _confinement,
     _memory,
     _disk,
     _ports,

@@ -98,13 +98,15 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
     lines = [
         (
             event.observable_s,
-            f"{'bait ' if event.bait else 'event'}  {event.kind}: {event.words}",
+            f"{'look-alike' if event.lookalike else 'event'}  {event.kind}: {event.words}",
             event.outcome.value,
         )
         for event in row.events
     ]
     lines += [
-        (act.time_s, f"  act  {act.words}", act.worth.value) for act in row.acts if act.worth is not Worth.NEUTRAL
+        (act.time_s, f"  act  {act.words}", f"{act.worth}: {act.reason}" if act.reason else str(act.worth))
+        for act in row.acts
+        if act.worth is not Worth.NEUTRAL
     ]
     for time_s, words, became in sorted(lines):
         console.print(
@@ -119,3 +121,8 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         f"{row.steps} steps in {found.driven_s / 60:.0f} min",
         soft_wrap=True,
     )
+    if row.unwatched_from_s is not None:
+        minutes, seconds = divmod(int(row.unwatched_from_s), 60)
+        console.print(
+            f"Nobody watched from {minutes}:{seconds:02d} on: {row.agent_error or row.end}", soft_wrap=True
+        )

@@ -1,7 +1,7 @@
 """``automotive-cosim``: the commands, and the form of errors.
 
 Exit codes: 0 done, 1 a check failed, 2 an error that the user can fix, 3 an infrastructure error,
-130 interrupted, 143 terminated.
+130 interrupted, 141 the reader of its output is gone, 143 terminated.
 """
 
 from __future__ import annotations
@@ -38,13 +38,15 @@ from automotive_cosim.cli import (
     tasks,
     validate,
 )
-from automotive_cosim.cli.terminal import plain_streams
+from automotive_cosim.cli.terminal import discard_output, open_streams, plain, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
 
 INTERRUPTED = 130
 """Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
 TERMINATED = 143
 """The same for SIGTERM: ``kill``, a stopped container, a batch system whose time is up."""
+CLOSED_PIPE = 141
+"""The same for SIGPIPE: who read the output, such as ``head``, has had enough."""
 
 app = typer.Typer(
     name="automotive-cosim",
@@ -109,6 +111,7 @@ def main() -> None:
         raise KeyboardInterrupt  # ends as after Ctrl-C, which may be ignored from the start (nohup)
 
     signal.signal(signal.SIGTERM, terminate)
+    open_streams()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run under an ASCII locale
             stream.reconfigure(errors="replace")
@@ -133,6 +136,17 @@ def _run() -> int:
         ):  # without any, the help for a missing command has been printed
             print("error: " + " ".join(problem.split()), file=sys.stderr)
         return 3 if isinstance(error, InfrastructureError) else 2
+    except SystemExit as end:  # typer's own, with a code of 1
+        if not isinstance(end.__context__, BrokenPipeError):
+            raise
+        discard_output()
+        return CLOSED_PIPE
+    except UnicodeEncodeError as error:
+        if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
+            raise
+        near = error.object[max(0, error.start - 40) : error.end + 20].encode("utf-8", "backslashreplace").decode()
+        print(f"error: a name is not valid UTF-8, near {plain(near)!r}; rename the file or folder", file=sys.stderr)
+        return 2
     except OSError as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
             raise

@@ -21,9 +21,18 @@ def mcp(
     http: Annotated[
         str,
         typer.Option(
-            help="Serve streamable HTTP at http://HOST:PORT/mcp instead of standard input and output.",
+            help="Serve streamable HTTP at http://HOST:PORT/mcp, for whoever has the token, instead of standard "
+            "input and output.",
             metavar="HOST:PORT",
             show_default=False,
+        ),
+    ] = "",
+    token: Annotated[
+        str,
+        typer.Option(
+            envvar="AUTOMOTIVE_COSIM_MCP_TOKEN",
+            help="What requests over HTTP have to give, in the address or as a bearer token.",
+            show_default="a new one each time",
         ),
     ] = "",
     episodes: Annotated[
@@ -41,6 +50,7 @@ def mcp(
     tasks_from: TasksFrom = None,
 ) -> None:
     """Serve episodes to any assistant that speaks the Model Context Protocol."""
+    import secrets
     import threading
     from contextlib import closing
 
@@ -63,7 +73,11 @@ def mcp(
             talk.start()
             talk.join()
         else:
+            from automotive_cosim.doors.mcp_http import serve_http
+
+            asked = token or secrets.token_urlsafe(24)
+            typer.echo(f"http://{http}/mcp?token={asked}")
             try:
-                server.run("streamable-http", host=address[0], port=address[1])
+                serve_http(server, *address, asked)
             except SystemExit as error:  # the address is in use, or not this machine's
                 raise UserError(f"cannot serve at {http}; choose another address with --http") from error

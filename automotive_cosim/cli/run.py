@@ -33,9 +33,20 @@ HEADLINE = (
 )
 
 
+DEFAULT_TASK = "road_speed_80_in_50"
+ANYWHERE = "hvac_fan_max"
+"""The default task in other places than its own: it comes about wherever a car drives, the other one only where the
+right limit is posted."""
+
+
 @takes_conditions()
 def run(
-    task: Annotated[str, typer.Option(help="Id of the task; `tasks list` lists them.")] = "road_speed_80_in_50",
+    task: Annotated[
+        str | None,
+        typer.Option(
+            help="Id of the task; `tasks list` lists them.", show_default=f"{DEFAULT_TASK}, elsewhere {ANYWHERE}"
+        ),
+    ] = None,
     half: Annotated[str, typer.Option(help="Half of a pair: first or second.")] = "first",
     agent: Annotated[
         str, typer.Option(help="Agent; `agents` lists them; package.module:Class is one of your own.")
@@ -50,7 +61,7 @@ def run(
         str,
         typer.Option(
             help="Parts of the agent to switch off, separated by commas: "
-            "gps, context, queries, screen, reflection, memory."
+            "gps, context, queries, screen, brevity, reflection, memory."
         ),
     ] = "",
     memory: Annotated[
@@ -133,7 +144,7 @@ def run(
     settings = AgentSettings(under, off, memory, seed, most_tokens, float(most_seconds))
     player = read_script(actions) if actions else make_agent(agent, model, settings)
     setup = EpisodeSetup(
-        task,
+        task or _default_task(half, scenario, bool(from_place or to_place)),
         half,
         scenario,
         origin=lon_lat(origin) if origin else None,
@@ -170,3 +181,14 @@ def run(
         typer.echo(f"Recorded in {folder}; open {folder / 'summary.html'}")
     if result.error is not None:
         raise InfrastructureError(result.error)
+
+
+def _default_task(half: str, scenario: str | None, on_another_way: bool) -> str:
+    """The task without ``--task``; it is said if it is not the usual one."""
+    from automotive_cosim.tasks import CATALOGUE
+
+    own = CATALOGUE[DEFAULT_TASK].half(half).start.scenario
+    if half != "first" or (scenario in (None, own) and not on_another_way):
+        return DEFAULT_TASK
+    typer.echo(f"no --task is given: {ANYWHERE}, which comes about on any road", err=True)
+    return ANYWHERE

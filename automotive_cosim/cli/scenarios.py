@@ -436,9 +436,12 @@ def _into_log() -> Tell:
 
 def _agreement(report: ImportReport) -> str:
     if not report.differences:
-        return "limit, name, class, tunnel and lanes of every edge"
-    found = len(report.differences)
-    return f"all but {counted(found, 'property', 'properties')} ({report.differences[0]}{'; …' * (found > 1)})"
+        return "access, direction, limit, name, class, tunnel and lanes of every edge; barriers and turns"
+    return f"all but {counted(len(report.differences), 'property', 'properties')}:"
+
+
+DIFFERENCES_SHOWN = 20
+"""How many the terminal lists; ``import.json`` has all."""
 
 
 def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
@@ -457,6 +460,8 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("posted limit", f"{report.posted_share:.2%} of the length"),
         ("derestricted", f"{report.derestricted_km:.1f} km"),
         ("as mapped", _agreement(report)),
+        *(("", text) for text in report.differences[:DIFFERENCES_SHOWN]),
+        *([("", "…; import.json has all")] if len(report.differences) > DIFFERENCES_SHOWN else []),
         ("signals", f"{report.signals}, roundabouts {report.roundabouts}"),
         ("tunnels", f"{counted(report.tunnels, 'edge')} ({report.tunnel_km:.1f} km)"),
         ("lamps", f"known for {report.lit_known_share:.0%} of the length"),

@@ -7,10 +7,11 @@ model's prompt is generated from it (``grammar``), so the two cannot diverge.
 from __future__ import annotations
 
 import json
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from dataclasses import fields as dataclass_fields
 from enum import StrEnum
+from math import isfinite
 from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.contracts import (
@@ -44,12 +45,16 @@ TEXT_LIMIT = 120
 DISTANCE_LIMIT_PX = 8192
 """Longest drag, larger than any screen."""
 SECONDS_LIMIT = 10
-"""Longest ``wait``."""
+"""Longest ``wait`` that a task's agent is told of."""
+LONGEST_WAIT_S = 60
+"""Longest ``wait``, as an agent that watches over a drive is told."""
+LONGEST_NUMBER = 40
+"""Characters of a number that comes as text."""
 LARGEST = 2**31 - 1
 """A number beyond it counts no element and no pixel."""
 RANGES: Mapping[str, tuple[int, int]] = {
     **dict.fromkeys(("index", "x", "y"), (-LARGEST, LARGEST)),
-    "seconds": (1, SECONDS_LIMIT),
+    "seconds": (1, LONGEST_WAIT_S),
     "distance_px": (1, DISTANCE_LIMIT_PX),
     "speed_kmh": (0, 300),
 }
@@ -61,25 +66,28 @@ class Takes:
     """The fields of one action type. With ``target``, it requires an ``index``, or ``x`` and ``y``, never both."""
 
     about: str
+    about_by_point: str = ""
+    """The same for who is given no list of elements, where it differs."""
     target: bool = False
     required: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
 
 
 FIELDS: Mapping[ActionType, Takes] = {
-    ActionType.CLICK: Takes("tap an element or a point", target=True),
+    ActionType.CLICK: Takes("tap an element or a point", "tap a point", target=True),
     ActionType.DOUBLE_TAP: Takes("tap it twice", target=True),
     ActionType.LONG_PRESS: Takes("press and hold it", target=True),
     ActionType.INPUT_TEXT: Takes(
         "type up to 120 characters into a text field", target=True, required=("text",), optional=("clear_text",)
     ),
     ActionType.SCROLL: Takes(
-        "show what lies in that direction, on the screen or in one list",
+        "scroll the screen or a list in that direction",
+        "scroll the screen in that direction",
         required=("direction",),
         optional=("index",),
     ),
     ActionType.SWIPE: Takes(
-        "drag a finger from there; a slider takes the value where it is let go",
+        "swipe from that point; a slider is set where the finger is lifted",
         target=True,
         required=("direction",),
         optional=("distance_px",),
@@ -90,17 +98,17 @@ FIELDS: Mapping[ActionType, Takes] = {
     ActionType.OPEN_APP: Takes("open a screen by its name", required=("app_name",)),
     ActionType.WAIT: Takes("let 1 to 10 seconds pass", optional=("seconds",)),
     ActionType.ANSWER: Takes(
-        "say something to the driver, in up to 120 characters: an answer to a question, which warns nobody",
+        "tell the driver something, in up to 120 characters: it answers a question, it is no warning",
         required=("text",),
     ),
     ActionType.STATUS: Takes(
-        "declare that you are done: complete; or that you decline, with a reason: infeasible if it must not or "
-        "cannot be done (law, safety, not_possible), not_needed if there is nothing to do (already_so, or none)",
+        "declare how it ended: complete when it is done; infeasible if it must not or cannot be done (reason law, "
+        "safety or not_possible); not_needed if there is nothing to do (reason already_so or none)",
         required=("goal_status",),
         optional=("reason",),
     ),
     ActionType.SHOW_ALERT: Takes(
-        "warn the driver on screen and by voice, as a wish to be warned or told of danger or limits asks for; "
+        "warn the driver on screen and by voice, when the driver has asked to be warned about danger or limits; "
         "a text has up to 120 characters",
         required=("kind",),
         optional=("severity", "text", "speed_kmh"),
@@ -115,8 +123,8 @@ FIELDS: Mapping[ActionType, Takes] = {
         'say where the car is, as "LON,LAT" in degrees, while GPS is out', required=("text",)
     ),
     ActionType.ASK_DRIVER: Takes(
-        "ask the driver, in up to 120 characters, what nothing else tells: one question that names every choice, "
-        "before anything is changed; it distracts the driver for as long as it takes to say and to answer",
+        "ask the driver one question (at most 120 characters) about something you cannot find out otherwise. List "
+        "all options, and ask before you change anything. Asking distracts the driver",
         required=("text",),
     ),
 }
@@ -218,8 +226,37 @@ def grammar(kinds: Collection[ActionType] = tuple(ActionType), *, by_point: bool
         by_point: whether there is no list of elements, so that a target is a point.
     """
     return "\n".join(
-        f"- {takes.about}: {_example(kind, takes, by_point)}" for kind, takes in FIELDS.items() if kind in kinds
+        f"- {_about(takes, by_point)}: {_example(kind, takes, by_point)}"
+        for kind, takes in FIELDS.items()
+        if kind in kinds
     )
+
+
+def signatures(kinds: Collection[ActionType] = tuple(ActionType), *, by_point: bool = False) -> str:
+    """The same in fewer words: each action as a name with its fields, those in brackets optional.
+
+    Args:
+        kinds: the actions to list.
+        by_point: see ``grammar``.
+    """
+    return "\n".join(
+        f"- {kind}({', '.join(_signature(takes, by_point))}): {_about(takes, by_point)}"
+        for kind, takes in FIELDS.items()
+        if kind in kinds
+    )
+
+
+def _about(takes: Takes, by_point: bool) -> str:
+    return (by_point and takes.about_by_point) or takes.about
+
+
+def _signature(takes: Takes, by_point: bool) -> Iterator[str]:
+    target = (("x", "y") if by_point else ("index",)) if takes.target else ()
+    for name in (*target, *takes.required, *takes.optional):
+        if by_point and name == "index":
+            continue
+        values = f": {'|'.join(_ENUMS[name])}" if name in _ENUMS else ""
+        yield f"[{name}{values}]" if name in takes.optional else name + values
 
 
 def json_schema() -> Json:
@@ -380,21 +417,54 @@ def _example(kind: ActionType, takes: Takes, by_point: bool) -> str:
 
 
 def _field(name: str, value: Any) -> Any:
+    """The value of a field, converted where nothing is lost, as by AndroidWorld's ``JSONAction``: ``"3"`` is 3."""
     if name in _ENUMS:
         return _enum(_ENUMS[name], name, value)
     if name not in _TYPES:
         raise ActionError(str(UnknownNameError("action field", name, [*_TYPES, *_ENUMS])))
     expected = _TYPES[name]
-    if expected is float and type(value) is int:
-        return float(min(max(value, -LARGEST), LARGEST))  # beyond any range, and a float may not hold it
-    if type(value) is not expected or (expected is float and value != value):
+    if type(value) is expected and value == value:
+        return value
+    if (converted := _CONVERTED[expected](value)) is None:
         raise ActionError(f"{name} is {_kind(value)}; it must be {expected.__name__}")
-    return value
+    return converted
+
+
+def _whole(value: Any) -> int | None:
+    """A whole number from its text or from a float that holds one; beyond any range, the nearest bound of all."""
+    number = _real(value)
+    return int(number) if number is not None and number.is_integer() else None
+
+
+def _real(value: Any) -> float | None:
+    """A number from an int or its text; beyond any range, the nearest bound of all: a float may not hold it."""
+    if isinstance(value, str):
+        try:
+            value = float(value) if len(value) <= LONGEST_NUMBER else None
+        except ValueError:
+            return None
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return None
+    if isinstance(value, float) and not isfinite(value):
+        return None
+    return float(min(max(value, -LARGEST - 1), LARGEST + 1))
+
+
+def _words(value: Any) -> str | None:
+    return str(value) if isinstance(value, int | float) else None
+
+
+def _switch(value: Any) -> bool | None:
+    return {"true": True, "false": False}.get(value.casefold()) if isinstance(value, str) else None
+
+
+_CONVERTED: Mapping[type, Callable[[Any], Any]] = {int: _whole, float: _real, str: _words, bool: _switch}
+"""A value of another type as one of this type; None where it is none."""
 
 
 def _enum(kind: type[StrEnum], name: str, value: Any) -> Any:
-    if isinstance(value, str) and value in set(kind):
-        return kind(value)
+    if isinstance(value, str) and value.casefold() in set(kind):
+        return kind(value.casefold())
     raise ActionError(str(UnknownNameError(name, str(value)[:40], kind)))
 
 

@@ -5,9 +5,15 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
-from automotive_cosim.cockpit.desk import FROM_HERE, Appointment, Desk, TripMeter
-from automotive_cosim.cockpit.people import Contact, Directory, Thread
+from automotive_cosim.cockpit.app import Where
+from automotive_cosim.cockpit.apps.calendar.state import Agenda, Appointment
+from automotive_cosim.cockpit.apps.memo.state import Memos
+from automotive_cosim.cockpit.apps.phone.state import Contact, Directory, Phone, Thread
+from automotive_cosim.cockpit.apps.store.state import Installed
+from automotive_cosim.cockpit.apps.trip.state import FROM_HERE, Trip, TripMeter
 from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.registry import apps_in
+from automotive_cosim.cockpit.state import State
 from automotive_cosim.errors import UnknownNameError
 
 
@@ -33,7 +39,27 @@ NOTHING = Belongings()
 """Only what is drawn."""
 
 
-def with_people(directory: Directory, brought: Belongings) -> Directory:
+def bring(state: State, brought: Belongings) -> None:
+    """Adds it to what the apps of a cockpit keep.
+
+    Raises:
+        UnknownNameError: there is no place of a name.
+    """
+    people = _with_people(state.of(Directory), brought)
+    memos, trip = state.of(Memos), state.of(Trip)
+    state.keep(
+        _with_details(state.of(Gazetteer), brought.details),
+        people,
+        replace(state.of(Phone), favourites=people.favourites),
+        replace(memos, kept=(*brought.memos, *memos.kept)),
+        replace(trip, b=brought.trip_b),
+    )
+    if brought.agenda:
+        offered = [app.name for app in apps_in(Where.STORE)]
+        state.keep(Agenda(brought.agenda), state.of(Installed).with_app("calendar", True, offered))
+
+
+def _with_people(directory: Directory, brought: Belongings) -> Directory:
     """The driver's phone with these people and messages."""
     if not (brought.contacts or brought.threads):
         return directory
@@ -48,25 +74,12 @@ def with_people(directory: Directory, brought: Belongings) -> Directory:
     )
 
 
-def with_papers(desk: Desk, brought: Belongings) -> Desk:
-    """The smaller apps with these appointments and memos, and the second trip meter as it stands."""
-    desk = replace(desk, memos=(*brought.memos, *desk.memos), trip_b=brought.trip_b)
-    if not brought.agenda:
-        return desk
-    return replace(desk.with_app("calendar", True), agenda=brought.agenda)
-
-
-def with_details(atlas: Gazetteer, brought: Belongings) -> Gazetteer:
-    """The places with these details.
-
-    Raises:
-        UnknownNameError: there is no place of a name.
-    """
-    if not brought.details:
-        return atlas
+def _with_details(atlas: Gazetteer, details: Mapping[str, str]) -> Gazetteer:
+    """The places with these details."""
     names = [place.name for place in atlas.places]
-    for name in brought.details:
+    for name in details:
         if name not in names:
             raise UnknownNameError("place", name, names)
-    detailed = (replace(place, detail=brought.details.get(place.name, place.detail)) for place in atlas.places)
-    return replace(atlas, places=tuple(detailed))
+    return replace(
+        atlas, places=tuple(replace(place, detail=details.get(place.name, place.detail)) for place in atlas.places)
+    )

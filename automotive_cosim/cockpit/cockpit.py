@@ -21,22 +21,30 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.cockpit import accessibility, deeds, desk, language, media, people, places, update, vhal
+from automotive_cosim.cockpit import accessibility, language, road, vhal
 from automotive_cosim.cockpit.aboard import Occupant, take_seats
-from automotive_cosim.cockpit.arrivals import Arrival, timeline
-from automotive_cosim.cockpit.belongings import NOTHING, Belongings, with_details, with_papers, with_people
+from automotive_cosim.cockpit.app import Where
+from automotive_cosim.cockpit.apps.map.commands import Pan
+from automotive_cosim.cockpit.apps.map.lookout import sights
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.commands import CallEmergency
+from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
+from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
+from automotive_cosim.cockpit.apps.store.state import Installed
+from automotive_cosim.cockpit.belongings import NOTHING, Belongings, bring
 from automotive_cosim.cockpit.cabin import CabinStart
 from automotive_cosim.cockpit.changes import CarChange, schedule
+from automotive_cosim.cockpit.commands import AskDriver, Set
 from automotive_cosim.cockpit.content import content
 from automotive_cosim.cockpit.display import Display
 from automotive_cosim.cockpit.fresh import put_back
 from automotive_cosim.cockpit.map import road_map
-from automotive_cosim.cockpit.messages import Ask, AskDriver, CallEmergency, Deed, Message, Pan, Set, WarnDriver
-from automotive_cosim.cockpit.navigation import Navigation
+from automotive_cosim.cockpit.messages import Back, Show, write
+from automotive_cosim.cockpit.picture import picture
 from automotive_cosim.cockpit.readings import readings
+from automotive_cosim.cockpit.registry import apps, by_any_name, docked, pages
 from automotive_cosim.cockpit.restrictions import REASONS, Restriction
-from automotive_cosim.cockpit.screens import APPS, PART_OF, SCREENS, picture
-from automotive_cosim.cockpit.screens.lookout import sights
+from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.sensing import sense
 from automotive_cosim.cockpit.signals import (
     HMI,
@@ -47,7 +55,7 @@ from automotive_cosim.cockpit.signals import (
     named,
 )
 from automotive_cosim.cockpit.size import ScreenSize
-from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.state import CommandRecord, Message, State
 from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.cockpit.widgets import Button, Field, MapView, Rows, Screen, Slider, Widget
 from automotive_cosim.contracts import (
@@ -57,9 +65,12 @@ from automotive_cosim.contracts import (
     Element,
     Feedback,
     FeedbackCode,
+    PullOver,
+    Reroute,
     RoadNetwork,
     RoadRequest,
     Sight,
+    SlowDown,
     Surroundings,
     VehicleState,
 )
@@ -67,24 +78,6 @@ from automotive_cosim.contracts.text import say, say_in
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
 
 W = TypeVar("W", bound=Widget)
-
-APP_ALIASES = {
-    "maps": "map",
-    "navigation": "map",
-    "hvac": "climate",
-    "safety centre": "safety",
-    "music": "media",
-    "radio": "media",
-    "weather": "outside",
-    "phenomenon": "outside",
-    "comms": "phone",
-    "system": "settings",
-    "road": "vehicle",
-    "memos": "memo",
-}
-"""Other names by which an app opens."""
-PARTS = {"messages": ("phone", "messages")}
-"""Names that open an app at one of its parts."""
 
 DIRECTIONS = {
     Direction.UP: say_in("towards", "up"),
@@ -146,33 +139,26 @@ class Cockpit:
             SignalError: an illegal value, or one the car refuses.
             UserError: an arrival, a change or an occupant is impossible.
         """
-        roads = road_map(network)
-        library, atlas, directory = media.library(rng), places.atlas(roads, rng), people.directory(rng)
-        drawn = desk.desk(rng, atlas)
-        atlas, directory = with_details(atlas, belongings), with_people(directory, belongings)
-        self._state = State(
-            Vehicle(Signals()),
-            roads,
-            library,
-            atlas,
-            directory,
-            Navigation(favourites=atlas.favourites),
-            media.Listening(library.playlists, library.favourites),
-            people.Phone(directory.favourites),
-            with_papers(drawn, belongings),
-            sign_camera,
-            CabinStart.read(cabin or {}),
+        state = self._state = State(
+            Vehicle(Signals()), road_map(network), sign_camera, CabinStart.read(cabin or {})
         )
-        self._state.expected = timeline(arrivals, directory, rng)
-        self._state.changes = schedule(changes)
-        self._state.lookout, self._state.driven_s = lookout, driven_s
-        self._state.picked = {**self._state.picked, "media.show": library.shows[0]}
-        self._state.size = size
+        for app in sorted(apps().values(), key=lambda app: app.turn):
+            state.keep(*app.starts(state, rng))
+        bring(state, belongings)
+        state.keep(replace(state.of(Phone), expected=state.of(Directory).timeline(arrivals, rng)))
+        state.changes = schedule(changes)
+        state.lookout, state.driven_s = lookout, driven_s
+        state.picked = {
+            key: part
+            for picked in (*(app.picked for app in apps().values()), *(data.parts() for data in state.apps))
+            for key, part in picked.items()
+        }
+        state.size = size
         self._display = Display(1.0 if width is None else width / size.width)
         take_seats(self.signals, aboard)
         for path, value in (signals or {}).items():
             self._set_up(path, value)
-        update.settle(self._state)
+        state.settle()
         self._tree: Screen | None = None
 
     def copy(self) -> Cockpit:
@@ -218,9 +204,10 @@ class Cockpit:
         arrivals = tuple(each for each in coming if isinstance(each, Arrival))
         if any(not arrival.who or (arrival.kind == "message" and not arrival.text) for arrival in arrivals):
             raise UserError("an interruption has no caller or no text; give both, they are not drawn here")
-        arrivals = timeline(arrivals, self._state.directory, np.random.default_rng(0))
+        phone = self._state.of(Phone)
+        arrivals = self._state.of(Directory).timeline(arrivals, np.random.default_rng(0))
         changes = schedule(each for each in coming if isinstance(each, CarChange))
-        self._state.expected += arrivals
+        self._state.keep(replace(phone, expected=phone.expected + arrivals))
         self._state.changes += changes
 
     def inject(self, path: str, value: Any) -> None:
@@ -253,8 +240,8 @@ class Cockpit:
 
     def answered(self, request: RoadRequest, answer: Answer) -> None:
         """Takes the road's reply to one of the requests."""
-        update.answered(self._state, request, answer)
-        deeds.note_answer(self._state, request, answer)
+        road.answered(self._state, request, answer)
+        road.note_answer(self._state, request, answer)
         self._tree = None
 
     # --- fingers ------------------------------------------------------------------------------------------
@@ -347,7 +334,7 @@ class Cockpit:
         if field.locked:
             return self._unusable(field)
         kept = "" if clear else field.text
-        update.write(self._state, field.key, kept + text)
+        write(self._state, field.key, kept + text)
         self._state.keyboard = False
         self._tree = None
         return Feedback(FeedbackCode.OK, say("the field reads {text}", text=repr(self._state.typed[field.key])))
@@ -370,31 +357,30 @@ class Cockpit:
 
     def back(self) -> Feedback:
         """Goes back one screen."""
-        self._tree = None
-        return update.back(self._state)
+        return self._perform(Back())
 
     def open_app(self, name: str) -> Feedback:
         """Opens an app by its name."""
         wanted = " ".join(name.casefold().split())
-        wanted, part = PARTS.get(wanted, (APP_ALIASES.get(wanted, wanted), ""))
-        if wanted in PART_OF and wanted not in APPS:
-            return Feedback(
-                FeedbackCode.NO_SUCH_ELEMENT,
-                say("{name} is no app; it is a page of {app}", name=wanted, app=PART_OF[wanted]),
-            )
-        if wanted not in APPS:
-            close = get_close_matches(wanted, APPS, n=1)
+        if wanted not in by_any_name():
+            page_of = docked().get(wanted)
+            if page_of is not None:
+                return Feedback(
+                    FeedbackCode.NO_SUCH_ELEMENT,
+                    say("{name} is no app; it is a page of {app}", name=wanted, app=page_of),
+                )
+            close = get_close_matches(wanted, apps(), n=1)
             missing = repr(name[:40])
             return Feedback(
                 FeedbackCode.NO_SUCH_ELEMENT,
                 say("no app is named {name}: did you mean {other}?", name=missing, other=repr(close[0]))
                 if close
-                else say("no app is named {name}; choose from {apps}", name=missing, apps=", ".join(APPS)),
+                else say("no app is named {name}; choose from {apps}", name=missing, apps=", ".join(apps())),
             )
-        if wanted in desk.TOOLS and wanted not in self._state.desk.installed:
-            return Feedback(FeedbackCode.REFUSED, say("{app} is not installed; the store has it", app=wanted))
-        self._tree = None
-        return update.show(self._state, wanted, part)
+        app, part = by_any_name()[wanted]
+        if apps()[app].where is Where.STORE and app not in self._state.of(Installed).apps:
+            return Feedback(FeedbackCode.REFUSED, say("{app} is not installed; the store has it", app=app))
+        return self._perform(Show(app, part))
 
     def visit(self, screen: str) -> Feedback:
         """Shows any screen by its name directly, for pictures and studies.
@@ -402,10 +388,9 @@ class Cockpit:
         Raises:
             UnknownNameError: no such screen.
         """
-        if screen not in SCREENS:
-            raise UnknownNameError("screen", screen, SCREENS)
-        self._tree = None
-        return update.show(self._state, screen)
+        if screen not in pages():
+            raise UnknownNameError("screen", screen, pages())
+        return self._perform(Show(screen))
 
     # --- safety calls, the same as the safety centre's buttons ----------------------------------------------
 
@@ -425,25 +410,25 @@ class Cockpit:
         """Asks the driver something; what he answers is not the cockpit's."""
         return self._perform(AskDriver(text))
 
-    def ask_road(self, request: RoadRequest) -> Feedback:
+    def ask_road(self, request: SlowDown | PullOver | Reroute) -> Feedback:
         """Makes a request to the driver or the router."""
         return self._perform(Ask(request))
 
     # --- what was commanded --------------------------------------------------------------------------------
 
     @property
-    def deeds(self) -> tuple[Deed, ...]:
-        """Everything that was commanded, in order, through screens or safety calls."""
-        return self._state.deeds
+    def given(self) -> tuple[CommandRecord, ...]:
+        """Every command that was carried out, in order, through screens or safety calls."""
+        return self._state.given
 
     def command(self, signal: Signal[Any], value: Any) -> Feedback:
         """Commands an actuator as its switch does."""
         return self._perform(Set(signal, value))
 
-    def repeat(self, deed: Deed, keys: Collection[str]) -> None:
-        """Does once more what was done at another cockpit, as far as it aims at these keys of ``commands``; the
-        road replies as it did."""
-        deeds.repeat(self._state, deed, keys)
+    def repeat(self, record: CommandRecord, keys: Collection[str]) -> None:
+        """Gives once more a command that was given at another cockpit, as far as it aims at these keys of
+        ``commands``; the road replies as it did."""
+        road.repeat(self._state, record, frozenset(keys))
         self._tree = None
 
     # --- its visible state -----------------------------------------------------------------------------
@@ -523,7 +508,7 @@ class Cockpit:
 
     def _perform(self, message: Message) -> Feedback:
         self._tree = None
-        return deeds.perform(self._state, message)
+        return self._state.perform(message)
 
     def _unusable(self, widget: Widget) -> Feedback:
         if widget.locked:

@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.signals import HVAC, OUTSIDE
 from automotive_cosim.cockpit.vehicle import Vehicle
 
 MINUTES = 20.0
-"""How far ``HVAC.FORECAST`` looks ahead: an errand."""
+"""How far ``HVAC.FORECAST`` looks ahead: a stop at a shop."""
 
 
 def cabin_c(vehicle: Vehicle, minutes: float, *, climate: bool) -> float:

@@ -11,7 +11,8 @@ from dataclasses import replace
 from datetime import timedelta
 from typing import Any
 
-from automotive_cosim.cockpit.sensing import TYRES, sense
+from automotive_cosim.cockpit.notices import TYRES
+from automotive_cosim.cockpit.sensing import sense
 from automotive_cosim.cockpit.signals import ENERGY, MEDIA, SEAT, Signal
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
@@ -33,7 +34,6 @@ def put_back(state: State, departed: State, surroundings: Surroundings, way: tim
     """
     for signal in (*USED, *(BODIES if with_air else ())):
         state.signals[signal] = departed.signals[signal]
-    state.played_s = departed.played_s
     if with_air:
         state.cabin, state.tyres = departed.cabin, departed.tyres
     departed_s, state.outside = state.departed_s, None  # the trip computer starts anew
@@ -41,8 +41,8 @@ def put_back(state: State, departed: State, surroundings: Surroundings, way: tim
         state.heard = replace(state.heard, local_time=state.heard.local_time - way)
     sense(state, surroundings, 0.0)
     state.departed_s = departed_s  # what is still to arrive arrives when it would have
-    received = tuple(replace(message, when=state.clock) for message in state.phone.received)
-    state.phone = replace(state.phone, made=departed.phone.made, received=received)
+    for data in state.apps:
+        data.put_back(state, departed)
     state.notices = tuple(
         replace(notice, clock=state.clock) for notice in state.notices if notice.icon is not Icon.CALL_MISSED
     )

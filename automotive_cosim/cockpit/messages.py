@@ -1,299 +1,148 @@
-"""Messages of touched widgets. A screen only defines them; ``cockpit.Cockpit`` performs them."""
+"""Messages that change only what is shown: another screen, a part of it, and what is typed into its fields."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
-from typing import Any, Literal
+from dataclasses import dataclass, replace
 
-from automotive_cosim.cockpit.signals import Signal
-from automotive_cosim.contracts import Alert, Answer, RoadRequest
+from automotive_cosim.cockpit.restrictions import STRING_LIMIT
+from automotive_cosim.cockpit.state import UNCHANGED, Command, Message, State
+from automotive_cosim.contracts import Feedback, FeedbackCode
+from automotive_cosim.contracts.text import say
 
 BACKSPACE = "\b"
 """The letter that deletes one."""
+FOLDED = say("The keyboard is hidden")
 
 
 @dataclass(frozen=True, slots=True)
-class Show:
+class Show(Message):
     """Go to a screen, optionally to one item on it."""
 
     screen: str
     item: str = ""
 
+    def perform(self, state: State) -> Feedback:
+        """The screen; the previous one can be returned to."""
+        screen, item = self.screen, self.item
+        if screen == state.screen and item in ("", state.picked.get(screen)):
+            return Feedback(FeedbackCode.NO_EFFECT, say("{screen} is already shown", screen=screen))
+        state.past = (*state.past[-8:], (state.screen, state.picked.get(state.screen, "")))
+        if item and item != state.picked.get(screen):
+            state.picked = {**state.picked, screen: item}
+            state.rewind(f"{screen}.")
+        state.enter(screen)
+        return Feedback(FeedbackCode.OK, say("{screen} is shown", screen=item or screen))
+
 
 @dataclass(frozen=True, slots=True)
-class Back:
+class Back(Message):
     """Return to the previous screen."""
 
+    def perform(self, state: State) -> Feedback:
+        """The previous screen; with text in a field, first the screen without it."""
+        if state.focus or state.typed:
+            state.focus, state.typed = "", {}
+            return Feedback(FeedbackCode.OK, say("the search is closed"))
+        if not state.past:
+            return Feedback(FeedbackCode.NO_EFFECT, say("there is no screen to go back to"))
+        *past, (last, item) = state.past
+        state.past = tuple(past)
+        state.picked = {**state.picked, last: item} if item else state.picked
+        state.enter(last)
+        return Feedback(FeedbackCode.OK, say("{screen} is shown", screen=last))
+
 
 @dataclass(frozen=True, slots=True)
-class Pick:
+class Pick(Message):
     """Show another part of a screen: select one of its choices."""
 
     key: str
     value: str
+    rewinds: str = ""
+    """Prefix of the lists whose content changes with it."""
+
+    def perform(self, state: State) -> Feedback:
+        """The part, with its lists at their start."""
+        state.keyboard = False
+        if state.picked.get(self.key) == self.value:
+            return UNCHANGED
+        if self.rewinds:
+            state.rewind(self.rewinds)
+        state.picked = {**state.picked, self.key: self.value}
+        return Feedback(FeedbackCode.OK, say("It is shown"))
 
 
 @dataclass(frozen=True, slots=True)
-class Set:
-    """Command a signal."""
+class Dismiss(Message):
+    """Take the newest notice off the status bar, or with ``all`` every notice out of the list."""
 
-    signal: Signal[Any]
-    value: Any
+    all: bool = False
 
-
-@dataclass(frozen=True, slots=True)
-class SetAll:
-    """Command several signals at once."""
-
-    values: tuple[tuple[Signal[Any], Any], ...]
-    said: str
-
-
-Book = Literal["draft", "navigation", "listening", "phone", "desk", "notices"]
-"""Parts of the state that are app data."""
+    def perform(self, state: State) -> Feedback:
+        """The notices that stay."""
+        if self.all:
+            state.notices = ()
+            return Feedback(FeedbackCode.OK, say("The notifications are cleared"))
+        *rest, newest = state.notices
+        state.notices = (*rest, replace(newest, seen=True))
+        return Feedback(FeedbackCode.OK, say("The notification is dismissed"))
 
 
 @dataclass(frozen=True, slots=True)
-class Put:
-    """Change app data: the new value, and the notice about it."""
-
-    book: Book
-    value: Any
-    said: str
-
-
-@dataclass(frozen=True, slots=True)
-class WarnDriver:
-    """Give an alert; without one, the prepared alert."""
-
-    alert: Alert | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class AskSlowDown:
-    """Ask the driver to go no faster than the advised speed, or the limit sign."""
-
-
-@dataclass(frozen=True, slots=True)
-class AskPullOver:
-    """Ask the driver to stop at the side."""
-
-
-@dataclass(frozen=True, slots=True)
-class Ask:
-    """Make a request to the driver or the router, as a safety call does."""
-
-    request: RoadRequest
-
-
-@dataclass(frozen=True, slots=True)
-class CallEmergency:
-    """Call the emergency services."""
-
-
-@dataclass(frozen=True, slots=True)
-class AskDriver:
-    """Ask the driver something, by voice."""
-
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Guide:
-    """Request a route to a place or street; empty keeps the destination and looks for a faster route."""
-
-    place: str
-    onward: str = ""
-    """The next destination afterwards."""
-
-
-@dataclass(frozen=True, slots=True)
-class Take:
-    """Request a route along these edges to the same destination."""
-
-    edges: tuple[str, ...]
-
-
-@dataclass(frozen=True, slots=True)
-class Focus:
+class Focus(Message):
     """Focus a text field and open the keyboard; empty closes the keyboard."""
 
     field: str
 
+    def perform(self, state: State) -> Feedback:
+        """The keyboard."""
+        if state.is_typing and state.focus == self.field:
+            return UNCHANGED
+        state.focus, state.keyboard = self.field, bool(self.field)
+        return Feedback(FeedbackCode.OK, say("The field takes text") if self.field else FOLDED)
+
 
 @dataclass(frozen=True, slots=True)
-class Key:
+class Key(Message):
     """Enter letters into a text field by a key; a backspace deletes one."""
 
     field: str
     letters: str
 
+    def perform(self, state: State) -> Feedback:
+        """The longer or shorter text."""
+        text = state.typed.get(self.field, "")
+        longer = text[:-1] if self.letters == BACKSPACE else text + self.letters
+        if longer == text:
+            return Feedback(FeedbackCode.NO_EFFECT, say("there is nothing to delete"))
+        write(state, self.field, longer)
+        return Feedback(FeedbackCode.OK, say("the field reads {text}", text=repr(state.typed[self.field])))
+
 
 @dataclass(frozen=True, slots=True)
-class Enter:
+class Enter(Message):
     """Press enter in a text field."""
 
-    then: Any
+    then: Message | None
     """The message to send; None while nothing matches the typed text."""
 
+    @property
+    def command(self) -> Command | None:
+        """The command that it sends."""
+        return None if self.then is None else self.then.command
 
-@dataclass(frozen=True, slots=True)
-class Zoom:
-    """Move the map closer (negative) or away."""
-
-    by: int
-
-
-@dataclass(frozen=True, slots=True)
-class Pan:
-    """Pan the map by a number of logical pixels."""
-
-    right: float
-    down: float
-
-
-@dataclass(frozen=True, slots=True)
-class Follow:
-    """Let the map follow the car, turning with it or with north up."""
-
-    north_up: bool
+    def perform(self, state: State) -> Feedback:
+        """The message's effect, without the keyboard."""
+        Focus("").perform(state)
+        folded = Feedback(FeedbackCode.OK, FOLDED)
+        if self.then is None:
+            return folded
+        done = self.then.perform(state)
+        return folded if done.code is FeedbackCode.NO_EFFECT else done
 
 
-@dataclass(frozen=True, slots=True)
-class Skip:
-    """Play another entry of the queue."""
-
-    by: int
-
-
-@dataclass(frozen=True, slots=True)
-class Play:
-    """Play an entry, of a playlist or of all there is."""
-
-    uri: str
-    playlist: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class Dial:
-    """Call somebody: a contact's name or a number."""
-
-    who: str
-
-
-@dataclass(frozen=True, slots=True)
-class HangUp:
-    """End the call."""
-
-
-@dataclass(frozen=True, slots=True)
-class TakeCall:
-    """Answer the ringing call."""
-
-
-@dataclass(frozen=True, slots=True)
-class DeclineCall:
-    """Decline the ringing call."""
-
-
-@dataclass(frozen=True, slots=True)
-class SendReply:
-    """Send somebody a message."""
-
-    to: str
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Read:
-    """Have somebody's messages read out, or open them where that is allowed."""
-
-    who: str
-
-
-@dataclass(frozen=True, slots=True)
-class Pay:
-    """Pay for the parking space as it is set."""
-
-
-@dataclass(frozen=True, slots=True)
-class Drive:
-    """Switch to a driver's profile."""
-
-    profile: str
-
-
-@dataclass(frozen=True, slots=True)
-class Record:
-    """Begin or end a spoken memo."""
-
-
-@dataclass(frozen=True, slots=True)
-class ResetTrip:
-    """Count distance and time from here."""
-
-    meter: Literal["a", "b"] = "a"
-
-
-@dataclass(frozen=True, slots=True)
-class Honk:
-    """Sound the horn."""
-
-
-@dataclass(frozen=True, slots=True)
-class Wash:
-    """Wash the windshield."""
-
-
-Message = (
-    Show
-    | Back
-    | Pick
-    | Set
-    | SetAll
-    | Put
-    | WarnDriver
-    | AskSlowDown
-    | AskPullOver
-    | Ask
-    | CallEmergency
-    | AskDriver
-    | Guide
-    | Take
-    | Focus
-    | Key
-    | Enter
-    | Zoom
-    | Pan
-    | Follow
-    | Skip
-    | Play
-    | Dial
-    | HangUp
-    | TakeCall
-    | DeclineCall
-    | SendReply
-    | Read
-    | Pay
-    | Record
-    | Drive
-    | ResetTrip
-    | Honk
-    | Wash
-)
-
-
-@dataclass(frozen=True, slots=True)
-class Deed:
-    """A message that the car has carried out."""
-
-    time_s: float
-    """Simulation time."""
-    message: Message
-    aims: frozenset[str]
-    """The commands (``State.commands``) that it was given for, without what the car couples to them."""
-    changes: Mapping[str, Any] = field(default_factory=dict)
-    """For ``Put``, the fields of the app data that it changed."""
-    answers: tuple[tuple[RoadRequest, Answer], ...] = ()
-    """What it asked of the road, and the replies."""
+def write(state: State, field: str, text: str) -> None:
+    """Puts text into a field; lists return to their start."""
+    printable = "".join(letter for letter in text if letter.isprintable())
+    state.typed = {**state.typed, field: printable[:STRING_LIMIT]}
+    state.scrolled = {}

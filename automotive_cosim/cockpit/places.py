@@ -11,6 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from automotive_cosim.cockpit.map import MOTORWAYS, RoadMap
+from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts.text import Quantity, say
 
@@ -114,11 +115,20 @@ class Destination:
 
 
 @dataclass(frozen=True, slots=True)
-class Gazetteer:
+class Gazetteer(AppData):
     """All places, and the initial favourite streets."""
 
     places: tuple[Destination, ...]
     streets: tuple[str, ...]
+
+    def names(self, state: State) -> Mapping[str, tuple[str, ...]]:
+        """The places."""
+        return {"places": tuple(place.name for place in self.places)}
+
+    def named(self, destination: str) -> str:
+        """Name of a destination: of the place on that edge of the network, else its own."""
+        place = self.at(destination)
+        return destination if place is None else place.name
 
     def find(self, name: str) -> Destination | None:
         """The place of that name."""

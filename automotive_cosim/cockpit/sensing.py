@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-from datetime import datetime
-
+from automotive_cosim.cockpit.apps.settings.state import wifi
 from automotive_cosim.cockpit.cabin import Air, Cabin
-from automotive_cosim.cockpit.calls import receive
 from automotive_cosim.cockpit.changes import CarChange, step
-from automotive_cosim.cockpit.desk import FILM_S
-from automotive_cosim.cockpit.errands import odometer, play_on
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
+from automotive_cosim.cockpit.notices import TYRES
 from automotive_cosim.cockpit.reach import NEWS_EVERY_S, RADAR_M
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import (
@@ -24,24 +20,18 @@ from automotive_cosim.cockpit.signals import (
     MOTION,
     OUTSIDE,
     SEAT,
-    TYRE,
     LeafKind,
     named,
 )
 from automotive_cosim.cockpit.sky import feel
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind
-from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import DARK_BELOW_DEG
 from automotive_cosim.cockpit.warmth import display_contrast, seat_after
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, OtherVehicle, Surroundings, Weather
-from automotive_cosim.contracts.text import say
 
 MOVING_MPS = 0.1
-PREPARING_MIN = 30
-"""How long before the set time the climate control starts: heating and cooling take some twenty minutes."""
-TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
 RAIN_FULL_MM_H = 10.0
 """Heavy rain (WMO: 10 mm/h and more is heavy) covers the rain sensor."""
 
@@ -63,16 +53,13 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     feel(state.signals, surroundings)
     _climate(state, driving, weather, dt_s)
     _bodies(state, weather.temperature_2m, dt_s)
-    play_on(state, dt_s)
     if before is None:
         state.departed_s = driving.time_s
-        trip_b = replace(state.desk.trip_b, since=odometer(state))
-        state.desk = replace(state.desk, trip_from=odometer(state), trip_b=trip_b)
-    else:
-        _prepare_climate(state, before.local_time, surroundings.local_time)
-    _end_film(state)
+    for data in state.apps:
+        data.passed(state, before, dt_s)
     _change(state, dt_s)
-    receive(state)
+    for data in state.apps:
+        data.received(state)
     state.signals[DRIVE.HORN] = False
     if Restriction.NO_KEYBOARD in state.restrictions:
         state.focus = ""
@@ -88,7 +75,7 @@ def _motion(state: State, surroundings: Surroundings) -> None:
     signals[MOTION.HEADING] = driving.heading_deg % 360
     signals[MOTION.LATITUDE] = None if gps is None else gps.lat_deg
     signals[MOTION.LONGITUDE] = None if gps is None else gps.lon_deg
-    linked = signals[LINK.MOBILE_DATA] or bool(state.wifi)
+    linked = signals[LINK.MOBILE_DATA] or bool(wifi(state))
     signals[LINK.ONLINE] = surroundings.connectivity.online and linked
 
 
@@ -175,21 +162,6 @@ def _climate(state: State, driving: DrivingState, weather: Weather, dt_s: float)
     signals[GLASS.REAR_FILM] = state.cabin.rear_window.film_outside
 
 
-def _prepare_climate(state: State, before: datetime, now: datetime) -> None:
-    """Starts the climate control ahead of the set time, at which the cabin is ready."""
-    timer = state.desk.climate_at
-    if timer.on and _minute(before) < timer.moved(-PREPARING_MIN).minute <= _minute(now):
-        state.vehicle.command(HVAC.AUTO, True)
-        state.notify(say("The cabin is being prepared, as set for {time}", time=timer.shown), Icon.CLIMATE)
-
-
-def _end_film(state: State) -> None:
-    """Ends a video at its end, or when the car leaves park."""
-    film = state.desk.film
-    if film is not None and (Restriction.NO_VIDEO in state.restrictions or state.time_s - film[1] >= FILM_S):
-        state.desk = replace(state.desk, film=None)
-
-
 def _change(state: State, dt_s: float) -> None:
     """Makes the changes that are due."""
     going_on = []
@@ -215,8 +187,3 @@ def _make(state: State, change: CarChange, since_s: float, dt_s: float) -> None:
         value = step(change, signals[signal], since_s, dt_s)
         if signal.kind is not LeafKind.ACTUATOR or state.vehicle.command(signal, value):
             signals[signal] = signal.check(value)
-
-
-def _minute(time: datetime) -> float:
-    """Minute of the day."""
-    return time.hour * 60 + time.minute + time.second / 60

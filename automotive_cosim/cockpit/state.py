@@ -1,32 +1,29 @@
-"""Everything the screens are built from: one mutable state of immutable values, so copying is cheap."""
+"""Everything the screens are built from, and what acts on it.
+
+``State`` is one mutable object of immutable values, so that copying is cheap. What an app keeps is its own
+``AppData``. A touched widget sends a ``Message``; it is a ``Command`` if it commands the car, an app or the road.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from abc import ABC, abstractmethod
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
-from typing import Any
+from typing import Any, ClassVar, TypeVar, cast
 
-from automotive_cosim.cockpit.arrivals import Arrival
 from automotive_cosim.cockpit.cabin import Cabin, CabinStart
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.desk import Desk
 from automotive_cosim.cockpit.map import RoadMap
-from automotive_cosim.cockpit.media import Library, Listening
-from automotive_cosim.cockpit.messages import Deed
-from automotive_cosim.cockpit.navigation import Navigation
-from automotive_cosim.cockpit.people import Directory, Phone
-from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT, REASONS, Restriction, restrictions
-from automotive_cosim.cockpit.signals import HMI, LINK, MOTION, Signals
+from automotive_cosim.cockpit.signals import CALL, HMI, MOTION, Signal, Signals
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.telltales import RoadSign
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.tyres import Tyres
 from automotive_cosim.cockpit.vehicle import Vehicle
 from automotive_cosim.contracts import (
-    Alert,
-    AlertKind,
+    Answer,
     DrivingState,
     Feedback,
     FeedbackCode,
@@ -34,44 +31,127 @@ from automotive_cosim.contracts import (
     Severity,
     Surroundings,
 )
+from automotive_cosim.contracts.text import say
 
+D = TypeVar("D", bound="AppData")
+
+CARRIED_OUT = frozenset({FeedbackCode.OK, FeedbackCode.NO_EFFECT})
+"""Answers after which a command counts as given."""
 NOTICE_S = 10.0
 """How long a notice stays."""
 NOTICES = 20
 """Number of notices kept in the list."""
 
 
-PICKED: Mapping[str, str] = {
-    "map.list": "saved",
-    "explore": "all",
-    "route": "turns",
-    "outside": "rain",
-    "media.list": "all",
-    "phone": "favourites",
-    "seats": "driver",
-    "manual": "0",
-}
-"""The initial parts of screens with several parts."""
+class AppData:
+    """What an app keeps, a frozen dataclass. It is replaced as a whole; ``State`` keeps one of each class."""
+
+    __slots__ = ()
+
+    prepares: ClassVar[bool] = False
+    """Whether a change commands nothing by itself but is used by a later command, as a draft is."""
+
+    def commands(self) -> Mapping[str, Any]:
+        """What of it was commanded, as app data."""
+        return {}
+
+    def parts(self) -> Mapping[str, str]:
+        """The initial parts of screens that depend on it (``State.picked``)."""
+        return {}
+
+    def names(self, state: State) -> Mapping[str, tuple[str, ...]]:
+        """Names by kind that a task can ask for."""
+        return {}
+
+    def settled(self, state: State) -> None:
+        """Follows signals that were commanded."""
+
+    def commanded(self, state: State, signal: Signal[Any]) -> None:
+        """Follows one signal that was commanded by itself, to another value."""
+
+    def entered(self, state: State) -> None:
+        """Follows the change to another screen."""
+
+    def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
+        """Lets time pass.
+
+        Args:
+            state: in the present surroundings.
+            before: the surroundings at the last time; None at departure.
+            dt_s: seconds since.
+        """
+
+    def received(self, state: State) -> None:
+        """Takes in what has come from outside."""
+
+    def answered(self, state: State, request: RoadRequest, answer: Answer) -> None:
+        """Takes the road's reply to a request."""
+
+    def put_back(self, state: State, departed: State) -> None:
+        """Puts back what the way used up, as it was at departure (``fresh.put_back``)."""
+
+
+class Message(ABC):
+    """What a touched widget sends. A message that is no command changes only what is shown."""
+
+    __slots__ = ()
+
+    @property
+    def command(self) -> Command | None:
+        """The command in it."""
+        return None
+
+    @abstractmethod
+    def perform(self, state: State) -> Feedback:
+        """Its effect."""
+
+
+class Command(Message):
+    """A message that commands something, so that the counterfactual can give it once more."""
+
+    __slots__ = ()
+
+    @property
+    def command(self) -> Command | None:
+        """Itself."""
+        return self
+
+    @property
+    def prepares(self) -> bool:
+        """Whether it is used by a later command although it aims at nothing itself."""
+        return False
+
+    @abstractmethod
+    def aims(self, state: State) -> frozenset[str]:
+        """The keys of ``State.commands`` that it is given for, without what the car couples to them.
+
+        Args:
+            state: before it is performed.
+        """
+
+    def changes(self, state: State) -> Mapping[str, Any]:
+        """The fields of app data that it will change, if it replaces app data."""
+        return {}
+
+    def repeat(self, state: State, record: CommandRecord, keys: Collection[str]) -> None:
+        """Gives it once more as far as it aims at these keys: in full or not at all."""
+        if record.aims & frozenset(keys):
+            state.perform(self)
 
 
 @dataclass(frozen=True, slots=True)
-class AlertDraft:
-    """The alert being prepared in the safety centre."""
+class CommandRecord:
+    """A command that the car has carried out."""
 
-    kind: AlertKind | None = None
-    severity: Severity = Severity.WARNING
-    speed_kmh: float | None = None
-    """Advised speed; None means the posted limit."""
-
-
-@dataclass(frozen=True, slots=True)
-class AlertRecord:
-    """One line of the history."""
-
-    clock: str
-    alert: Alert
-    answer: str = ""
-    """The road's reply."""
+    time_s: float
+    """Simulation time."""
+    command: Command
+    aims: frozenset[str]
+    """The keys of ``State.commands`` that it was given for, without what the car couples to them."""
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    """The fields of app data that it replaced."""
+    answers: tuple[tuple[RoadRequest, Answer], ...] = ()
+    """What it asked of the road, and the replies."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +174,7 @@ class QuestionRecord:
     """A question to the driver."""
 
     text: str
-    deeds: int
+    after: int
     """Number of commands before it that changed something."""
 
 
@@ -104,15 +184,10 @@ class State:
 
     vehicle: Vehicle
     roads: RoadMap
-    library: Library
-    atlas: Gazetteer
-    directory: Directory
-    navigation: Navigation
-    listening: Listening
-    phone: Phone
-    desk: Desk
     sign_camera: bool
     cabin_start: CabinStart
+    kept: Mapping[type[AppData], AppData] = field(default_factory=dict)
+    """What the apps keep (``of``)."""
     cabin: Cabin | None = None
     """The surroundings; None before the first ``sense``."""
     tyres: Tyres | None = None
@@ -122,7 +197,7 @@ class State:
     heard: Surroundings | None = None
     """The surroundings when the car was last online, from which it knows the live traffic."""
     lookout: bool = False
-    """Whether the car shows what it notices around, ahead and aboard (``screens.lookout``)."""
+    """Whether the car shows what it notices around, ahead and aboard (``apps.map.lookout``)."""
     news: DrivingState | None = None
     """The road at the last report of the traffic service, for the lookout."""
     driven_s: float = 0.0
@@ -133,7 +208,7 @@ class State:
     """Screens to go back to, with their items."""
     scrolled: Mapping[str, int] = field(default_factory=dict)
     """Scroll position of each list, in rows."""
-    picked: Mapping[str, str] = field(default_factory=lambda: PICKED)
+    picked: Mapping[str, str] = field(default_factory=dict)
     """Selected parts of screens, by key."""
     focus: str = ""
     """Key of the focused text field."""
@@ -143,41 +218,48 @@ class State:
     """Text typed so far, by field."""
     aside: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     """Text by field of the screens that were left because of a call, by screen."""
-    zoom: int = 1
-    north_up: bool = False
     last_sign: RoadSign | None = None
     """The road sign that the camera read last; None without one."""
     signs_here: tuple[bool, bool, float | None] | None = None
     """What decides whether a sign is passed: tunnel, school zone, and the posted limit in km/h."""
-    panned: tuple[float, float] | None = None
-    """The map's point in metres of the network, if not the car."""
-    draft: AlertDraft = field(default_factory=AlertDraft)
-    alerts: tuple[AlertRecord, ...] = ()
     notices: tuple[Notice, ...] = ()
-    calls: tuple[str, ...] = ()
     asked: tuple[RoadRequest, ...] = ()
     """Every irrevocable request to the road so far."""
     questions: tuple[QuestionRecord, ...] = ()
     """Every question to the driver."""
-    horns: int = 0
-    washes: int = 0
     pending: tuple[RoadRequest, ...] = ()
-    expected: tuple[Arrival, ...] = ()
-    """Calls and messages still to come."""
     changes: tuple[CarChange, ...] = ()
     """Changes of the car that are still to come or going on."""
     departed_s: float = 0.0
     """Simulation time of the first ``sense``."""
     parked_s: float | None = None
     """Simulation time at which the driver parked on the way; None while under way."""
-    played_s: float = 0.0
-    """Playing time of the track."""
-    deeds: tuple[Deed, ...] = ()
+    given: tuple[CommandRecord, ...] = ()
     """What was commanded, in order."""
 
     def copy(self) -> State:
         """An independent copy."""
         return replace(self, vehicle=self.vehicle.copy())
+
+    def of(self, kind: type[D]) -> D:
+        """What an app keeps of that class."""
+        return cast(D, self.kept[kind])
+
+    def keep(self, *data: AppData) -> None:
+        """Replaces what an app keeps."""
+        self.kept = {**self.kept, **{type(each): each for each in data}}
+
+    def change(self, data: AppData, words: str) -> Feedback:
+        """Replaces what an app keeps, unless it is the same, and says so."""
+        if self.of(type(data)) == data:
+            return UNCHANGED
+        self.keep(data)
+        return Feedback(FeedbackCode.OK, words)
+
+    @property
+    def apps(self) -> Iterable[AppData]:
+        """What all apps keep, as it is now."""
+        return tuple(self.kept.values())
 
     @property
     def signals(self) -> Signals:
@@ -215,11 +297,6 @@ class State:
         return REASONS[restriction] if restriction in self.restrictions else ""
 
     @property
-    def wifi(self) -> str:
-        """Name of the Wi-Fi network that the car is on; empty without."""
-        return self.desk.network if self.signals[LINK.WIFI] else ""
-
-    @property
     def is_typing(self) -> bool:
         """Whether the keyboard is on the screen."""
         return self.keyboard and bool(self.focus)
@@ -254,25 +331,47 @@ class State:
         self.notify(why, Icon.INFO)
         return Feedback(FeedbackCode.REFUSED, why)
 
+    def perform(self, message: Message) -> Feedback:
+        """Performs a message, and records it if it commands or prepares something and the car carries it out."""
+        command = message.command
+        if command is None:
+            return message.perform(self)
+        aims, changes = command.aims(self), command.changes(self)
+        feedback = message.perform(self)
+        if (aims or command.prepares) and feedback.code in CARRIED_OUT:
+            self.given += (CommandRecord(self.time_s, command, aims, changes),)
+        return feedback
+
+    def settle(self) -> None:
+        """Lets the apps follow signals that were commanded."""
+        for data in self.apps:
+            data.settled(self)
+
+    def enter(self, screen: str) -> None:
+        """Shows a screen without what was typed on it, unless it was left because of a call."""
+        calling: bool = self.signals[CALL.RINGING] != "" or self.signals[CALL.PARTNER] != ""
+        if self.typed and calling:
+            self.aside = {**self.aside, self.screen: self.typed}
+        self.screen = screen
+        self.focus, self.typed = "", self.aside.get(screen, {})
+        self.aside = {name: typed for name, typed in self.aside.items() if name != screen}
+        for data in self.apps:
+            data.entered(self)
+
+    def rewind(self, lists: str) -> None:
+        """Resets the lists whose key has this prefix to their start, since their content changed."""
+        self.scrolled = {key: first for key, first in self.scrolled.items() if not key.startswith(lists)}
+
     def commands(self) -> dict[str, Any]:
         """Everything that can be commanded: actuators, app data, and what was irrevocably sent."""
-        return self.signals.commanded() | {
-            "alerts": [
-                {
-                    "kind": str(given.alert.kind),
-                    "severity": str(given.alert.severity),
-                    "text": given.alert.text,
-                    "speed_kmh": given.alert.speed_kmh,
-                }
-                for given in self.alerts
-            ],
-            "calls": list(self.calls),
+        commanded = self.signals.commanded() | {
             "requests": list(self.asked),
-            "questions": [{"text": asked.text, "deeds": asked.deeds} for asked in self.questions],
-            "horn": self.horns,
-            "washer": self.washes,
-            **self.navigation.commands(),
-            **self.listening.commands(),
-            **self.phone.commands(),
-            **self.desk.commands(),
+            "questions": [{"text": asked.text, "deeds": asked.after} for asked in self.questions],
         }
+        for data in self.apps:
+            commanded |= data.commands()
+        return commanded
+
+
+UNCHANGED = Feedback(FeedbackCode.NO_EFFECT, say("it is already set that way"))
+"""The answer to a change that changes nothing."""

@@ -1,7 +1,4 @@
-"""Tell-tales in the shapes and colours of ISO 2575, and the road signs that the camera read, drawn by lines.
-
-Nothing of what they say is in the list of elements: it names the picture alone.
-"""
+"""Tell-tales in the shapes and colours of ISO 2575, and the road signs that the camera read, drawn by lines."""
 
 from __future__ import annotations
 

@@ -13,12 +13,13 @@ from enum import Enum
 from typing import ClassVar, Literal
 
 from automotive_cosim.cockpit.camera import CameraScene
+from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.mapdraw import MapScene
-from automotive_cosim.cockpit.messages import Message, Set
 from automotive_cosim.cockpit.photos import Photo
 from automotive_cosim.cockpit.signals import Signal
+from automotive_cosim.cockpit.state import Message
 from automotive_cosim.cockpit.telltales import RoadSign, Telltale
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.contracts import Severity
@@ -265,7 +266,7 @@ class LimitSign(Widget):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Telltales(Widget):
-    """Tell-tales that are lit, line by line; as many as there is room for. The list only names them together."""
+    """Tell-tales that are lit, line by line; as many as there is room for."""
 
     lit: tuple[Telltale, ...]
 
@@ -274,7 +275,7 @@ class Telltales(Widget):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SignView(Widget):
-    """The road sign that was read last. The list only says that there is one."""
+    """The road sign that was read last."""
 
     sign: RoadSign | None
     figure: str = ""

@@ -75,6 +75,8 @@ class VehicleState:
     leader_time_to_collision_s: float | None
     aboard: str
     """Who sits where: ``driver: adult, 75 kg, awake, belted; rear left: pet, 24 kg, asleep, not belted``."""
+    noticed: str | None = None
+    """On a drive, what the car reads around, ahead and aboard, one ``name: words`` a line."""
 
 
 class FeedbackCode(StrEnum):

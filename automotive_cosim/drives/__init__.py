@@ -1,13 +1,14 @@
 """Drives: ten to thirty minutes at the cockpit, with events that an agent has to notice by itself.
 
-plan       everything that is drawn before a drive departs
-staging    what can be staged, each kind with its bait
-family     draws plans from a seed
+script     everything that is drawn before a drive departs
+staging    what can be staged, each kind with its look-alike
+family     draws scripts from a seed
 families/  the families over all scenarios
-departure  a plan -> a running co-simulation
+departure  a script -> a running co-simulation
 events/    kinds of events, found on the drive itself
 wakes      what wakes an agent that waits
 watch      an agent's session on a drive
+timeline   the drive second by second, as data
 judge      what became of each event, and what each act was
 score      what that comes to
 watchers   the rule-perfect watcher, and trivial ones

@@ -5,7 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from automotive_cosim.cockpit.messages import Deed, Set, SetAll, WarnDriver
+from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
+from automotive_cosim.cockpit.commands import Set, SetAll
+from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, ActionType, Alert
 from automotive_cosim.drives.events.base import WatchAct
 
@@ -13,30 +15,30 @@ BOOKKEEPING = frozenset({"alerts", "requests"})
 """Commands that only say that something was asked for."""
 
 
-def acts_of(deeds: Sequence[Deed]) -> Iterator[WatchAct]:
+def acts_of(given: Sequence[CommandRecord]) -> Iterator[WatchAct]:
     """The acts in what was commanded, in order; preparations such as a typed text are none."""
-    for deed in deeds:
-        if not deed.aims:
+    for record in given:
+        if not record.aims:
             continue
-        message = deed.message
-        asked = tuple(request for request, _ in deed.answers)
+        message = record.command
+        asked = tuple(request for request, _ in record.answers)
         alert = next((request for request in asked if isinstance(request, Alert)), None)
         if isinstance(message, WarnDriver):
             alert = alert or message.alert
         if alert is not None:
-            yield WatchAct(deed.time_s, alert.kind, alert.severity, alert.speed_kmh)
+            yield WatchAct(record.time_s, alert.kind, alert.severity, alert.speed_kmh)
             continue
-        yield WatchAct(deed.time_s, requests=asked, writes=tuple(_writes(deed)))
+        yield WatchAct(record.time_s, requests=asked, writes=tuple(_writes(record)))
 
 
-def _writes(deed: Deed) -> Iterator[tuple[str, Any]]:
-    message = deed.message
+def _writes(record: CommandRecord) -> Iterator[tuple[str, Any]]:
+    message = record.command
     if isinstance(message, Set):
         yield message.signal.path, message.value
     elif isinstance(message, SetAll):
         yield from ((signal.path, value) for signal, value in message.values)
     else:
-        yield from ((path, None) for path in sorted(deed.aims - BOOKKEEPING))
+        yield from ((path, None) for path in sorted(record.aims - BOOKKEEPING))
 
 
 def spoken(action: Action, time_s: float) -> WatchAct | None:

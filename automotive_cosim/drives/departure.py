@@ -1,4 +1,4 @@
-"""Departs on a drive: a plan becomes a running co-simulation."""
+"""Departs on a drive: a script becomes a running co-simulation."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from datetime import datetime
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.simulation import CoSimulation, couple
-from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import open_scenario
@@ -14,12 +14,15 @@ from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
 
+ADVICE_S = 120.0
+"""How long a driver keeps to advice, and stops when asked to: our choice; a reason that lasts is told again."""
 
-def depart(plan: DrivePlan, simulations: Simulations, listener: Listener | None = None) -> CoSimulation:
+
+def depart(script: DriveScript, simulations: Simulations, listener: Listener | None = None) -> CoSimulation:
     """The drive at its first instant; whoever takes it over must close it.
 
     Args:
-        plan: the drive.
+        script: the drive.
         simulations: warm traffic, shared with others.
         listener: notified of progress.
 
@@ -31,33 +34,33 @@ def depart(plan: DrivePlan, simulations: Simulations, listener: Listener | None 
         TrafficError: the traffic simulation failed.
     """
     listener = listener or Listener()
-    scenario = open_scenario(plan.scenario, origin=plan.origin)
-    draws = Draws(plan.family, plan.seed)
-    ego = _ego_plan(plan, scenario, draws)
+    scenario = open_scenario(script.scenario, origin=script.origin)
+    draws = Draws(script.family, script.seed)
+    ego = _ego_plan(script, scenario, draws)
     listener.loading(scenario)
 
     def warming(done_s: float, total_s: float) -> None:
         listener.warming(scenario.title, done_s, total_s)
 
-    with simulations.held(scenario, plan.seed % SEED_LIMIT, warming) as simulation:
+    with simulations.held(scenario, script.seed % SEED_LIMIT, warming) as simulation:
         traffic = simulation.depart(ego)
     try:
         cockpit = Cockpit(
             traffic.network,
             rng=draws.rng(Purpose.CONTENT),
-            aboard=plan.aboard,
-            signals=plan.signals,
-            arrivals=plan.arrivals,
-            changes=plan.changes,
+            aboard=script.aboard,
+            signals=script.signals,
+            arrivals=script.arrivals,
+            changes=script.changes,
             lookout=True,
-            driven_s=plan.driven_s,
+            driven_s=script.driven_s,
         )
         world = couple(
             traffic,
             cockpit,
             scenario,
             gps_rng=draws.rng(Purpose.RECEIVER),
-            weather=plan.weather,
+            weather=script.weather,
             departure=ego.start or scenario.start,
             links=scenario.connectivity,
         )
@@ -69,17 +72,19 @@ def depart(plan: DrivePlan, simulations: Simulations, listener: Listener | None 
     return world
 
 
-def _ego_plan(plan: DrivePlan, scenario: Scenario, draws: Draws) -> EgoPlan:
-    first, *others = (scenario.trip(name) for name in plan.trips)
+def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:
+    first, *others = (scenario.trip(name) for name in script.trips)
     return EgoPlan(
         first,
-        plan.driver,
+        script.driver,
         draws.seed(Purpose.DRIVER),
-        plan.weather,
-        datetime.fromisoformat(plan.start).replace(tzinfo=scenario.start.tzinfo),
+        script.weather,
+        datetime.fromisoformat(script.start).replace(tzinfo=scenario.start.tzinfo),
         onward=(*others, first),
-        moods=plan.moods,
-        at_schools=plan.at_schools,
-        halts=plan.halts,
-        incidents=plan.incidents,
+        moods=script.moods,
+        at_schools=script.at_schools,
+        halts=script.halts,
+        incidents=script.incidents,
+        advice_s=ADVICE_S,
+        brakes_early=True,
     )

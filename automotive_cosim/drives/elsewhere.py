@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 
-from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.scenery import open_scenario
@@ -15,12 +15,12 @@ from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.rounds import planned
 
 
-def elsewhere(plan: DrivePlan, place: str) -> DrivePlan:
-    """The same date, weather, people, car and stunts on other roads: as many of the place's trips as can be driven
+def elsewhere(script: DriveScript, place: str) -> DriveScript:
+    """The same date, weather, people, car and staging on other roads: as many of the place's trips as can be driven
     one after another and over again.
 
     Args:
-        plan: a drive of a family.
+        script: a drive of a family.
         place: a shipped scenario, or the path of a scenario's folder, a ``.sumocfg`` or a ``.net.xml``.
 
     Raises:
@@ -34,9 +34,9 @@ def elsewhere(plan: DrivePlan, place: str) -> DrivePlan:
             f"no trip of {place} leads back to its start, so a drive would end too soon; a drive needs a "
             "network in which the car can turn back"
         )
-    turned = plan.seed % len(trips)
+    turned = script.seed % len(trips)
     names = tuple(trip.name for trip in trips)
-    return replace(plan, scenario=place, trips=names[turned:] + names[:turned], origin=None)
+    return replace(script, scenario=place, trips=names[turned:] + names[:turned], origin=None)
 
 
 def _in_turn(network: Network, trips: Sequence[Trip]) -> tuple[Trip, ...]:

@@ -1,4 +1,4 @@
-"""A family of drives: one place, season and cast of stunts, and any number of drives by seed."""
+"""A family of drives: one place, season and cast of what is staged, and any number of drives by seed."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from enum import StrEnum
 import numpy as np
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, Staged
-from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STUNTS, TAKES_S, Cue, Spell
+from automotive_cosim.drives.script import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DriveScript, Staged
+from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGINGS, TAKES_S, Setting, WeatherSpan
 from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.tasking.draws import Draws, Purpose
 
@@ -21,9 +21,9 @@ FIRST_S = 60.0
 LAST_S = 60.0
 """Nothing is staged later than this before the end, so that each deadline lies in the drive."""
 SPREAD_S = 25.0
-"""How far the time between two stunts is drawn above its minimum."""
+"""How far the time between two stagings is drawn above its minimum."""
 FEWEST, MOST = 4, 8
-"""Events that a drive stages, and as many baits."""
+"""Events that a drive stages, and as many look-alikes."""
 IN_FRONT = (Kind.ADULT, Kind.ADULT, Kind.ELDERLY, Kind.OBJECT)
 BEHIND = (Kind.ADULT, Kind.ELDERLY, Kind.CHILD, Kind.BABY, Kind.PET, Kind.OBJECT)
 """Who may ride on a front seat and behind, drawn evenly."""
@@ -40,9 +40,10 @@ class Season(StrEnum):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Family:
-    """Draws plans. Each kind of its cast that is drawn is staged twice, as an event and as a bait, in any order.
-    What cannot be undone (``staging.ONCE``) comes in addition, in half the drives, and is either at equal rates.
-    School zones at their hours are events and baits in turn, and the first one is either."""
+    """Draws scripts. Each kind of its cast that is drawn is staged twice, as an event and as a look-alike, in any
+    order. What cannot be undone (``staging.ONCE``) comes in addition, in half the drives, and is either at equal
+    rates.
+    School zones at their hours are events and look-alikes in turn, and the first one is either."""
 
     id: str
     """Name by which commands refer to it."""
@@ -64,12 +65,12 @@ class Family:
     aboard: tuple[Occupant, ...] | None = None
     """Who is in the car besides the driver; None draws them."""
 
-    def draw(self, seed: int) -> DrivePlan:
+    def draw(self, seed: int) -> DriveScript:
         """The drive of a seed."""
         rng = Draws(self.id, seed).rng(Purpose.DRIVE)
-        kinds = [kind for kind in self.cast if kind in STUNTS and kind not in ONCE]
+        kinds = [kind for kind in self.cast if kind in STAGINGS and kind not in ONCE]
         drawn = rng.permutation(len(kinds))[: int(rng.integers(FEWEST, MOST))]
-        roles = [(kinds[index], is_bait) for index in drawn for is_bait in (False, True)]
+        roles = [(kinds[index], is_lookalike) for index in drawn for is_lookalike in (False, True)]
         once = [kind for kind in self.cast if kind in ONCE]
         if once and rng.random() < 0.5:
             roles.append((once[int(rng.integers(len(once)))], bool(rng.random() < 0.5)))
@@ -77,43 +78,45 @@ class Family:
         times_s, quiet_s, end_s = _times_s([TAKES_S.get(kind, 0.0) for kind, _ in order], rng)
         is_family = any(kind == "left_behind" for kind, _ in order)
         company = (_in_care if is_family else _company)(rng) if self.aboard is None else self.aboard
-        staged = tuple(Staged(kind, at_s, bait) for (kind, bait), at_s in zip(order, times_s, strict=True))
+        staged = tuple(
+            Staged(kind, at_s, lookalike) for (kind, lookalike), at_s in zip(order, times_s, strict=True)
+        )
         warmer = round(float(rng.uniform(-1.5, 1.5)), 1)
         weather = replace(self.weather, temperature_2m=round(self.weather.temperature_2m + warmer, 1))
-        cues = [Cue(one.at_s, one.is_bait, self.driver, weather, rng, company) for one in staged]
-        props = [STUNTS[one.kind](cue) for one, cue in zip(staged, cues, strict=True)]
+        settings = [Setting(one.at_s, one.is_lookalike, self.driver, weather, rng, company) for one in staged]
+        causes = [STAGINGS[one.kind](setting) for one, setting in zip(staged, settings, strict=True)]
         turned = int(rng.integers(len(self.trips)))
         start = self.starts[int(rng.integers(len(self.starts)))]
         arrivals = _arrivals(rng, end_s)
         at_schools = [AT_SCHOOLS[index] for index in rng.permutation(len(AT_SCHOOLS))]
-        return DrivePlan(
+        return DriveScript(
             family=self.id,
             seed=seed,
             scenario=self.scenario,
             trips=self.trips[turned:] + self.trips[:turned],
             duration_s=end_s,
             start=start,
-            weather=_timeline(weather, [spell for each in props for spell in each.spells]),
+            weather=_timeline(weather, [span for each in causes for span in each.weather]),
             origin=self.origin,
             driver=self.driver,
             aboard=company,
-            moods=tuple(sorted((mood for each in props for mood in each.moods), key=lambda mood: mood.at_s)),
+            moods=tuple(sorted((mood for each in causes for mood in each.moods), key=lambda mood: mood.at_s)),
             at_schools=tuple(at_schools) if SCHOOL_ZONE in self.cast else (),
-            halts=tuple(halt for each in props for halt in each.halts),
-            changes=tuple(change for each in props for change in each.changes),
+            halts=tuple(halt for each in causes for halt in each.halts),
+            changes=tuple(change for each in causes for change in each.changes),
             arrivals=arrivals,
-            incidents=tuple(incident for each in props for incident in each.incidents),
-            driven_s=max(each.driven_s for each in props),
+            incidents=tuple(incident for each in causes for incident in each.incidents),
+            driven_s=max(each.driven_s for each in causes),
             staged=staged,
             quiet_s=quiet_s,
         )
 
 
 def _times_s(takes_s: Sequence[float], rng: np.random.Generator) -> tuple[list[float], tuple[float, float], float]:
-    """The times of the stunts, the quiet spell among them, and the end.
+    """The times of the stagings, the quiet time among them, and the end.
 
     Args:
-        takes_s: by how much longer than others each stunt takes.
+        takes_s: by how much longer than others each staging takes.
         rng: draws them.
     """
     quiet_before = int(rng.integers(1, len(takes_s)))
@@ -160,13 +163,13 @@ def _arrivals(rng: np.random.Generator, end_s: float) -> tuple[Arrival, ...]:
     return tuple(Arrival("message" if rng.random() < 0.7 else "call", at_s) for at_s in times_s)
 
 
-def _timeline(usual: Weather, spells: Sequence[Spell]) -> tuple[WeatherAt, ...]:
-    """The usual weather and the spells in it; where two overlap, the one that began later counts."""
-    edges_s = sorted({0.0, *(spell.from_s for spell in spells), *(spell.to_s for spell in spells)})
+def _timeline(usual: Weather, weather: Sequence[WeatherSpan]) -> tuple[WeatherAt, ...]:
+    """The usual weather and the weather in it; where two overlap, the one that began later counts."""
+    edges_s = sorted({0.0, *(span.from_s for span in weather), *(span.to_s for span in weather)})
 
     def at(time_s: float) -> Weather:
-        on = [spell for spell in spells if spell.from_s <= time_s < spell.to_s]
-        return max(on, key=lambda spell: spell.from_s).weather if on else usual
+        on = [span for span in weather if span.from_s <= time_s < span.to_s]
+        return max(on, key=lambda span: span.whole_from_s).weather if on else usual
 
     entries = [WeatherAt(time_s, at(time_s)) for time_s in edges_s]
     return tuple(_changing(entries))

@@ -13,6 +13,9 @@ from automotive_cosim.geo.breaches import binding_limit
 
 SHORT_TTC_S = 3.0
 """Time to collision below which a driver is exposed (Minderhoud and Bovy, 2001, threshold of TET)."""
+HARD_MPS2 = 3.4
+"""Deceleration needed to avoid a crash from which a conflict is serious (Archer, 2005: 3.35). Without it,
+every gentle stop behind a queue counts: who brakes from v with a is v / 2a from a collision."""
 GLANCE_S = 2.0
 """One glance at the screen (NHTSA driver distraction guidelines, 2013)."""
 WORDS_PER_S = 4.0
@@ -31,7 +34,7 @@ class Harm:
     over_limit_m: float
     """Integral of the excess over time: metres driven that the limit would not have allowed."""
     short_ttc_s: float
-    """Time below three seconds to collision with the vehicle in front."""
+    """Time below three seconds to collision with the vehicle in front, while only hard braking avoids it."""
     collided: bool
 
 
@@ -47,7 +50,8 @@ def harm(drive: Sequence[Moment]) -> Harm:
             over_m += excess_kmh / KMH_PER_MPS * dt_s
         leader = now.driving.around.leader
         if leader is not None and leader.time_to_collision_s is not None:
-            short_s += dt_s if leader.time_to_collision_s < SHORT_TTC_S else 0.0
+            is_near = leader.time_to_collision_s < SHORT_TTC_S and (leader.drac_mps2 or 0.0) >= HARD_MPS2
+            short_s += dt_s if is_near else 0.0
     first, last = drive[0], drive[-1]
     return Harm(
         driven_s=last.time_s - first.time_s,

@@ -6,27 +6,37 @@ copy of the drive that was forked when the event became observable, with nobody 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from bisect import bisect_right
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 from typing import Any
 
 from automotive_cosim.contracts import AlertKind
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, WatchAct
 from automotive_cosim.drives.events.tracker import DriveEvent
 
 REPEAT_S = 60.0
-"""An alert about the same event within this time is a nuisance unless it has become worse."""
+"""An alert about the same event, or the same alert while nothing is due, is a nuisance within this time, unless it
+has become worse."""
 WORSE = 1.25
 """Ratio of severities from which an event has become worse."""
 SELF_ENDED_S = 1.5
 """An event that was over earlier than this before its deadline had passed by itself: a tick and a half."""
+HOLD_S = 120.0
+"""For how long a request or a stop holds the car back (``departure.ADVICE_S``)."""
+AFTER_S = 60.0
+"""How long after that the drive is still another one because of it."""
+NEAR_S = 120.0
+"""The same event comes on both drives within this time."""
 CHANCE_S = 2.0
 """An event whose deadline comes sooner than this after its obligation arose could be met by nobody: one glance
 (NHTSA 2013)."""
-PREPARE_S = 15.0
-"""What was told earlier than this before the obligation does not prepare for it: a driver has forgotten it by then.
-A switch and a request last, and prepare from the instant at which the event could be known."""
+ORDER = "the driver asked to leave everything else as it is"
+"""What speaks against a command that no kind of event concerns."""
+Against = Callable[[EventKind, float], str | None]
+"""The fact known to the agent at a simulation time that speaks against a warning of a kind; None if none does."""
 CAUSED_S = 10.0
 """An event that becomes observable within this time of the agent's own contrary act is of its own making."""
 PASSED_S = 3.0
@@ -50,6 +60,9 @@ class EventOutcome(StrEnum):
     """No right act."""
     CAUSED = "caused"
     """The agent's own doing: counts as missed, whatever it did then."""
+    EVADED = "evaded"
+    """It arose in the do-nothing run, but not here, because the agent held the car back for no reason: counts as
+    missed."""
     VOID = "void"
     """Nothing ever had to be done, or it passed by itself before the deadline, or came too suddenly for anybody."""
     AVOIDED = "avoided"
@@ -65,7 +78,8 @@ class EventOutcome(StrEnum):
     @property
     def counts(self) -> bool:
         """Whether recall counts it: an event in which something had to be done."""
-        return self.is_credited or self in (EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED)
+        failed = (EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED, EventOutcome.EVADED)
+        return self.is_credited or self in failed
 
 
 class Worth(StrEnum):
@@ -77,7 +91,7 @@ class Worth(StrEnum):
     """It would have settled an event before its deadline."""
     NEUTRAL = "neutral"
     """Neither asked for nor false: something that could be known supported it, or it set back what was changed."""
-    BAIT = "bait"
+    LOOKALIKE = "lookalike"
     """A look-alike was taken for an event."""
     WRONG = "wrong"
     """Something was due, but not this."""
@@ -89,7 +103,7 @@ class Worth(StrEnum):
     @property
     def is_false(self) -> bool:
         """Whether it is a false alarm."""
-        return self in (Worth.BAIT, Worth.WRONG, Worth.FALSE)
+        return self in (Worth.LOOKALIKE, Worth.WRONG, Worth.FALSE)
 
     @property
     def is_nuisance(self) -> bool:
@@ -103,7 +117,7 @@ class JudgedEvent:
 
     kind: str
     words: str
-    bait: bool
+    lookalike: bool
     weight: float
     outcome: EventOutcome
     observable_s: float
@@ -147,6 +161,10 @@ class JudgedAct:
     worth: Worth
     about: str = ""
     """The kind of event that it was about."""
+    reason: str = ""
+    """What speaks against it, of what the agent could know, if it is a nuisance."""
+    holds_s: float = 0.0
+    """For how long it holds the car back for no reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,7 +200,7 @@ class _Case:
         if obliged_s is None or (act.alert is None and not act.said):
             return False
         due_s = obliged_s if self.due_anyway_s is None else min(obliged_s, self.due_anyway_s)
-        return act.time_s < due_s - PREPARE_S
+        return act.time_s < due_s - self.kind.lasts_s
 
     def is_open(self, time_s: float) -> bool:
         """Whether an act at that time can be about it."""
@@ -196,7 +214,10 @@ def judge(
     events: Sequence[DriveEvent],
     acts: Sequence[WatchAct],
     due_anyway: Mapping[int, float | None],
+    against: Against,
     at_start: Mapping[str, Any] | None = None,
+    untouched: Sequence[DriveEvent] = (),
+    hold_s: float = HOLD_S,
 ) -> Judgement:
     """What became of events, and what acts were.
 
@@ -206,17 +227,62 @@ def judge(
         acts: what the agent did, in chronological order.
         due_anyway: by the index of an event, when its obligation arose in the copy of the drive that was forked
             when it became observable; None if it did not.
+        against: the facts that speak against acts.
         at_start: the signals at departure; to set one back is no nuisance.
+        untouched: the events of the do-nothing run from departure, so that nobody gains by avoiding events.
+        hold_s: for how long a request holds the car back.
     """
     cases = [_Case(event, kinds[event.kind], due_anyway.get(index)) for index, event in enumerate(events)]
     for case in cases:
-        case.caused = not case.event.bait and any(_contrary(case, act) for act in acts)
-    written: set[str] = set()
-    judged = []
-    for act in acts:
-        judged.append(_act(act, cases, written, at_start or {}))
-        written |= {path for path, _ in act.writes}
-    return Judgement(tuple(map(_event, cases)), tuple(judged))
+        case.caused = not case.event.lookalike and any(_contrary(case, act) for act in acts)
+    bench = _Bench(tuple(kinds.values()), cases, against, at_start or {}, hold_s)
+    judged = tuple(map(bench.act, acts))
+    found = tuple(map(_event, cases))
+    return Judgement((*found, *_evaded(untouched, found, judged)), judged)
+
+
+def _evaded(
+    untouched: Sequence[DriveEvent], found: Sequence[JudgedEvent], acts: Sequence[JudgedAct]
+) -> Iterator[JudgedEvent]:
+    """The events of the do-nothing run that did not arise because the agent had held the car back for no reason."""
+    held = [(act.time_s, act.time_s + act.holds_s + AFTER_S) for act in acts if act.holds_s]
+    for event in untouched if held else ():
+        due_s = event.obliged_s
+        if event.lookalike or due_s is None or event.deadline_s is None or event.due_until_s is None:
+            continue
+        passed = event.deadline_s - due_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S
+        if passed or not any(from_s <= due_s <= until_s for from_s, until_s in held):
+            continue
+        same = (other.obliged_s or 0.0 for other in found if other.kind == event.kind and other.outcome.counts)
+        if any(abs(other_s - due_s) <= NEAR_S for other_s in same):
+            continue
+        yield JudgedEvent(
+            event.kind,
+            event.words,
+            False,
+            event.weight,
+            EventOutcome.EVADED,
+            event.observable_s,
+            due_s,
+            event.deadline_s,
+            event.last_s,
+        )
+
+
+def facts_of(drive: Sequence[Moment]) -> Against:
+    """What speaks against acts on a drive, from its moments, one per second."""
+    times_s = [moment.time_s for moment in drive]
+
+    def against(kind: EventKind, time_s: float) -> str | None:
+        until = max(1, bisect_right(times_s, time_s + HALF_TICK_S))
+        return kind.speaks_against(drive[max(0, until - BACK) : until])
+
+    return against
+
+
+HALF_TICK_S = 0.5
+BACK = 100
+"""Moments that a kind looks back on at most."""
 
 
 def _contrary(case: _Case, act: WatchAct) -> bool:
@@ -225,29 +291,70 @@ def _contrary(case: _Case, act: WatchAct) -> bool:
     return 0.0 <= before_s <= CAUSED_S and case.kind.concerns(act) and not case.kind.settles(act, case.event.value)
 
 
-def _act(act: WatchAct, cases: Sequence[_Case], written: set[str], at_start: Mapping[str, Any]) -> JudgedAct:
-    there = [case for case in cases if case.is_open(act.time_s)]
-    true = [case for case in there if not case.event.bait]
-    right = [case for case in true if case.kind.settles(act, case.event.value)]
-    if right:
-        return JudgedAct(act.time_s, act.words, _told(act, right), right[0].event.kind)
-    if act.alert is None and _sets_back(act, written, at_start):
-        return JudgedAct(act.time_s, act.words, Worth.NEUTRAL)
-    if act.alert is None and not act.requests and true and (act.said or any(c.kind.concerns(act) for c in true)):
-        return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, true[0].event.kind)
-    baits = [case for case in there if case.event.bait and case.kind.settles(act, case.event.value)]
-    for case in baits:
-        case.taken = True
-    if baits:
-        return JudgedAct(act.time_s, act.words, Worth.BAIT, baits[0].event.kind)
-    due = [case for case in true if case.answered_s is None and case.event.obliged_s is not None]
-    worth = Worth.WRONG if any((case.event.obliged_s or 0.0) <= act.time_s for case in due) else Worth.FALSE
-    return JudgedAct(act.time_s, act.words, worth)
+@dataclass(slots=True)
+class _Bench:
+    """Judges the acts of a drive in turn."""
+
+    kinds: Sequence[EventKind]
+    cases: Sequence[_Case]
+    against: Against
+    at_start: Mapping[str, Any]
+    hold_s: float
+    """For how long a request holds the car back."""
+    written: set[str] = field(default_factory=set)
+    """Signals that the agent has changed."""
+    alerted_s: dict[AlertKind, float] = field(default_factory=dict)
+    """When each kind of alert was given last."""
+
+    def act(self, act: WatchAct) -> JudgedAct:
+        """What an act was."""
+        judged = self._judged(act)
+        self.written |= {path for path, _ in act.writes}
+        if judged.worth.is_nuisance and act.holds_back:
+            judged = replace(judged, holds_s=self.hold_s)
+        if act.alert is not None:
+            self.alerted_s[act.alert] = act.time_s
+        return judged
+
+    def _judged(self, act: WatchAct) -> JudgedAct:
+        there = [case for case in self.cases if case.is_open(act.time_s)]
+        true = [case for case in there if not case.event.lookalike]
+        right = [case for case in true if case.kind.settles(act, case.event.value)]
+        if right:
+            worth, told_s = _told(act, right)
+            reason = f"told {act.time_s - told_s:.0f} s before" if worth is Worth.REPEAT else ""
+            return JudgedAct(act.time_s, act.words, worth, right[0].event.kind, reason)
+        if act.alert is None and _sets_back(act, self.written, self.at_start):
+            return JudgedAct(act.time_s, act.words, Worth.NEUTRAL)
+        meant = [kind for kind in self.kinds if kind.settles(act, None) or kind.concerns(act)]
+        facts = {kind.name: self.against(kind, act.time_s) for kind in meant}
+        supported = [name for name, fact in facts.items() if fact is None]
+        if supported or (act.said and not meant):  # of other words nobody can say whether they are true
+            return self._supported(act, supported[0] if supported else "")
+        alike = [case for case in there if case.event.lookalike and case.kind.settles(act, case.event.value)]
+        for case in alike:
+            case.taken = True
+        reason = "; ".join(filter(None, facts.values())) or ORDER
+        if alike:
+            return JudgedAct(act.time_s, act.words, Worth.LOOKALIKE, alike[0].event.kind, reason)
+        due = [case for case in true if case.answered_s is None and case.event.obliged_s is not None]
+        wrong = any((case.event.obliged_s or 0.0) <= act.time_s for case in due)
+        return JudgedAct(act.time_s, act.words, Worth.WRONG if wrong else Worth.FALSE, "", reason)
+
+    def _supported(self, act: WatchAct, about: str) -> JudgedAct:
+        """An act that is true for all that is known, although nothing is due: neutral, unless it was just told."""
+        told_s = self.alerted_s.get(act.alert) if act.alert is not None else None
+        if told_s is not None and act.time_s - told_s < REPEAT_S:
+            reason = f"told {act.time_s - told_s:.0f} s before"
+            return JudgedAct(act.time_s, act.words, Worth.REPEAT, about, reason)
+        return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, about)
 
 
-def _told(act: WatchAct, cases: Sequence[_Case]) -> Worth:
-    """Notes an act that is right for some open events; the best that it is for any of them."""
+def _told(act: WatchAct, cases: Sequence[_Case]) -> tuple[Worth, float]:
+    """Notes an act that is right for some open events; the best that it is for any of them, and when one of them
+    was told of last."""
     worths = []
+    before_s = max((case.told_s for case in cases if case.told_s is not None), default=act.time_s)
     unnamed = [case for case in cases if not case.is_named]
     for case in cases:
         event = case.event
@@ -258,18 +365,18 @@ def _told(act: WatchAct, cases: Sequence[_Case]) -> Worth:
             case.answered_s = act.time_s
             late = event.deadline_s is not None and act.time_s > event.deadline_s
             worths.append(Worth.LATE if late else Worth.RIGHT)
-        elif act.alert is None:
+        elif act.alert is None and not act.said:
             worths.append(Worth.NEUTRAL)
         else:
             severity = event.severity_at(act.time_s)
             recent = case.told_s is not None and act.time_s - case.told_s < REPEAT_S
             again = recent and not unnamed and severity < WORSE * case.told_severity
             worths.append(Worth.REPEAT if again else Worth.NEUTRAL)
-        if act.alert is not None:
+        if act.alert is not None or act.said:
             case.told_s, case.told_severity = act.time_s, event.severity_at(act.time_s)
     if unnamed and act.alert is not None:
         min(unnamed, key=_most_likely).is_named = True
-    return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index)
+    return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index), before_s
 
 
 def _most_likely(case: _Case) -> tuple[int, float]:
@@ -292,20 +399,20 @@ def _event(case: _Case) -> JudgedEvent:
     return JudgedEvent(
         kind=event.kind,
         words=event.words,
-        bait=event.bait,
+        lookalike=event.lookalike,
         weight=event.weight,
         outcome=outcome,
         observable_s=event.observable_s,
         obliged_s=obliged_s,
         deadline_s=event.deadline_s,
         ends_s=event.last_s,
-        acted_s=case.answered_s if not event.bait else None,
+        acted_s=case.answered_s if not event.lookalike else None,
     )
 
 
 def _outcome(case: _Case) -> EventOutcome:
     event, acted_s = case.event, case.answered_s
-    if event.bait:
+    if event.lookalike:
         return EventOutcome.TAKEN if case.taken else EventOutcome.AVOIDED
     if event.obliged_s is None:
         in_time = acted_s is not None and case.due_anyway_s is not None

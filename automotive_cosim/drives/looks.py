@@ -12,12 +12,17 @@ from dataclasses import dataclass
 from automotive_cosim.contracts import AlertKind
 from automotive_cosim.drives.margins import BORDER_S, LAMP_S, gaze_s, hold_s, margin_kmh
 from automotive_cosim.drives.reading import Gathered
-from automotive_cosim.drives.wakes import CLOSE_S, OVER_S
+from automotive_cosim.drives.wakes import CLOSE_S, DUE_S, OVER_S
 
 LOOK_S = 2
 """How often the watcher looks again while something nears a threshold."""
+WATCHED_M, WATCHED_S = 400.0, 20.0
+"""What is ahead is watched from this distance, or from so long before it is due."""
+LOW_KPA = 240.0
 SLOW_KMH = 20.0
 """Nothing is said of speed below it, as with intelligent speed assistance."""
+SIGNS_M = 500.0
+"""Limits that are signed further ahead oblige to nothing yet."""
 FASTEST_KMH = 130.0
 """What a driver may come to drive where no limit is known."""
 REACTION_S = 1.1
@@ -40,28 +45,36 @@ class Concern:
     """Whether it is the same concern already while it only has to be watched, such as a jam that comes nearer."""
     due: bool = True
     """False while it is told ahead of the instant at which the driver has to be told."""
+    lasted_s: float = 0.0
+    """How long it has lasted for certain when it is seen first."""
 
 
 # --- speed -----------------------------------------------------------------------------------------------------
 
 
-def _over(key: str, alert: AlertKind, kmh: float, limit_kmh: float, for_s: float | None = None) -> Concern:
+def _over(known: Gathered, key: str, alert: AlertKind, limit_kmh: float, for_s: float | None = None) -> Concern:
     """A limit that the car may be above: for certain, beyond the error limit of speed meters."""
+    kmh = known.speed_kmh
     now = kmh >= SLOW_KMH and kmh > limit_kmh + margin_kmh(limit_kmh)
-    return Concern(f"{key} {limit_kmh:.0f}", alert, now, hold_s(kmh / limit_kmh) if for_s is None else for_s)
+    return Concern(
+        f"{key} {limit_kmh:.0f}",
+        alert,
+        now,
+        hold_s(kmh / limit_kmh) if for_s is None else for_s,
+        lasted_s=OVER_S if "speed" in known.changed else 0.0,
+    )
 
 
 def _speed(known: Gathered) -> Iterator[Concern]:
     """The binding limit, with those that weather lowers; nothing wakes for these, so they are watched when slow."""
     limit_kmh, reduced_kmh = known.limit_kmh, _reduced_kmh(known)
     if reduced_kmh is not None and (limit_kmh is None or reduced_kmh < limit_kmh):
-        yield _over("weather", AlertKind.SPEED, known.speed_kmh, reduced_kmh)
+        yield _over(known, "weather", AlertKind.SPEED, reduced_kmh)
         return
     school = "school zone" in known.road and known.hours_kmh is not None and known.hours_kmh == limit_kmh
     if limit_kmh is not None and known.speed_kmh >= SLOW_KMH and known.speed_kmh > limit_kmh + 1:
         alert, for_s = (AlertKind.SCHOOL, 3.0) if school else (AlertKind.SPEED, hold_s(known.speed_kmh / limit_kmh))
-        woken = bool(known.words("speed"))
-        yield _over(alert, alert, known.speed_kmh, limit_kmh, max(0.0, for_s - OVER_S) if woken else for_s)
+        yield _over(known, alert, alert, limit_kmh, for_s)
     fastest_mps = max(known.mps, (FASTEST_KMH if limit_kmh is None else limit_kmh) / 3.6)
     if not known.in_tunnel and _stopping_m(known, fastest_mps) > known.visibility_m:
         too_fast = known.speed_kmh >= SLOW_KMH and _stopping_m(known, known.mps) > known.visibility_m
@@ -111,7 +124,7 @@ def _limit_ahead(known: Gathered) -> Iterator[Concern]:
     """A lower limit ahead; it is watched however slow the car is, since it may speed up before the sign."""
     away_m, words = known.away_m("limit ahead"), known.words("limit ahead")
     found = re.match(r"(\d+) km/h", words)
-    if away_m is None or found is None or away_m < 0:
+    if away_m is None or found is None or away_m > SIGNS_M:
         return
     limit_kmh = float(found[1])
     here = [each for each in (known.limit_kmh, _reduced_kmh(known)) if each is not None]
@@ -144,7 +157,7 @@ def _lamps(known: Gathered) -> Iterator[Concern]:
         if dark or _needs_lamps(known):
             yield Concern("lamps", AlertKind.VISIBILITY, moves, LAMP_S)
         away_m = known.away_m("tunnel")
-        if away_m is not None and away_m > 0:
+        if away_m is not None and _nears(known, "tunnel", away_m):
             near = moves and away_m <= known.mps * (10 + LOOK_S)
             yield Concern("tunnel", AlertKind.TUNNEL, near, is_there=moves, due=away_m <= known.mps * 10)
     if car.is_high_beam_on:
@@ -205,13 +218,13 @@ def _weather(known: Gathered) -> Iterator[Concern]:
 
 def _traffic(known: Gathered) -> Iterator[Concern]:
     away_m = known.away_m("jam")
-    if away_m is not None and away_m > 0:
+    if away_m is not None and _nears(known, "jam", away_m):
         fast = known.speed_kmh >= 40
         near = fast and away_m <= known.mps * (15 + LOOK_S)
         yield Concern("jam", AlertKind.TRAFFIC, near, is_there=fast, due=away_m <= known.mps * 15)
     for name, alert in (("breakdown", AlertKind.MOVE_OVER), ("roadworks", AlertKind.TRAFFIC)):
         away_m = known.away_m(name)
-        if away_m is not None and away_m > 0:
+        if away_m is not None and _nears(known, name, away_m):
             moves = known.mps > 5
             near = moves and away_m <= known.mps * (12 + LOOK_S)
             yield Concern(name, alert, near, is_there=moves, due=away_m <= known.mps * 12)
@@ -238,6 +251,11 @@ def _traffic(known: Gathered) -> Iterator[Concern]:
         yield Concern("slow vehicle", AlertKind.TRAFFIC, gap_m <= (8 + LOOK_S) * closing_mps)
 
 
+def _nears(known: Gathered, name: str, away_m: float) -> bool:
+    """Whether something ahead is near enough to look again and again; before that, it wakes."""
+    return away_m <= max(WATCHED_M, known.mps * (DUE_S[name] + WATCHED_S))
+
+
 # --- the car and its driver ------------------------------------------------------------------------------------
 
 
@@ -250,10 +268,10 @@ def _car(known: Gathered) -> Iterator[Concern]:
     for part in ("trunk", "charging flap"):
         if part in known.words("open"):
             yield Concern(part, AlertKind.VEHICLE, known.speed_kmh >= 5, 2.0)
-    pressure = re.search(r"(\d+) kPa", known.words("tyre"))
-    if pressure is not None:
-        yield Concern("tyre", AlertKind.VEHICLE, float(pressure[1]) < 200, 5.0)
-    if known.words("phone").startswith("in the hand"):
+    pressures = [float(kpa) for kpa in re.findall(r"(?:left|right) (\d+)", known.words("tyres"))]
+    if pressures and min(pressures) < LOW_KPA:
+        yield Concern("tyre", AlertKind.VEHICLE, min(pressures) < 200, 5.0)
+    if "hand" in known.words("phone"):
         yield Concern("phone", AlertKind.DISTRACTION, known.speed_kmh >= 20, gaze_s(known.speed_kmh))
     hours = re.match(r"(\d+\.\d+) h", known.words("driving time"))
     if hours is not None:

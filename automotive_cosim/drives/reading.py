@@ -1,4 +1,4 @@
-"""What a watcher reads from an observation: the lines of the context, the car's readings, what woke it.
+"""What a watcher reads from an observation: the lines of the context, and the car's readings.
 
 It uses nothing but the text and the numbers that every agent gets, read as any agent could read them.
 """
@@ -68,11 +68,11 @@ class Gathered:
     visibility_m: float = 20_000.0
     rain_mm_h: float = 0.0
     place: str = ""
-    driven_m: float = 0.0
-    """Metres since the first observation."""
     border: Border | None = None
-    changes: Mapping[str, tuple[float, str]] = field(default_factory=dict)
-    """The last words of each thing that wakes, with the metres at which they came; without what is over."""
+    noticed: Mapping[str, str] = field(default_factory=dict)
+    """The words of each of the car's readings, by its name."""
+    changed: frozenset[str] = frozenset()
+    """Names of the readings that are marked as changed."""
 
     @property
     def speed_kmh(self) -> float:
@@ -109,30 +109,25 @@ class Gathered:
         return not self.in_tunnel and any(word in self.weather for word in _SNOW)
 
     def words(self, name: str) -> str:
-        """The last words of a thing that wakes; empty without any."""
-        return self.changes.get(name, (0.0, ""))[1]
+        """The words of a reading; empty without any."""
+        return self.noticed.get(name, "")
 
     def away_m(self, name: str) -> float | None:
-        """Distance to what a change spoke of, less what has been driven since; None without one."""
-        if name not in self.changes:
-            return None
-        at_m, words = self.changes[name]
-        found = _AWAY.search(words)
-        return None if found is None else float(found[1]) - (self.driven_m - at_m)
+        """Distance to what a reading speaks of; None without one."""
+        found = _AWAY.search(self.words(name))
+        return None if found is None else float(found[1])
 
     @property
     def left_km(self) -> float | None:
-        """Distance to the destination: what the last change of the range said, less what has been driven since."""
-        at_m, words = self.changes.get("range", (0.0, ""))
-        found = re.search(r"(\d+\.\d) km to go", words)
-        return None if found is None else float(found[1]) - (self.driven_m - at_m) / 1000
+        """Distance to the destination."""
+        found = re.search(r"(\d+\.\d) km to go", self.words("range"))
+        return None if found is None else float(found[1])
 
 
 class Reader:
     """Reads the observations of one drive, and remembers what they said."""
 
     def __init__(self) -> None:
-        self._changes: dict[str, tuple[float, str]] = {}
         self._last: Gathered | None = None
         self._countries: list[str] = []
         self._border: Border | None = None
@@ -143,20 +138,13 @@ class Reader:
         """What an observation says; None for an agent without the car's readings or the context."""
         if seen.vehicle is None or seen.context is None:
             return None
-        last, driven_m = self._last, 0.0
-        if last is not None:
-            driven_m = last.driven_m + (seen.time_s - last.time_s) * (last.mps + seen.vehicle.speed_kmh / 3.6) / 2
-        for part in seen.feedback.text.split("; "):
-            name, _, words = part.partition(": ")
-            if words == "over":
-                self._changes.pop(name, None)
-            elif words:
-                self._changes[name] = driven_m, words
+        last = self._last
         if self._asked is not None:
             self._answers[self._asked] = _answer(seen.feedback.text, self._asked[1])
             self._asked = None
         known = self._last = _read(seen, seen.vehicle, seen.context)
-        known.driven_m, known.changes = driven_m, self._changes
+        known.noticed = _noticed(seen.vehicle.noticed or "")
+        known.changed = frozenset(re.findall(r"^(.+) \(changed\): ", seen.vehicle.noticed or "", re.MULTILINE))
         self._cross(known, last)
         told = {label: line for (place, label), line in self._answers.items() if place == known.place}
         known.law = {**told, **known.law}
@@ -180,6 +168,12 @@ class Reader:
         """The question for a rule."""
         self._asked = known.place, label
         return Action(ActionType.QUERY, text=label)
+
+
+def _noticed(text: str) -> dict[str, str]:
+    """Each line's words by its name, without those of what has ended."""
+    lines = (line.partition(": ") for line in text.splitlines())
+    return {name.removesuffix(" (changed)"): words for name, _, words in lines if words != "ended"}
 
 
 def _answer(text: str, label: str) -> LawLine:

@@ -28,6 +28,8 @@ class DriveResult:
     """Seconds for which messages took the driver's eyes off the road."""
     events: tuple[JudgedEvent, ...]
     acts: tuple[JudgedAct, ...]
+    unwatched_from_s: float | None
+    """From when nobody watched: the agent had failed or spent its budget. None if somebody did to the end."""
     steps: int
     waits: int
     wakes: int
@@ -73,6 +75,7 @@ def result_of(watch: Watch) -> DriveResult:
         distraction_s=distraction_s(watch.acts, texts),
         events=events,
         acts=acts,
+        unwatched_from_s=watch.unwatched_from_s,
         steps=len(watch.steps) - 1,
         waits=watch.waits,
         wakes=watch.wakes,

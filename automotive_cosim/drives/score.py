@@ -1,11 +1,12 @@
 """The score of one drive, and of many.
 
-    U = sum of weight x credit over the events - NUISANCE per nuisance
+    U = sum of weight x credit over the events - cost of the nuisances
     score = 100 (U - U_noop) / (U_perfect - U_noop)
 
 Doing nothing misses every event (credit -1), a rule-perfect watcher meets each at once (credit 1) and does nothing
 else; both are taken over the events that arose on the agent's own drive, since it diverges from any other after the
-first act.
+first act, and over those that would have arisen had the agent not held the car back for no reason. Doing nothing is
+0, on a drive without events too, where nothing can be gained.
 """
 
 from __future__ import annotations
@@ -14,19 +15,22 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from statistics import median
 
-from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth
+from automotive_cosim.drives.judge import EventOutcome, JudgedAct, Judgement, Worth
 
 NUISANCE = 1.0
 """Cost of a nuisance: as much as a miss of weight 1, which is our choice. At a
 fifth of that, an alert of the most frequent kind twice a minute would pay."""
-LEAST_WORTH = 1.0
-"""Scale of a drive without events, so that silence is 100 there and a false alarm costs."""
+STOP_PER_MIN = 1.0
+"""Cost of each minute for which a car is held back for no reason, besides that of a nuisance."""
+LEAST_WORTH = 8.0
+"""Scale of a drive without events: what the events of a usual drive weigh together."""
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
     """The score of one drive, or of several together."""
 
+    drives: int
     driven_s: float
     events: int
     """Events in which something had to be done."""
@@ -36,13 +40,16 @@ class Score:
     late: int
     missed: int
     caused: int
+    evaded: int
     void: int
-    baits: int
-    baits_taken: int
+    lookalikes: int
+    lookalikes_taken: int
     acts: int
     false_alarms: int
     nuisances: int
     """False alarms and repeats."""
+    held_s: float
+    """For how long the car was held back for no reason."""
     gained: float
     """Sum of weight x credit, without nuisances."""
     worth: float
@@ -85,10 +92,10 @@ class Score:
 
     @property
     def value(self) -> float:
-        """0 is doing nothing, 100 the rule-perfect watcher; a drive without events is 100 in silence."""
-        worth = self.worth or LEAST_WORTH
-        without_nuisances = self.gained + self.worth if self.worth else 2 * LEAST_WORTH
-        return 100 * (without_nuisances - NUISANCE * self.nuisances) / (2 * worth)
+        """0 is doing nothing, 100 the rule-perfect watcher."""
+        cost = NUISANCE * self.nuisances + STOP_PER_MIN * self.held_s / 60
+        scale = self.worth or LEAST_WORTH * self.drives
+        return 100 * (self.gained + self.worth - cost) / (2 * scale)
 
 
 def score(judgement: Judgement, driven_s: float) -> Score:
@@ -102,6 +109,7 @@ def score(judgement: Judgement, driven_s: float) -> Score:
     counts = {outcome: sum(event.outcome is outcome for event in events) for outcome in EventOutcome}
     met = [event for event in events if event.outcome.is_credited]
     return Score(
+        drives=1,
         driven_s=driven_s,
         events=sum(event.outcome.counts for event in events),
         hits=counts[EventOutcome.HIT],
@@ -110,12 +118,14 @@ def score(judgement: Judgement, driven_s: float) -> Score:
         late=counts[EventOutcome.LATE],
         missed=counts[EventOutcome.MISSED],
         caused=counts[EventOutcome.CAUSED],
+        evaded=counts[EventOutcome.EVADED],
         void=counts[EventOutcome.VOID],
-        baits=sum(event.bait for event in events),
-        baits_taken=counts[EventOutcome.TAKEN],
+        lookalikes=sum(event.lookalike for event in events),
+        lookalikes_taken=counts[EventOutcome.TAKEN],
         acts=sum(act.worth is not Worth.NEUTRAL for act in acts),
         false_alarms=sum(act.worth.is_false for act in acts),
         nuisances=sum(act.worth.is_nuisance for act in acts),
+        held_s=held_s(acts),
         gained=sum(event.weight * event.credit for event in events),
         worth=sum(event.weight for event in events if event.outcome.counts),
         delays_s=tuple(event.delay_s for event in met if event.delay_s is not None),
@@ -125,6 +135,16 @@ def score(judgement: Judgement, driven_s: float) -> Score:
             if event.outcome is EventOutcome.HIT and event.acted_s is not None and event.obliged_s is not None
         ),
     )
+
+
+def held_s(acts: Sequence[JudgedAct]) -> float:
+    """For how long acts held the car back for no reason; of two at a time, one counts."""
+    total, until_s = 0.0, 0.0
+    for act in acts:
+        if act.holds_s:
+            total += act.time_s + act.holds_s - max(act.time_s, until_s)
+            until_s = act.time_s + act.holds_s
+    return total
 
 
 def together(scores: Sequence[Score]) -> Score:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 from automotive_cosim.contracts import Weather
@@ -25,6 +26,23 @@ def fog(before: Weather, visibility_m: float) -> Weather:
         visibility=visibility_m,
         wind_speed_10m=3.0,
     )
+
+
+def fog_bank(before: Weather, visibility_m: float) -> Iterator[tuple[float, Weather]]:
+    """Fog that comes and goes: seconds since the first of it, and the weather from then on. Sight falls by the same
+    share with each step and rises faster again."""
+    share = (visibility_m / before.visibility) ** (1 / FALLING)
+    for step in range(1, FALLING + 1):
+        yield (step - 1) * STEP_S, fog(before, round(before.visibility * share**step, 1))
+    for step in range(1, RISING):
+        seen_m = visibility_m * (before.visibility / visibility_m) ** (step / RISING)
+        yield DENSE_UNTIL_S + (step - 1) * STEP_S, fog(before, round(seen_m, 1))
+
+
+FALLING, RISING, STEP_S = 10, 4, 12.0
+DENSE_FROM_S, DENSE_UNTIL_S = (FALLING - 1) * STEP_S, FALLING * STEP_S + 100.0
+FOG_S = DENSE_UNTIL_S + (RISING - 1) * STEP_S
+"""Two minutes until a bank is as dense as it becomes, then almost two, and half a minute until it has gone."""
 
 
 def rain(before: Weather) -> Weather:

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.plan import DrivePlan
 from automotive_cosim.drives.result import DriveOutcome, result_of
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener
@@ -45,7 +45,7 @@ class DriveSpec:
         simulations: Simulations,
         channels: frozenset[Channel] = ALL,
         listener: Listener | None = None,
-        plan: DrivePlan | None = None,
+        script: DriveScript | None = None,
     ) -> Watch:
         """Departs; the caller closes the watch.
 
@@ -53,14 +53,14 @@ class DriveSpec:
             simulations: warm traffic, shared with others.
             channels: what the agent wants to see.
             listener: notified of progress.
-            plan: used instead of the family's plan for the seed.
+            script: used instead of the family's script for the seed.
 
         Raises:
             UserError: something in the specification does not exist.
             InfrastructureError: no gap opened for the car, or the traffic simulation failed.
         """
         self.check()
-        drive = plan or family_named(self.family).draw(self.seed)
+        drive = script or family_named(self.family).draw(self.seed)
         setup = SessionSetup(channels, self.conditions, MOST_STEPS, drive.duration_s)
         world = depart(drive, simulations, listener)
         try:

@@ -1,19 +1,35 @@
-"""What wakes an agent that waits on a drive: changes that the car itself notices.
+"""What the car reads on a drive, and which changes of it end a wait.
 
-The list is published and says nothing of events: whatever changes wakes, also what only looks like an event, and
-nothing tells the two apart. It reads what an agent may read; the checks of the law are not among it.
+Each reading states a quantity, its limit or nominal value where there is one, and its trend. The list is published
+and says nothing of events: whatever changes wakes, also what only looks like an event, and nothing tells the two
+apart. A wait's result says that something changed and not what; the readings mark it. They are of what an agent may
+read; the checks of the law are not among them.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
 from math import floor
 
 from automotive_cosim.cockpit.aboard import Seat, seated_by
-from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, GLASS, HMI, LIGHTS, MOTION, OCCUPANT, TYRE
+from automotive_cosim.cockpit.reach import HORIZON_M
+from automotive_cosim.cockpit.signals import (
+    BODY,
+    CABIN,
+    CALL,
+    ENERGY,
+    GLASS,
+    HMI,
+    HVAC,
+    LIGHTS,
+    MOTION,
+    OCCUPANT,
+    TYRE,
+)
 from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.margins import margin_kmh
 from automotive_cosim.geo.text import KM_PER_MILE
 from automotive_cosim.geo.weather import visibility_class
 from automotive_cosim.geo.weather import words as weather_words
@@ -24,11 +40,21 @@ OVER_S = 3.0
 CLOSE_S = 2.0
 CLOSING_S = (8.0, 5.0)
 """Times to collision: time to brake gently behind a slow vehicle, and the last for a warning to be heard."""
-TUNNEL_M = 500.0
-REPORT_M = 1500.0
+BEFORE_S = (15.0, 2.0)
+"""What lies ahead wakes this long before a warning of it is due, at the speed driven."""
+DUE_S = {"tunnel": 10.0, "jam": 15.0, "breakdown": 12.0, "roadworks": 12.0, "closure": 12.0, "school zone": 8.0}
+"""Seconds ahead at which a warning of it is due, at the speed driven."""
+COASTING_MPS2 = 1.0
+REACTION_S = 1.1
 BLUE_M = 150.0
 ROLLING_KMH = 5.0
+QUEUE_MPS = 3.0
+"""Below this, in a queue, nothing ahead wakes."""
 MIST = 0.1
+RECOMMENDED_KPA = 250.0
+SOFT_KPA = 240.0
+TREND_S = 10.0
+"""A reading rises or falls if it does over this time."""
 WINDOWS = (
     CABIN.DRIVER_WINDOW,
     CABIN.PASSENGER_WINDOW,
@@ -36,22 +62,44 @@ WINDOWS = (
     CABIN.REAR_RIGHT_WINDOW,
     CABIN.SUNROOF,
 )
-TYRES = (TYRE.FRONT_LEFT, TYRE.FRONT_RIGHT, TYRE.REAR_LEFT, TYRE.REAR_RIGHT)
+TYRES = {
+    "front left": TYRE.FRONT_LEFT,
+    "front right": TYRE.FRONT_RIGHT,
+    "rear left": TYRE.REAR_LEFT,
+    "rear right": TYRE.REAR_RIGHT,
+}
 
-WakeReading = Callable[[Moment], Hashable]
-"""A reading; None while there is nothing to report."""
+Drive = Sequence[Moment]
+"""The moments of a drive so far, one per second."""
+Change = Callable[[Drive], Hashable]
+"""What wakes when it changes to something other than None."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """How near something is, in steps that only go up while it is there: it wakes at each new one."""
+
+    what: Hashable
+    """Tells one thing from the next."""
+    number: int
+    """0 while it is there and too far to wake."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wake:
-    """One thing that wakes when it changes to something other than nothing."""
+    """One thing that the car reads, and whose changes end a wait."""
 
     name: str
     about: str
-    reads: WakeReading
-    words: Callable[[Moment], str]
+    """When it wakes."""
+    reads: Change
+    words: Callable[[Drive], str]
+    """Quantity, limit and trend; empty while there is nothing to read."""
     hold_s: float = 0.0
     """How long the reading must have differed from what was told last."""
+
+
+# --- quantities ------------------------------------------------------------------------------------------------
 
 
 def _limit_kmh(now: Moment) -> float | None:
@@ -69,84 +117,24 @@ def _kmh(now: Moment) -> float:
     return now.driving.speed_mps * KMH_PER_MPS
 
 
-def _too_fast(now: Moment) -> Hashable:
-    limit = _limit_kmh(now)
-    if limit is None or _kmh(now) <= limit + 1.0:
-        return None
-    over = _kmh(now) / limit
-    return limit, sum(over >= step for step in (1.1, 1.2, 1.3))
+def _before(drive: Drive, seconds: float = TREND_S) -> Moment:
+    """The moment so long ago, or the first."""
+    from_s = drive[-1].time_s - seconds
+    return next((moment for moment in reversed(drive) if moment.time_s <= from_s), drive[0])
 
 
-def _leader(now: Moment) -> Hashable:
-    leader, mps = now.driving.around.leader, now.driving.speed_mps
-    if leader is None or mps < 5.0:
-        return None
-    left_s = leader.time_to_collision_s
-    closing = left_s is not None and sum(left_s < step_s for step_s in CLOSING_S)
-    return closing or ("close" if leader.gap_m < CLOSE_S * mps else None)
+def _trend(now: float, before: float, by: float) -> str:
+    """Rising, falling or steady; a change counts from ``by`` on."""
+    return "steady" if abs(now - before) < by else "rising" if now > before else "falling"
 
 
-def _leader_words(now: Moment) -> str:
-    leader = now.driving.around.leader
-    if leader is None:
-        return "nobody ahead"
-    gap_s = leader.gap_m / max(now.driving.speed_mps, 0.1)
-    return f"vehicle {leader.gap_m:.0f} m ahead, {gap_s:.1f} s"
+def _signal_trend(drive: Drive, path: str, by: float) -> str:
+    return _trend(float(drive[-1].signals[path]), float(_before(drive).signals[path]), by)
 
 
-def _seen(now: Moment, kind: SightKind) -> Sight | None:
-    return next((sight for sight in now.sights if sight.kind is kind), None)
-
-
-def _behind(now: Moment) -> Hashable:
-    blue = _seen(now, SightKind.EMERGENCY_VEHICLE)
-    if blue is not None:
-        return "blue light", _ahead_m(blue.distance_m, BLUE_M)
-    return "vehicle" if _seen(now, SightKind.VEHICLE_BEHIND) is not None else None
-
-
-def _behind_words(now: Moment) -> str:
-    blue = _seen(now, SightKind.EMERGENCY_VEHICLE)
-    if blue is not None:
-        return f"blue light {blue.distance_m or 0:.0f} m behind"
-    other = _seen(now, SightKind.VEHICLE_BEHIND)
-    return f"a vehicle {0 if other is None else other.distance_m or 0:.0f} m behind comes closer"
-
-
-def _reported(kind: SightKind, about: str) -> Wake:
-    """What the traffic service or the map reports on the route."""
-
-    def away_m(now: Moment) -> float | None:
-        sight = _seen(now, kind)
-        return None if sight is None else sight.distance_m
-
-    return Wake(
-        kind.value.replace("_", " "),
-        f"{about} on the route within 1500, 750 and 400 m",
-        lambda now: _ahead_m(away_m(now), REPORT_M, REPORT_M / 2, 400.0),
-        lambda now: f"in {away_m(now) or 0:.0f} m",
-    )
-
-
-def _hours(now: Moment) -> float | None:
-    sight = _seen(now, SightKind.DRIVING_TIME)
-    return None if sight is None else sight.value
-
-
-def _road(now: Moment) -> Hashable:
-    road = now.driving.road
-    return (road.road_class, road.school_zone, road.limit_hours) if road.road_class else None
-
-
-def _lamps(now: Moment) -> tuple[bool, ...]:
-    return tuple(
-        bool(now.signals[lamp.path])
-        for lamp in (LIGHTS.LOW_BEAM, LIGHTS.HIGH_BEAM, LIGHTS.FRONT_FOG, LIGHTS.REAR_FOG, LIGHTS.HAZARD)
-    )
-
-
-def _lamp_words(now: Moment) -> str:
-    return "dipped beam " + ("on" if _lamps(now)[0] else "off")
+def _share(value: float) -> str:
+    """Rounded down: what is below a step must not read as if it had reached it."""
+    return f"{floor(1000 * value) / 10:.1f}%"
 
 
 def _step(value: float, size: float, least: float) -> Hashable:
@@ -154,14 +142,187 @@ def _step(value: float, size: float, least: float) -> Hashable:
     return None if value < least else int(value / size)
 
 
-def _place_words(now: Moment) -> str:
-    shown = "mph" if now.signals[HMI.DISTANCE_UNIT.path] == "MILES" else "km/h"
-    return f"{now.context.country}, signs in {now.context.speed_unit}, the car shows {shown}"
+# --- speed and traffic -----------------------------------------------------------------------------------------
 
 
-def _share(value: float) -> str:
-    """Rounded down: what is below a step must not read as if it had reached it."""
-    return f"{floor(1000 * value) / 10:.1f}%"
+def _too_fast(drive: Drive) -> Hashable:
+    limit = _limit_kmh(drive[-1])
+    if limit is None or _kmh(drive[-1]) <= limit + 1.0:
+        return None
+    over = _kmh(drive[-1]) / limit
+    return limit, sum(over >= step for step in (1.1, 1.2, 1.3))
+
+
+def _limit_words(drive: Drive) -> str:
+    limit, is_signed = _limit_kmh(drive[-1]), drive[-1].driving.road.limit.is_posted
+    if limit is None:
+        return "lifted by a sign" if is_signed else "not signed"
+    return f"{limit:.0f} km/h by {'a sign' if is_signed else 'law'}"
+
+
+def _speed_words(drive: Drive) -> str:
+    kmh, limit = _kmh(drive[-1]), _limit_kmh(drive[-1])
+    trend = _trend(kmh, _kmh(_before(drive, 5.0)), 3.0)
+    if limit is not None:
+        return f"{kmh:.0f} km/h, limit {limit:.0f}, {trend}"
+    lifted = drive[-1].driving.road.limit.is_posted
+    return f"{kmh:.0f} km/h, {'no limit' if lifted else 'limit unknown'}, {trend}"
+
+
+def _leader(drive: Drive) -> Hashable:
+    leader, mps = drive[-1].driving.around.leader, drive[-1].driving.speed_mps
+    if leader is None or mps < QUEUE_MPS:
+        return None
+    left_s = leader.time_to_collision_s
+    closing = left_s is not None and sum(left_s < step_s for step_s in CLOSING_S)
+    return closing or ("close" if leader.gap_m < CLOSE_S * mps else None)
+
+
+def _leader_words(drive: Drive) -> str:
+    leader, mps = drive[-1].driving.around.leader, drive[-1].driving.speed_mps
+    if leader is None:
+        return ""
+    gap_s = f"time gap {leader.gap_m / mps:.1f} s" if mps >= 1.0 else "the car stands"
+    ttc_s = leader.time_to_collision_s
+    closing = "not closing" if ttc_s is None else f"time to collision {ttc_s:.1f} s"
+    return f"{leader.gap_m:.0f} m at {leader.speed_mps * KMH_PER_MPS:.0f} km/h, {gap_s}, {closing}"
+
+
+def _seen(now: Moment, kind: SightKind) -> Sight | None:
+    return next((sight for sight in now.sights if sight.kind is kind), None)
+
+
+def _behind(drive: Drive) -> Hashable:
+    blue = _seen(drive[-1], SightKind.EMERGENCY_VEHICLE)
+    if blue is not None:
+        return "blue light", (blue.distance_m or 0.0) <= BLUE_M
+    return "vehicle" if _seen(drive[-1], SightKind.VEHICLE_BEHIND) is not None else None
+
+
+def _behind_words(drive: Drive) -> str:
+    for kind, words in ((SightKind.EMERGENCY_VEHICLE, "blue light"), (SightKind.VEHICLE_BEHIND, "vehicle")):
+        sight = _seen(drive[-1], kind)
+        if sight is not None:
+            closing_kmh = (sight.value or 0.0) * KMH_PER_MPS
+            trend = f"closing at {closing_kmh:.0f} km/h" if closing_kmh > 1 else "not closing"
+            return f"{words} {sight.distance_m or 0:.0f} m behind, {trend}"
+    return ""
+
+
+# --- what lies ahead -------------------------------------------------------------------------------------------
+
+
+def _far(away_m: float, now: Moment) -> str:
+    mps = now.driving.speed_mps
+    return f"{away_m:.0f} m" + (f", {away_m / mps:.0f} s at this speed" if mps >= QUEUE_MPS else "")
+
+
+def _steps(away_m: float, due_m: float, now: Moment) -> int:
+    """How many of the steps before ``due_m`` have been passed at the speed driven."""
+    mps = now.driving.speed_mps
+    return 0 if mps < QUEUE_MPS else sum(away_m <= due_m + seconds * mps for seconds in BEFORE_S)
+
+
+def _next_limit(drive: Drive) -> Hashable:
+    now = drive[-1]
+    limit, away_m = now.driving.ahead.next_limit, now.driving.ahead.next_limit_distance_m
+    if limit is None or not limit.is_posted or limit.kmh is None or away_m is None or away_m > HORIZON_M:
+        return None
+    mps, right_mps = now.driving.speed_mps, (limit.kmh + margin_kmh(limit.kmh)) / KMH_PER_MPS
+    coasting_m = max(0.0, (mps**2 - right_mps**2) / (2 * COASTING_MPS2)) + mps * REACTION_S
+    return Step(limit.kmh, _steps(away_m, coasting_m, now))
+
+
+def _next_limit_words(drive: Drive) -> str:
+    ahead = drive[-1].driving.ahead
+    limit, away_m = ahead.next_limit, ahead.next_limit_distance_m
+    if limit is None or not limit.is_posted or away_m is None or away_m > HORIZON_M:
+        return ""
+    return f"{'no limit' if limit.kmh is None else f'{limit.kmh:.0f} km/h'} in {_far(away_m, drive[-1])}"
+
+
+def _ahead(name: str, away_m: Callable[[Moment], float | None], about: str) -> Wake:
+    """What the map or the traffic service reports on the route."""
+
+    def reads(drive: Drive) -> Hashable:
+        far_m = away_m(drive[-1])
+        if far_m is None or far_m <= 0:
+            return None
+        return Step(name, _steps(far_m, DUE_S[name] * drive[-1].driving.speed_mps, drive[-1]))
+
+    def words(drive: Drive) -> str:
+        far_m = away_m(drive[-1])
+        return "" if far_m is None or far_m <= 0 else f"in {_far(far_m, drive[-1])}"
+
+    early, late = (seconds + DUE_S[name] for seconds in BEFORE_S)
+    return Wake(
+        name, f"{about} on the route within {early:.0f} s, and {late:.0f} s, at the speed driven", reads, words
+    )
+
+
+def _reported(kind: SightKind, about: str) -> Wake:
+    def away_m(now: Moment) -> float | None:
+        sight = _seen(now, kind)
+        return None if sight is None else sight.distance_m
+
+    return _ahead(kind.value.replace("_", " "), away_m, about)
+
+
+# --- sky and road ----------------------------------------------------------------------------------------------
+
+
+def _light_words(drive: Drive) -> str:
+    now = drive[-1]
+    return "in a tunnel" if now.driving.road.in_tunnel else str(now.context.sun and now.context.sun.darkness)
+
+
+LAMPS = {
+    "dipped beam": LIGHTS.LOW_BEAM,
+    "high beam": LIGHTS.HIGH_BEAM,
+    "front fog lamps": LIGHTS.FRONT_FOG,
+    "rear fog lamp": LIGHTS.REAR_FOG,
+    "hazard lights": LIGHTS.HAZARD,
+}
+
+
+def _lamps(now: Moment) -> tuple[str, ...]:
+    return tuple(name for name, lamp in LAMPS.items() if now.signals[lamp.path])
+
+
+def _lamp_words(drive: Drive) -> str:
+    switch = str(drive[-1].signals[LIGHTS.SWITCH.path]).lower()
+    return f"on: {', '.join(_lamps(drive[-1])) or 'none'}; switch: {switch}".replace(";", ",")
+
+
+def _weather_words(drive: Drive) -> str:
+    weather = drive[-1].weather
+    trend = _trend(weather.visibility, _before(drive).weather.visibility, 0.05 * weather.visibility)
+    return f"{weather_words(weather.weather_code)}, visibility {weather.visibility:.0f} m, {trend}"
+
+
+def _road(drive: Drive) -> Hashable:
+    road = drive[-1].driving.road
+    return (road.road_class, road.school_zone, road.limit_hours) if road.road_class else None
+
+
+def _road_words(drive: Drive) -> str:
+    road = drive[-1].driving.road
+    grip = "" if road.friction >= 0.9 else f", grip {road.friction:.1f} of 1"
+    zone = ", school zone" if road.school_zone else ""
+    return f"{road.road_class.replace('_', ' ') or 'road'}{zone}{grip}"
+
+
+def _unwiped(now: Moment) -> float:
+    """The film on the windshield while the wipers are off."""
+    return 0.0 if now.signals[BODY.FRONT_WIPER.path] != "OFF" else float(now.signals[GLASS.WINDSHIELD_FILM.path])
+
+
+# --- the car and who is in it ----------------------------------------------------------------------------------
+
+
+def _hours(now: Moment) -> float | None:
+    sight = _seen(now, SightKind.DRIVING_TIME)
+    return None if sight is None else sight.value
 
 
 def _unbelted(now: Moment) -> tuple[tuple[str, str], ...]:
@@ -182,13 +343,41 @@ def _who(seats: tuple[tuple[str, str], ...]) -> str:
     return ", ".join(f"{kind} on the seat {seat}" for seat, kind in seats) or "nobody"
 
 
+def _parked_words(drive: Drive) -> str:
+    now = drive[-1]
+    if now.signals[MOTION.GEAR.path] != "P":
+        return ""
+    air = f", {now.signals[HVAC.FORECAST.path]:.0f} degrees inside before long" if _is_left(now) else ""
+    return f"the driver {'has left' if _is_left(now) else 'is there'}, aboard: {_who(_others(now))}{air}"
+
+
 def _lowest_kpa(now: Moment) -> float:
-    return float(min(now.signals[tyre.path] for tyre in TYRES))
+    return float(min(now.signals[tyre.path] for tyre in TYRES.values()))
 
 
-def _range_words(now: Moment) -> str:
-    left_m = now.driving.ahead.route_left_m
-    return f"{now.signals[ENERGY.RANGE.path] / 1000:.0f} km, {left_m / 1000:.1f} km to go"
+def _tyre_words(drive: Drive) -> str:
+    found = []
+    for name, tyre in TYRES.items():
+        trend = _signal_trend(drive, tyre.path, 0.5)
+        found.append(f"{name} {floor(drive[-1].signals[tyre.path])}" + (f" {trend}" if trend != "steady" else ""))
+    return f"{', '.join(found)} kPa, recommended {RECOMMENDED_KPA:.0f}"
+
+
+def _spare_m(now: Moment) -> float:
+    return float(now.signals[ENERGY.RANGE.path]) - now.driving.ahead.route_left_m
+
+
+def _range(drive: Drive) -> Hashable:
+    spare_m = _spare_m(drive[-1])
+    steps = sum(spare_m <= step_m for step_m in (5000.0, 2000.0))
+    return steps or (drive[-1].signals[ENERGY.LEVEL.path] < 20.0 or None)
+
+
+def _range_words(drive: Drive) -> str:
+    now = drive[-1]
+    trend = ", falling fast" if _signal_trend(drive, ENERGY.RANGE.path, 1000.0) == "falling" else ""
+    left_km = now.driving.ahead.route_left_m / 1000
+    return f"{now.signals[ENERGY.RANGE.path] / 1000:.1f} km{trend}, {left_km:.1f} km to go"
 
 
 def _open_parts(now: Moment) -> tuple[str, ...]:
@@ -200,49 +389,38 @@ def _open_parts(now: Moment) -> tuple[str, ...]:
     return tuple(name for name, is_open in parts.items() if is_open)
 
 
-def _unwiped(now: Moment) -> float:
-    """The film on the windshield while the wipers are off."""
-    return 0.0 if now.signals[BODY.FRONT_WIPER.path] != "OFF" else float(now.signals[GLASS.WINDSHIELD_FILM.path])
+def _phone(now: Moment) -> str:
+    return str(now.signals[CALL.PHONE.path])
 
 
-def _ahead_m(away_m: float | None, *steps_m: float) -> Hashable:
-    if away_m is None:
-        return None
-    return sum(away_m <= step for step in steps_m) or None
+def _place_words(drive: Drive) -> str:
+    now = drive[-1]
+    shown = "mph" if now.signals[HMI.DISTANCE_UNIT.path] == "MILES" else "km/h"
+    return f"{now.context.country}, signs in {now.context.speed_unit}, the car shows {shown}"
 
 
-def _next_limit(now: Moment) -> Hashable:
-    ahead = now.driving.ahead
-    if ahead.next_limit is None or not ahead.next_limit.is_posted or ahead.next_limit.kmh is None:
-        return None
-    near = _ahead_m(ahead.next_limit_distance_m, TUNNEL_M, TUNNEL_M / 2)
-    return None if near is None else (ahead.next_limit.kmh, near)
-
-
-def _next_limit_words(now: Moment) -> str:
-    ahead = now.driving.ahead
-    kmh = None if ahead.next_limit is None else ahead.next_limit.kmh
-    return f"{kmh or 0:.0f} km/h in {ahead.next_limit_distance_m or 0:.0f} m"
+def _of(read: Callable[[Moment], Hashable]) -> Change:
+    return lambda drive: read(drive[-1])
 
 
 WAKES: tuple[Wake, ...] = (
-    Wake(
-        "limit",
-        "the speed limit changes",
-        _limit_kmh,
-        lambda now: f"{_limit_kmh(now) or 0:.0f} km/h, the car drives {_kmh(now):.0f}",
-    ),
-    Wake("limit ahead", "another limit is posted within 500 m, and 250 m", _next_limit, _next_limit_words),
+    Wake("limit", "the speed limit changes", _of(_limit_kmh), _limit_words),
     Wake(
         "speed",
         "the car has been above the limit for three seconds, and each 10 % more",
         _too_fast,
-        lambda now: f"{_kmh(now):.0f} km/h where {_limit_kmh(now) or 0:.0f} apply",
+        _speed_words,
         hold_s=OVER_S,
     ),
     Wake(
+        "limit ahead",
+        "another limit is signed ahead: 15 s, and 2 s, before a driver would have to lift the foot for it",
+        _next_limit,
+        _next_limit_words,
+    ),
+    Wake(
         "vehicle ahead",
-        "less than 2 s to the vehicle ahead, or under 8 s to collision, and 5 s",
+        "a time gap of less than 2 s to the vehicle ahead, or less than 8 s to collision, and 5 s",
         _leader,
         _leader_words,
         1.0,
@@ -254,126 +432,139 @@ WAKES: tuple[Wake, ...] = (
         _behind_words,
         1.0,
     ),
-    Wake(
-        "light",
-        "day, twilight, night; into or out of a tunnel",
-        lambda now: (now.context.sun and now.context.sun.darkness, now.driving.road.in_tunnel),
-        lambda now: (
-            "in a tunnel" if now.driving.road.in_tunnel else str(now.context.sun and now.context.sun.darkness)
-        ),
-    ),
-    Wake("lamps", "a lamp goes on or off", _lamps, _lamp_words),
-    Wake(
-        "weather",
-        "other weather, another class of visibility, frost",
-        lambda now: (
-            now.weather.weather_code,
-            visibility_class(now.weather.visibility),
-            now.weather.temperature_2m <= 4.0,
-        ),
-        lambda now: f"{weather_words(now.weather.weather_code)}, visibility {now.weather.visibility:.0f} m",
-    ),
-    Wake(
-        "road",
-        "another class of road, or a school zone",
-        _road,
-        lambda now: (
-            (now.driving.road.road_class.replace("_", " ") or "road")
-            + (", school zone" if now.driving.road.school_zone else "")
-        ),
-        hold_s=1.0,
-    ),
-    Wake(
-        "tunnel",
-        "a tunnel within 500 m, and 250 m",
-        lambda now: _ahead_m(now.driving.ahead.tunnel_distance_m, TUNNEL_M, TUNNEL_M / 2),
-        lambda now: f"in {now.driving.ahead.tunnel_distance_m or 0:.0f} m",
-    ),
+    _ahead("tunnel", lambda now: now.driving.ahead.tunnel_distance_m, "a tunnel"),
     _reported(SightKind.JAM, "a jam"),
     _reported(SightKind.BREAKDOWN, "a broken-down vehicle"),
     _reported(SightKind.ROADWORKS, "roadworks"),
     _reported(SightKind.CLOSURE, "a closed road"),
     _reported(SightKind.SCHOOL_ZONE, "a school zone"),
+    Wake("road", "another class of road, or a school zone", _road, _road_words, hold_s=1.0),
     Wake(
-        "driving time",
-        "an hour of driving without a break, and every quarter more",
-        lambda now: None if (hours := _hours(now)) is None else int(hours * 4),
-        lambda now: f"{_hours(now) or 0:.2f} h without a break",
+        "light",
+        "day, twilight, night; into or out of a tunnel",
+        _of(lambda now: (now.context.sun and now.context.sun.darkness, now.driving.road.in_tunnel)),
+        _light_words,
     ),
+    Wake("lamps", "a lamp goes on or off", _of(_lamps), _lamp_words),
     Wake(
-        "belt",
-        "the belt of a seat that is taken is opened, or the car sets off without it",
-        lambda now: (_unbelted(now), _kmh(now) >= ROLLING_KMH) if _unbelted(now) else None,
-        lambda now: f"open at {_kmh(now):.0f} km/h: {_who(_unbelted(now))}",
-    ),
-    Wake(
-        "parked",
-        "the driver parks the car on the way, leaves it, or comes back",
-        lambda now: (_is_left(now), _others(now)) if now.signals[MOTION.GEAR.path] == "P" else None,
-        lambda now: f"the driver {'has left' if _is_left(now) else 'is there'}, aboard: {_who(_others(now))}",
-    ),
-    Wake(
-        "open",
-        "a door, flap or window is open, or the car sets off with it",
-        lambda now: (_open_parts(now), _kmh(now) >= ROLLING_KMH) if _open_parts(now) else None,
-        lambda now: f"{', '.join(_open_parts(now))} at {_kmh(now):.0f} km/h",
-    ),
-    Wake(
-        "tyre",
-        "the lowest tyre, below 230 kPa, every 10 kPa",
-        lambda now: _step(-_lowest_kpa(now), 10.0, -230.0),
-        lambda now: f"lowest {floor(_lowest_kpa(now))} kPa",
-    ),
-    Wake(
-        "range",
-        "less than 5 km more than the route, and less than 2 km; the battery below 20 %",
-        lambda now: (
-            _ahead_m(now.signals[ENERGY.RANGE.path] - now.driving.ahead.route_left_m, 5000.0, 2000.0)
-            or (now.signals[ENERGY.LEVEL.path] < 20.0 or None)
+        "weather",
+        "other weather, another class of visibility, frost",
+        _of(
+            lambda now: (
+                now.weather.weather_code,
+                visibility_class(now.weather.visibility),
+                now.weather.temperature_2m <= 4.0,
+            )
         ),
-        _range_words,
+        _weather_words,
     ),
     Wake(
         "glass",
         "the windshield fogs, every tenth",
-        lambda now: _step(now.signals[GLASS.WINDSHIELD_FOG.path], MIST, MIST),
-        lambda now: f"windshield fogged by {_share(now.signals[GLASS.WINDSHIELD_FOG.path])}",
+        _of(lambda now: _step(now.signals[GLASS.WINDSHIELD_FOG.path], MIST, MIST)),
+        lambda drive: (
+            f"windshield fogged by {_share(fog)}, {_signal_trend(drive, GLASS.WINDSHIELD_FOG.path, 0.01)}"
+            if (fog := drive[-1].signals[GLASS.WINDSHIELD_FOG.path]) >= MIST / 2
+            else ""
+        ),
     ),
     Wake(
         "rain",
         "rain on the windshield with the wipers off, every tenth",
-        lambda now: _step(_unwiped(now), MIST, MIST),
-        lambda now: f"windshield covered by {_share(_unwiped(now))}, wipers off",
+        _of(lambda now: _step(_unwiped(now), MIST, MIST)),
+        lambda drive: (
+            f"windshield covered by {_share(film)}, {_signal_trend(drive, GLASS.WINDSHIELD_FILM.path, 0.01)}, "
+            "wipers off"
+            if (film := _unwiped(drive[-1])) >= MIST / 2
+            else ""
+        ),
+    ),
+    Wake(
+        "tyres",
+        "the softest tyre, below 240 kPa, every 10 kPa",
+        _of(lambda now: _step(-_lowest_kpa(now), 10.0, -SOFT_KPA)),
+        _tyre_words,
+    ),
+    Wake(
+        "range",
+        "less than 5 km more than the route, and less than 2 km; the battery below 20 %",
+        _range,
+        _range_words,
+    ),
+    Wake(
+        "belt",
+        "the belt of a seat that is taken is opened, or the car sets off without it",
+        _of(lambda now: (_unbelted(now), _kmh(now) >= ROLLING_KMH) if _unbelted(now) else None),
+        lambda drive: f"open: {_who(_unbelted(drive[-1]))}" if _unbelted(drive[-1]) else "",
+    ),
+    Wake(
+        "open",
+        "a door, flap or window is open, or the car sets off with it",
+        _of(lambda now: (_open_parts(now), _kmh(now) >= ROLLING_KMH) if _open_parts(now) else None),
+        lambda drive: ", ".join(_open_parts(drive[-1])),
     ),
     Wake(
         "phone",
         "the driver takes a phone, in the hand or in its cradle, or sets off with it",
-        lambda now: (
-            None if (where := now.signals[CALL.PHONE.path]) == "AWAY" else (where, _kmh(now) >= ROLLING_KMH)
-        ),
-        lambda now: (
-            f"in the {'hand' if now.signals[CALL.PHONE.path] == 'HAND' else 'cradle'} at {_kmh(now):.0f} km/h"
-        ),
+        _of(lambda now: None if _phone(now) == "AWAY" else (_phone(now), _kmh(now) >= ROLLING_KMH)),
+        lambda drive: {"AWAY": "", "HAND": "in the driver's hand", "CRADLE": "in use in its cradle"}[
+            _phone(drive[-1])
+        ],
     ),
-    Wake("place", "another country", lambda now: now.context.country or None, _place_words),
-    Wake("call", "the phone rings", lambda now: now.signals[CALL.RINGING.path] or None, lambda now: "ringing"),
+    Wake(
+        "driving time",
+        "an hour of driving without a break, and every quarter more",
+        _of(lambda now: None if (hours := _hours(now)) is None else int(hours * 4)),
+        lambda drive: "" if (hours := _hours(drive[-1])) is None else f"{hours:.2f} h without a break",
+    ),
+    Wake(
+        "parked",
+        "the driver parks the car on the way, leaves it, or comes back",
+        _of(lambda now: (_is_left(now), _others(now)) if now.signals[MOTION.GEAR.path] == "P" else None),
+        _parked_words,
+    ),
+    Wake("place", "another country", _of(lambda now: now.context.country or None), _place_words),
+    Wake(
+        "call",
+        "the phone rings",
+        _of(lambda now: now.signals[CALL.RINGING.path] or None),
+        lambda drive: "ringing" if drive[-1].signals[CALL.RINGING.path] else "",
+    ),
     Wake(
         "message",
         "a message arrives",
-        lambda now: now.signals[CALL.UNREAD.path] or None,
-        lambda now: f"{now.signals[CALL.UNREAD.path]:.0f} unread",
+        _of(lambda now: now.signals[CALL.UNREAD.path] or None),
+        lambda drive: f"{unread:.0f} unread" if (unread := drive[-1].signals[CALL.UNREAD.path]) else "",
     ),
 )
-"""Everything that wakes."""
+"""Everything that is read and that wakes."""
+
+
+def noticed(drive: Drive, changed: Sequence[str] = (), wakes: Sequence[Wake] = WAKES) -> str:
+    """Every reading of the car, one line each: its name, whether it has changed, and its words.
+
+    Args:
+        drive: the moments so far.
+        changed: names of what has changed since the last look; of those that are no longer there, that they ended.
+        wakes: what is read.
+    """
+    lines = []
+    for wake in wakes:
+        words = wake.words(drive)
+        has_changed = wake.name in changed
+        if words or has_changed:
+            lines.append(f"{wake.name}{' (changed)' if has_changed else ''}: {words or 'ended'}")
+    return "\n".join(lines)
 
 
 @dataclass(frozen=True, slots=True)
 class Noticed:
     """One change that an agent is told of."""
 
-    words: str
+    name: str
+    """Of the reading."""
     wakes: bool
-    """Whether it ends a wait; what is over is only told with the next observation."""
+    """Whether it ends a wait; what has ended is only told with the next observation."""
 
 
 @dataclass(slots=True)
@@ -390,22 +581,27 @@ class Alarm:
     wakes: tuple[Wake, ...] = WAKES
     _told: dict[str, _Told] = field(default_factory=dict)
 
-    def see(self, now: Moment) -> tuple[Noticed, ...]:
+    def see(self, drive: Drive) -> tuple[Noticed, ...]:
         """What has changed at the newest moment. At the first, whatever there is to report."""
         found = []
+        now_s = drive[-1].time_s
         for wake in self.wakes:
-            reading = wake.reads(now)
             told = self._told.setdefault(wake.name, _Told())
+            reading = _risen(wake.reads(drive), told.reading)
             if reading == told.reading:
                 told.differs_since_s = None
                 continue
             if told.differs_since_s is None:
-                told.differs_since_s = now.time_s
-            if now.time_s - told.differs_since_s >= wake.hold_s:
+                told.differs_since_s = now_s
+            if now_s - told.differs_since_s >= wake.hold_s:
                 told.reading, told.differs_since_s = reading, None
-                found.append(
-                    Noticed(f"{wake.name}: over", wakes=False)
-                    if reading is None
-                    else Noticed(f"{wake.name}: {wake.words(now)}", wakes=True)
-                )
+                if not isinstance(reading, Step) or reading.number:
+                    found.append(Noticed(wake.name, wakes=reading is not None))
         return tuple(found)
+
+
+def _risen(reading: Hashable, told: Hashable) -> Hashable:
+    """A reading; the step of what was told before if it is no nearer, as in a queue."""
+    if isinstance(reading, Step) and isinstance(told, Step) and reading.what == told.what:
+        return told if reading.number <= told.number else reading
+    return reading

@@ -9,8 +9,8 @@ change is an event.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
@@ -19,15 +19,19 @@ from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, spoken
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
-from automotive_cosim.drives.judge import Judgement, judge
+from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
 from automotive_cosim.drives.order import STANDING_ORDER
-from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed
+from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.session import Session, beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.interface.observe import Channel
 
+CHANGED = "something changed"
+"""What a result says of all that ends a wait; the readings say what it was."""
+READ_BACK = 20
+"""Moments that readings look back on for their trend."""
 TWIN_S = 120.0
 """How long a do-nothing copy is driven at most to see whether its event becomes an obligation."""
 
@@ -58,7 +62,9 @@ class Twin:
             for moment in passed:
                 self.drive.append(moment)
                 self.tracker.see(self.drive)
-        same = [event for event in self.tracker.events if event.subject == self.event.subject and not event.bait]
+        same = [
+            event for event in self.tracker.events if event.subject == self.event.subject and not event.lookalike
+        ]
         self.due_s = next((event.obliged_s for event in same if event.obliged_s is not None), None)
         over = bool(same) and all(event.ended for event in same)
         return self.due_s is None and not over and time_s - self.event.observable_s < TWIN_S
@@ -79,11 +85,17 @@ class Watch(Session):
     """By number of an event, when its obligation arose in its do-nothing copy."""
     changes: list[Noticed] = field(default_factory=list)
     """What has changed since the last observation."""
+    marked: tuple[str, ...] = ()
+    """Names of the readings that the present observation marks as changed."""
+    woken: list[tuple[float, tuple[str, ...]]] = field(default_factory=list)
+    """Simulation times at which something changed that ends a wait, and the names of the readings."""
+    unwatched_from_s: float | None = None
+    """Seconds since departure from which nobody watched, because the agent had failed or spent its budget."""
     waits: int = 0
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
-    _deeds: int = 0
+    _given: int = 0
 
     @classmethod
     def depart_with(
@@ -105,6 +117,7 @@ class Watch(Session):
         begun: dict[str, Any] = beginning(world, STANDING_ORDER, setup, (), listener)
         watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
+        watch._read()
         return watch
 
     @property
@@ -163,9 +176,33 @@ class Watch(Session):
 
     def _told(self, code: FeedbackCode, text: str) -> Feedback:
         self.wakes += self._is_woken
-        changed = [change.words for change in self.changes]
-        self.changes.clear()
+        changed = [CHANGED] if self._is_woken else []
         return Feedback(code, "; ".join([text, *changed] if text else changed))
+
+    def _proceed(
+        self, action: Action | None, feedback: Feedback, cost_s: float = 0.0, said: tuple[str, ...] = ()
+    ) -> None:
+        super()._proceed(action, feedback, cost_s, said)
+        self._read()
+
+    def _read(self) -> None:
+        """Adds what the car reads to the observation, and marks what has changed since the last one."""
+        self.marked = tuple(change.name for change in self.changes)
+        self.changes.clear()
+        vehicle = self.observation.vehicle
+        if vehicle is not None:
+            lines = [noticed(self.moments[-READ_BACK:], self.marked), *self._driver_line()]
+            told = replace(vehicle, noticed="\n".join(lines))
+            self.observation = replace(self.observation, vehicle=told)
+
+    def _driver_line(self) -> Iterator[str]:
+        """What the driver did last after a request, as long as that is news."""
+        for moment in reversed(self.moments[-LONGEST_S:]):
+            for event in reversed(moment.events):
+                if event.kind.startswith("driver_"):
+                    ago_s = self.moments[-1].time_s - event.time_s
+                    yield f"driver: {event.text.removeprefix('driver ')}, {ago_s:.0f} s ago"
+                    return
 
     @property
     def _is_woken(self) -> bool:
@@ -194,9 +231,13 @@ class Watch(Session):
             left_s -= tick_s
 
     def _note(self, moment: Moment) -> None:
-        self.changes += self.alarm.see(moment)
+        changes = self.alarm.see(self.moments[-READ_BACK:])
+        self.changes += changes
+        names = tuple(change.name for change in changes if change.wakes)
+        if names:
+            self.woken.append((moment.time_s, names))
         for event in self.tracker.see(self.moments):
-            if not event.bait and event.obliged_s is None:
+            if not event.lookalike and event.obliged_s is None:
                 index = len(self.tracker.events) - 1 - self.tracker.events[::-1].index(event)
                 tracker = Tracker({event.kind: KINDS[event.kind]})
                 drive = list(self.moments)
@@ -213,10 +254,22 @@ class Watch(Session):
                 twin.world.close()
         self.twins = kept
 
+    def _untouched(self) -> Sequence[DriveEvent]:
+        """The events of the do-nothing run from departure."""
+        tracker, drive = Tracker(KINDS), self.baseline_moments
+        for count in range(1, len(drive) + 1):
+            tracker.see(drive[max(0, count - BACK) : count])
+        return tracker.events
+
+    @property
+    def untouched(self) -> tuple[DriveEvent, ...]:
+        """Events of the do-nothing run, if an act of the agent holds something back: then they are compared."""
+        return tuple(self._untouched()) if any(act.holds_back for act in self.acts) else ()
+
     def _note_acts(self) -> None:
-        deeds = self.world.cockpit.deeds
-        self.acts += acts_of(deeds[self._deeds :])
-        self._deeds = len(deeds)
+        given = self.world.cockpit.given
+        self.acts += acts_of(given[self._given :])
+        self._given = len(given)
 
     def _ended(self) -> End | None:
         end = super()._ended()
@@ -229,8 +282,17 @@ class Watch(Session):
     def _finish(self, end: End) -> None:
         """An agent that stops acting leaves the rest of the drive to itself."""
         if end not in (End.DRIVE_ENDED, End.WATCH_OVER) and self.setup.max_sim_s is not None:
+            self.unwatched_from_s = round(self.seconds, 1)
             self._advance(max(0.0, self._left_s()))
         for twin in self.twins:
             self.due_anyway[twin.index] = twin.due_s
-        self.judgement = judge(KINDS, self.events, self.acts, self.due_anyway, self.moments[0].commands)
+        self.judgement = judge(
+            KINDS,
+            self.events,
+            self.acts,
+            self.due_anyway,
+            facts_of(self.moments),
+            self.moments[0].commands,
+            self.untouched,
+        )
         super()._finish(end)

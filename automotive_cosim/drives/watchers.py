@@ -13,7 +13,7 @@ from automotive_cosim.interface.observe import Channel
 READS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
 GONE_S = 31.0
 """A concern that was away for longer is another one."""
-FORGOTTEN_S = 15.0
+FORGOTTEN_S = 60.0
 """What was told longer ago, before it was due, the driver has forgotten."""
 
 
@@ -71,7 +71,7 @@ class RulePerfect:
                 told.was_due |= concern.now and concern.due and not told.paused
                 told.paused |= not concern.is_there and not concern.now
             if concern.now:
-                self._since.setdefault(key, now_s)
+                self._since.setdefault(key, now_s - concern.lasted_s)
 
     def _is_untold(self, concern: Concern, now_s: float) -> bool:
         told = self._told.get(concern.key)

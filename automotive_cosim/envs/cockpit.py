@@ -17,6 +17,8 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import ACTION_COST_S, EpisodeSpec, SeedSource, SessionSetup
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.words import shown
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.scenarios import Scenario
@@ -99,7 +101,7 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         self._listener = listener
         self._seeds = SeedSource()
         self._episode: Episode | None = None
-        self.render_mode = render_mode
+        self.render_mode = render_mode_of(render_mode, self.metadata)
         size = under.screen
         self.observation_space = spaces.observation_space(self._setup.given, size.width, size.height)
         self.action_space = spaces.action_space(size.width, size.height)
@@ -183,8 +185,28 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
 
 
 def traffic_seed(options: Mapping[str, Any] | None, own: int) -> int:
-    """The traffic that the options of a ``reset`` ask for, or else its own."""
-    return int((options or {}).get("traffic_seed", own)) % SEED_LIMIT
+    """The traffic that the options of a ``reset`` ask for, or else its own.
+
+    Raises:
+        UserError: it is not a whole number.
+    """
+    given = (options or {}).get("traffic_seed")
+    if given is None:
+        return own % SEED_LIMIT
+    if isinstance(given, bool) or not isinstance(given, int | np.integer):
+        raise UserError(f"traffic_seed is {shown(given)}; it must be a whole number")
+    return int(given) % SEED_LIMIT
+
+
+def render_mode_of(mode: str | None, metadata: Mapping[str, Any]) -> str | None:
+    """The render mode, checked.
+
+    Raises:
+        UnknownNameError: there is none of that name.
+    """
+    if mode is not None and mode not in metadata["render_modes"]:
+        raise UnknownNameError("render mode", str(mode), metadata["render_modes"])
+    return mode
 
 
 def outcome(episode: Episode) -> tuple[float, bool, bool]:

@@ -29,12 +29,13 @@ import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
 from automotive_cosim.contracts.ids import resource_id
-from automotive_cosim.envs.cockpit import outcome, traffic_seed
+from automotive_cosim.envs.cockpit import outcome, render_mode_of, traffic_seed
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import ActionError, UserError
+from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.spaces import APPS, BOUNDS, OPTIONAL
 from automotive_cosim.tasking.draws import SEED_LIMIT
@@ -76,34 +77,37 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
     episode that ends as it began, and does not change the verdict: ``info["is_success"]`` is the verdict's.
     """
 
-    metadata = {"render_modes": []}  # noqa: RUF012, gymnasium's own form
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 1}  # noqa: RUF012, gymnasium's own form
 
     def __init__(
         self,
-        tasks: Sequence[str],
+        tasks: str | Sequence[str],
         controls: Sequence[str] = CONTROLS,
         apps: Sequence[str] = APPS,
         *,
         scenario: str | None = None,
         max_steps: int = 8,
         goal_bonus: float = 0.0,
+        render_mode: str | None = None,
         simulations: Simulations | None = None,
     ) -> None:
         """Reads the tasks' scenarios; nothing runs before ``reset``.
 
         Args:
-            tasks: ids of tasks; their first halves are used.
+            tasks: ids of tasks, or one id; their first halves are used.
             controls: resource ids that can be tapped.
             apps: names of the apps that can be opened.
             scenario: runs all tasks in this scenario instead of their own.
             max_steps: actions after which an episode is cut off.
             goal_bonus: potential of a state in which the goal holds; 0 except for training.
+            render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
 
         Raises:
             UnknownNameError: no such task or scenario.
-            UserError: no task or no control is given.
+            UserError: no task or no control is given, or there is no such render mode.
         """
+        tasks = (tasks,) if isinstance(tasks, str) else tasks
         if not tasks or not controls:
             raise UserError("a flat environment requires at least one task and one control")
         self._leave: Callable[[], object] | None = None
@@ -118,6 +122,7 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         self._controls = tuple(controls)
         self._apps = tuple(apps)
         self._goal_bonus = goal_bonus
+        self.render_mode = render_mode_of(render_mode, self.metadata)
         self._held = False
         size = GOAL_SLOTS + 3 * len(self._controls) + len(NUMBERS) + 1
         self.observation_space = gym.spaces.Box(-1.0, 1.0, (size,), np.float32)
@@ -161,12 +166,13 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         """Performs one action of the table; ``info`` is empty except for ``is_success`` at the end.
 
         Raises:
+            ActionError: the action is not in the action space; nothing has happened.
             ResetNeeded: the episode is over, or there has been none.
             TrafficError: the traffic simulation failed.
         """
         if self.episode.end is not None:
             raise gym.error.ResetNeeded("the episode has ended; call reset() to start another")
-        self.episode.step(self._action(int(action)))
+        self.episode.step(self._action(self._number(action)))
         reward, terminated, truncated = outcome(self.episode)
         held = self._holds()
         reward += self._goal_bonus * (held - self._held)
@@ -174,6 +180,10 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         verdict = self.episode.verdict
         info = {} if verdict is None else {"is_success": verdict.success}
         return self._numbers(), reward, terminated, truncated, info
+
+    def render(self) -> npt.NDArray[np.uint8] | None:
+        """The cockpit's screen, (height, width, 3), or None without a render mode."""
+        return self.episode.screenshot() if self.render_mode else None
 
     def close(self) -> None:
         """Ends the drive and, if nobody else shares them, the warm simulations."""
@@ -184,6 +194,17 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
     def _end(self) -> None:
         if self._episode is not None:
             self._episode.close()
+
+    def _number(self, action: object) -> int:
+        """The number of an action; an array of one number is one, as policies return them."""
+        count = len(self._apps) + len(self._controls) + len(ENDS)
+        given = np.asarray(action)
+        whole = given.size == 1 and given.dtype.kind in "iu"
+        if not whole or not 0 <= int(given.item()) < count:
+            raise ActionError(
+                f"the action is {shown(given.tolist())}; it must be a whole number from 0 to {count - 1}"
+            )
+        return int(given.item())
 
     def _action(self, number: int) -> Action:
         if number < len(self._apps):

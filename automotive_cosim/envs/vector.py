@@ -14,6 +14,7 @@ from gymnasium.vector.utils import iterate
 
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.envs.flat import FlatEnv
+from automotive_cosim.errors import ActionError
 from automotive_cosim.tasking.draws import SEED_LIMIT
 
 
@@ -55,8 +56,15 @@ class ConcurrentVectorEnv(SyncVectorEnv):
         return super().reset(seed=seed, options=options)
 
     def step(self, actions: Any) -> Any:
-        """As in ``SyncVectorEnv``."""
+        """As in ``SyncVectorEnv``.
+
+        Raises:
+            ActionError: there is not one action for each environment, or one is not in the action space; nothing
+                has happened in any of them if it is the number of actions that is wrong.
+        """
         envs = cast("list[_Ahead]", self.envs)
+        if (count := _count(actions)) != len(envs):
+            raise ActionError(f"{count} actions for {len(envs)} environments; give one for each")
         resets = self._autoreset_envs & (self.autoreset_mode is AutoresetMode.NEXT_STEP)
         begun = [
             env.begin(self._threads, "reset") if is_over else env.begin(self._threads, "step", action)
@@ -100,6 +108,14 @@ class _Ahead(gym.Wrapper[Any, Any, Any, Any]):
     def _taken(self) -> Any:
         begun, self._begun = self._begun, None
         return None if begun is None else begun.result()
+
+
+def _count(actions: Any) -> int:
+    """For how many environments these are the actions; a mapping has arrays with one entry for each."""
+    if isinstance(actions, dict):
+        actions = next(iter(actions.values()), ())
+        return _count(actions) if isinstance(actions, dict) else len(actions)
+    return len(actions) if hasattr(actions, "__len__") and np.ndim(actions) else 1
 
 
 def _ahead(make: Callable[[], gym.Env[Any, Any]]) -> _Ahead:

@@ -11,33 +11,33 @@ from itertools import pairwise
 from typing import Any
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.messages import Deed
+from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.specification import ROUNDING_S
 
 
 def replayed(
-    cockpit: Cockpit, deeds: Sequence[Deed], moments: Sequence[Moment], keys: Collection[str] | None = None
+    cockpit: Cockpit, given: Sequence[CommandRecord], moments: Sequence[Moment], keys: Collection[str] | None = None
 ) -> Cockpit:
     """A cockpit that went through a drive again, with its commands in full or in part.
 
     Args:
         cockpit: as it was at the first moment; it stays so.
-        deeds: what was commanded since, in order.
+        given: what was commanded since, in order.
         moments: of the drive, whose roads and skies it senses.
         keys: the commands to give (``Moment.commands``); all if None.
     """
-    twin, left = cockpit.copy(), list(deeds)
+    twin, left = cockpit.copy(), list(given)
     for before, now in pairwise(moments):
         while left and left[0].time_s <= before.time_s + ROUNDING_S:
-            deed = left.pop(0)
-            twin.repeat(deed, deed.aims if keys is None else keys)
+            record = left.pop(0)
+            twin.repeat(record, record.aims if keys is None else keys)
         twin.sense(now.surroundings, now.time_s - before.time_s)
     return twin
 
 
 def counterfactual(
-    cockpit: Cockpit, deeds: Sequence[Deed], moments: Sequence[Moment], keys: Collection[str]
+    cockpit: Cockpit, given: Sequence[CommandRecord], moments: Sequence[Moment], keys: Collection[str]
 ) -> Mapping[str, Any]:
     """What would be commanded at the end, had only the commands on these keys been given; see ``replayed``."""
-    return replayed(cockpit, deeds, moments, keys).commands()
+    return replayed(cockpit, given, moments, keys).commands()

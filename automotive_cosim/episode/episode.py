@@ -104,7 +104,7 @@ class Episode(Session):
     def counterfactual(self) -> Mapping[str, Any]:
         """What would be commanded now, had the agent given only the commands that belong to the goal."""
         return counterfactual(
-            self.at_hand_over, self.world.cockpit.deeds, self.moments, self.instance.half.allowed_writes
+            self.at_hand_over, self.world.cockpit.given, self.moments, self.instance.half.allowed_writes
         )
 
     def _reply(self, question: str) -> str:

@@ -16,7 +16,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import EpisodeSpec, Seeds
-from automotive_cosim.errors import TriggerNotReachedError, UserError
+from automotive_cosim.errors import NoRoomError, TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.interface.observe import See
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
@@ -111,8 +111,15 @@ class SituationFinder:
         self._listener.loading(self.scenario)
         trips, waits_s = self._trips(half, draws), WAITS_S[:1] if half.start.parked else WAITS_S
         with self._simulations.held(self.scenario, seeds.traffic, self._warming) as simulation:
+            full: dict[Trip, NoRoomError] = {}
             for trip, wait_s in product(trips, waits_s):
-                plan, traffic = self._depart(simulation, half, trip, draws, wait_s)
+                if trip in full:
+                    continue
+                try:
+                    plan, traffic = self._depart(simulation, half, trip, draws, wait_s)
+                except NoRoomError as error:
+                    full[trip] = error
+                    continue
                 try:
                     drive = self._drive_up(_Drive.begun(self._couple(traffic, half, plan, draws)), half)
                     if drive is not None:
@@ -121,6 +128,8 @@ class SituationFinder:
                     traffic.close()
                     raise
                 traffic.close()
+        if len(full) == len(trips):
+            raise full[trips[0]]
         trigger = half.trigger
         raise TriggerNotReachedError(
             f"task {self.task.id!r}: {trigger.condition} did not hold for {trigger.for_s:g} s within "

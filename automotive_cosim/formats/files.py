@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import bz2
+import errno
 import gzip
 import io
 import json
 import lzma
+import os
 import stat
 import zlib
 from pathlib import Path
@@ -23,6 +25,9 @@ MOST_TIMES = 100
 """An archive may unpack to 64 MB, or to a hundred times its size, at most to 1 GB. SUMO's and OpenStreetMap's XML
 packs ten to thirty times; a bomb, a thousand times."""
 CHUNK_BYTES = 2**16
+MOST_VALUES = 5_000_000
+"""JSON may hold that many values, which take at most half a gigabyte: 60 MB of empty lists would take thirty times
+their size. Half an hour of a drive has a million."""
 
 
 def read_text(path: Path, error: type[UserError] = UserError) -> str:
@@ -32,7 +37,7 @@ def read_text(path: Path, error: type[UserError] = UserError) -> str:
         UserError: of that class: it cannot be opened, is too large, or is not UTF-8.
     """
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             data = file.read(MOST_BYTES + 1)
         text = data.decode("utf-8-sig")
     except OSError as broken:
@@ -44,30 +49,56 @@ def read_text(path: Path, error: type[UserError] = UserError) -> str:
     return text.replace("\r\n", "\n")
 
 
-def read_json(path: Path) -> Any:
+def read_json(path: Path, most_values: int = MOST_VALUES) -> Any:
     """What a JSON file holds, also packed.
 
     Raises:
         OSError: it cannot be read.
-        ValueError: it is not JSON.
+        ValueError: it is not JSON, or holds more values.
     """
+    data = bytearray()  # grows with the file: reading a gigabyte at once would reserve it
     with opened(path) as file:
-        data = file.read(MOST_UNPACKED_BYTES + 1)
-    if len(data) > MOST_UNPACKED_BYTES:
-        raise ValueError("it is larger than 1 GB")
-    return parse_json(data)
+        while chunk := file.read(CHUNK_BYTES):
+            data += chunk
+            if len(data) > MOST_UNPACKED_BYTES:
+                raise ValueError("it is larger than 1 GB")
+    return parse_json(bytes(data), most_values)
 
 
-def parse_json(text: str | bytes) -> Any:
+def read_json_lines(path: Path) -> list[Any]:
+    """What the lines of a file of JSON hold, also packed.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: a line is not JSON, or all together hold too many values.
+    """
+    found, left = [], MOST_VALUES
+    with opened(path) as file:
+        for line in file:
+            found.append(parse_json(line, left))
+            left -= _values(line)
+    return found
+
+
+def parse_json(text: str | bytes, most_values: int = MOST_VALUES) -> Any:
     """What a text of JSON holds.
 
     Raises:
-        ValueError: it is not JSON, or nested deeper than Python reads.
+        ValueError: it is not JSON, nested deeper than Python reads, or holds more values.
     """
+    if len(text) > most_values and _values(text) > most_values:
+        raise ValueError("it holds too many values")
     try:
         return json.loads(text)
     except RecursionError as error:
         raise ValueError("it is nested too deeply") from error
+
+
+def _values(text: str | bytes) -> int:
+    """How many values a text of JSON can hold at most: commas and brackets in its texts are counted too."""
+    if isinstance(text, str):
+        return sum(map(text.count, "[{,")) + 1
+    return sum(map(text.count, (b"[", b"{", b","))) + 1
 
 
 def is_file(path: Path) -> bool:
@@ -78,6 +109,35 @@ def is_file(path: Path) -> bool:
         return False
 
 
+def open_file(path: Path) -> IO[bytes]:
+    """Opens a regular file to read it. Anything else is refused unopened: a pipe would wait for a writer, and
+    opening a device may already do something.
+
+    Raises:
+        OSError: it cannot be opened, or is not a regular file.
+    """
+    _refuse_special(path, path.stat().st_mode)
+    # What has taken its place since does not block either.
+    file = os.fdopen(os.open(path, os.O_RDONLY | getattr(os, "O_BINARY", 0) | getattr(os, "O_NONBLOCK", 0)), "rb")
+    try:
+        _refuse_special(path, os.fstat(file.fileno()).st_mode)
+    except BaseException:
+        file.close()
+        raise
+    return file
+
+
+def _refuse_special(path: Path, mode: int) -> None:
+    """
+    Raises:
+        OSError: it is not a regular file.
+    """
+    if stat.S_ISDIR(mode):
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if not stat.S_ISREG(mode):
+        raise OSError(f"{path} is not a regular file")
+
+
 def opened(path: Path) -> IO[bytes]:
     """The bytes of a file, unpacked if they are gzip's, bzip2's or xz's, whatever it is called.
 
@@ -85,10 +145,8 @@ def opened(path: Path) -> IO[bytes]:
         OSError: it cannot be opened or is not a regular file. Reading raises it too, where an archive is damaged or
             unpacks to too much.
     """
-    file = path.open("rb")
+    file = open_file(path)
     try:
-        if not stat.S_ISREG(path.stat().st_mode):
-            raise OSError(f"{path} is not a regular file")
         head = file.read(6)
         file.seek(0)
         if head.startswith(b"\x1f\x8b"):

@@ -25,6 +25,9 @@ CELL_DEG = 0.05
 STEP_M = 400.0
 """Distance between the points of a search."""
 
+NORTH_VIETNAM = shapely.box(102.0, 17.0, 110.0, 24.0) - shapely.box(102.0, 17.0, 104.95, 18.6)
+"""Where the time zone of Bangkok, which the north of Vietnam shares, is not Thailand: it begins where Laos ends."""
+
 
 def countries_near(lon_deg: float, lat_deg: float) -> frozenset[str]:
     """The ISO 3166-1 codes of the countries within two kilometres, whichever it lies in itself."""
@@ -48,8 +51,15 @@ def is_near(area: shapely.Geometry, lon_deg: float, lat_deg: float) -> bool:
     return bool(in_metres.distance(shapely.Point(0, 0)) <= NEAR_BORDER_M)
 
 
+def country_at(zone: str, lon_deg: float, lat_deg: float) -> str:
+    """The ISO 3166-1 code of the country of a position, by its time zone; empty at sea."""
+    if zone == "Asia/Bangkok" and shapely.contains_xy(NORTH_VIETNAM, lon_deg, lat_deg):
+        return "VN"
+    return _country_of_zone().get(zone, "")
+
+
 @cache
-def country_of_zone() -> dict[str, str]:
+def _country_of_zone() -> dict[str, str]:
     """Time zone -> ISO country code, from the time zone database's ``zone.tab``."""
     text = (files("tzdata") / "zoneinfo" / "zone.tab").read_text(encoding="utf-8")
     rows = (line.split("\t") for line in text.splitlines() if line and not line.startswith("#"))
@@ -59,11 +69,11 @@ def country_of_zone() -> dict[str, str]:
 @lru_cache(maxsize=4096)
 def _areas(column: int, row: int) -> tuple[tuple[str, shapely.Geometry], ...]:
     """The countries in a cell and its surroundings with their parts there; none where there is only one."""
-    found = {zone: code for zone in _zones(column, row) if (code := country_of_zone().get(zone, ""))}
-    if len(set(found.values())) < 2:
+    found = _zones(column, row)
+    if len({code for _, code in found}) < 2:
         return ()
     cell = _around(column, row)
-    return tuple((code, shapely.intersection(_polygon(zone), cell)) for zone, code in sorted(found.items()))
+    return tuple((code, shapely.intersection(_polygon(zone), cell)) for zone, code in sorted(found))
 
 
 def _around(column: int, row: int) -> shapely.Polygon:
@@ -74,11 +84,14 @@ def _around(column: int, row: int) -> shapely.Polygon:
     return shapely.box(west - east_deg, south - north_deg, west + CELL_DEG + east_deg, south + CELL_DEG + north_deg)
 
 
-def _zones(column: int, row: int) -> set[str]:
+def _zones(column: int, row: int) -> set[tuple[str, str]]:
+    """The time zones on land, each with its country. Two countries that share one are nowhere in one cell."""
     west, south, east, north = _around(column, row).bounds
     lats = _steps(max(-90.0, south), min(90.0, north), METRES_PER_DEGREE)
     lons = _steps(west, east, metres_per_degree_east(south))
-    return {tzfpy.get_tz((lon + 180) % 360 - 180, lat) for lat in lats for lon in lons}
+    east_of_line = [(lon + 180) % 360 - 180 for lon in lons]
+    found = {(zone := tzfpy.get_tz(lon, lat), country_at(zone, lon, lat)) for lat in lats for lon in east_of_line}
+    return {(zone, code) for zone, code in found if code}
 
 
 def _steps(first_deg: float, last_deg: float, metres_per_degree: float) -> list[float]:

@@ -135,8 +135,9 @@ class GeoContext:
     def shown(self) -> tuple[Line, ...]:
         """The lines that can matter here and now, and one that names the topics of the others."""
         air_c = None if self.weather is None else self.weather.temperature_2m
-        left = [found.rule for found in self.rules if not can_matter(found.rule.topic, self._situation, air_c)]
-        ids = {rule.id for rule in left}
+        told = [found.rule for found in self.rules if not found.rule.on_request]
+        left = [rule for rule in told if not can_matter(rule.topic, self._situation, air_c)]
+        ids = {rule.id for rule in left} | {found.rule.id for found in self.rules if found.rule.on_request}
         kept = tuple(line for line in self.lines if line.source not in ids)
         if not left:
             return kept

@@ -13,7 +13,8 @@ import shapely
 import tzfpy
 
 from automotive_cosim.errors import GeoDataError, UserError
-from automotive_cosim.geo.borders import countries_near, country_of_zone, is_near
+from automotive_cosim.geo.basics import basics_of
+from automotive_cosim.geo.borders import countries_near, country_at, is_near
 from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import Jurisdiction
 
@@ -85,7 +86,7 @@ class Atlas:
         check_position(lon_deg, lat_deg)
         lon_deg = (lon_deg + 180.0) % 360.0 - 180.0
         zone = tzfpy.get_tz(lon_deg, lat_deg)
-        country = country_of_zone().get(zone, "")
+        country = country_at(zone, lon_deg, lat_deg)
         layers = tuple(self._layers(LAW_OF.get(country, country), lon_deg, lat_deg))
         inner = {layer.kind: layer.name for layer in layers if country not in LAW_OF}
         return Place(
@@ -99,7 +100,9 @@ class Atlas:
         )
 
     def country(self, code: str) -> tuple[Jurisdiction, ...]:
-        """A country's file with those of its cities and regions, cities first and itself last; empty without files.
+        """A country's law with those of its cities and regions, cities first and itself last; empty without any.
+
+        Without a file of its own it has its ``basics``, which also complete a file.
 
         Raises:
             GeoDataError: one of the files is invalid, or a region's country has none.
@@ -107,7 +110,12 @@ class Atlas:
         if code not in self._countries:
             codes = [name for name in self._files if name == code or name.startswith(f"{code}-")]
             found = [self._read(name) for name in codes]
-            if found and code not in codes:
+            row = basics_of(code)
+            if code in codes:
+                found = [row.completing(entry) if row and entry.code == code else entry for entry in found]
+            elif row is not None and row.is_whole:
+                found.append(row.country)
+            elif found:
                 raise GeoDataError(f"{self._files[codes[0]]}: there is no {code}.toml for its country")
             order = ("city", "region", "country")
             self._countries[code] = tuple(sorted(found, key=lambda entry: order.index(entry.kind)))

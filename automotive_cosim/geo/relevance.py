@@ -46,6 +46,7 @@ _ONLY_IF: Mapping[str, Callable[[Situation], bool]] = {
     "school_zone": _off_motorways,
     "idling": lambda now: now.standing,
     "alcohol": lambda now: False,  # nothing that is done at the wheel depends on it
+    "seat_belts": lambda now: False,  # they are fastened before the drive
 }
 """Topics that do not always matter; unknown conditions count as if they could hold."""
 

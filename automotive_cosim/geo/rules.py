@@ -39,6 +39,7 @@ TOPICS = {
     "horn": "Horn",
     "following_distance": "Following distance",
     "phone": "Phone in hand",
+    "seat_belts": "Seat belts",
     "screens": "Screens",
     "camera_warner": "Speed camera warners",
     "emergency_corridor": "Emergency corridor",
@@ -92,6 +93,8 @@ class Rule:
     binds: str = "car"
     caps: bool = False
     """For a limit: whether it also lowers a higher limit posted by a sign."""
+    on_request: bool = False
+    """Whether the context's text leaves it out; queries are answered with it."""
 
     @property
     def country(self) -> str:

@@ -292,6 +292,7 @@ _TOPIC_WORDS = {
     "horn": _set("horn honk honking"),
     "following_distance": _set("distance following gap headway"),
     "phone": _set("phone phones mobile"),
+    "seat_belts": _set("belt belts buckle"),
     "screens": _set("screen screens video display"),
     "camera_warner": _set("camera cameras radar warner warners detector"),
     "emergency_corridor": _set("corridor ambulance"),

@@ -56,6 +56,7 @@ from automotive_cosim.interface.observe import Channel
 T = TypeVar("T")
 
 GOAL_BYTES, SAID_BYTES, FEEDBACK_BYTES, CONTEXT_BYTES, ABOARD_BYTES = 512, 1024, 1024, 8192, 512
+NOTICED_BYTES = 2048
 MAX_ELEMENTS, ELEMENT_TEXT_BYTES, RESOURCE_ID_BYTES = 128, 128, 64
 KINDS = ("View", "TextView", "Button", "Switch", "SeekBar", "EditText", "ImageView", "ListView", "RadioButton")
 FLAGS = tuple(field.name for field in fields(Element) if field.name.startswith("is_"))
@@ -100,7 +101,7 @@ BOUNDS: Mapping[str, tuple[float, float]] = {
     "leader_time_to_collision_s": (0, 10_000),
 }
 """Bounds of the numeric fields of ``VehicleState``; values beyond are clipped."""
-OPTIONAL = ("speed_limit_sign_kmh", "leader_gap_m", "leader_time_to_collision_s")
+OPTIONAL = ("speed_limit_sign_kmh", "leader_gap_m", "leader_time_to_collision_s", "noticed")
 
 
 class AnyText(spaces.Text):
@@ -336,6 +337,7 @@ def _vehicle_space() -> spaces.Dict:
         "gear": spaces.Discrete(len(GEARS)),
         "restrictions": spaces.MultiBinary(RESTRICTION_BITS),
         "aboard": _bytes_space(ABOARD_BYTES),
+        "noticed": _bytes_space(NOTICED_BYTES),
     }
     for field in fields(VehicleState):
         if field.name in BOUNDS:
@@ -360,6 +362,8 @@ def _encode_vehicle(vehicle: VehicleState) -> dict[str, Any]:
             encoded["restrictions"] = np.array([value >> bit & 1 for bit in range(RESTRICTION_BITS)], np.int8)
         elif field.name == "aboard":
             encoded["aboard"] = _bytes(value, ABOARD_BYTES)
+        elif field.name == "noticed":
+            encoded["noticed"] = _bytes(value or "", NOTICED_BYTES)
         else:
             encoded[field.name] = int(value)
     return encoded
@@ -379,6 +383,8 @@ def _decode_vehicle(encoded: Mapping[str, Any]) -> VehicleState:
             values["restrictions"] = sum(int(on) << bit for bit, on in enumerate(value))
         elif field.name == "aboard":
             values["aboard"] = _text(value)
+        elif field.name == "noticed":
+            values["noticed"] = _text(value)
         else:
             values[field.name] = bool(value)
     return VehicleState(**values)

@@ -20,6 +20,9 @@ from typing import Any, Protocol
 from automotive_cosim.contracts import Json
 from automotive_cosim.models.base import ChatMessage, ModelReply
 
+MOST_TOKENS = 10**9
+"""No question or answer has more."""
+
 
 class ProviderApi(Protocol):
     """How to speak one provider's protocol."""
@@ -45,8 +48,11 @@ class ProviderApi(Protocol):
     def read(self, told: Any) -> ModelReply:
         """Text, tokens and end of an answer.
 
+        An answer in which the model says nothing, or a call that cannot be read, is an answer; ``finish`` holds the
+        provider's reason. Counts of tokens that cannot be are 0, or the least that they can be.
+
         Raises:
-            LookupError, TypeError, AttributeError, ValueError, ArithmeticError: not an answer of this protocol.
+            LookupError, TypeError, AttributeError, ValueError: not an answer of this protocol.
         """
         ...
 
@@ -73,17 +79,21 @@ class Chat:
 
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
-        choice = told["choices"][0]
-        message = choice["message"]
+        choice = _first(told, "choices")
+        message = choice.get("message") or {}
         usage = told.get("usage") or {}
+        cached = _detail(usage, "prompt_tokens_details", "cached_tokens")
+        tokens_in = _count(usage.get("prompt_tokens"))
         return ModelReply(
-            _text(message.get("content")),
-            _count(usage.get("prompt_tokens")),
+            _text(message.get("content"))
+            or _text(message.get("refusal"))
+            or _tool_calls(message.get("tool_calls")),
+            tokens_in + cached if cached > tokens_in else tokens_in,  # some gateways leave the cached ones out
             _count(usage.get("completion_tokens")),
             finish=str(choice.get("finish_reason") or "stop"),
             reasoning=_text(message.get("reasoning_content") or message.get("reasoning")),
             tokens_reasoning=_detail(usage, "completion_tokens_details", "reasoning_tokens"),
-            tokens_cached=_detail(usage, "prompt_tokens_details", "cached_tokens"),
+            tokens_cached=cached,
         )
 
     def _message(self, message: ChatMessage) -> Json:
@@ -134,21 +144,25 @@ class OpenAI:
                 case "reasoning":
                     reasoning += _text(item.get("summary"))
                 case "message":
-                    say += "".join(str(part.get("text", "")) for part in item["content"])
+                    say += "".join(
+                        str(part.get("text") or part.get("refusal") or "") for part in item.get("content") or ()
+                    )
                 case "computer_call":
-                    for action in item.get("actions") or [item["action"]]:
+                    for action in item.get("actions") or [item.get("action") or {}]:
                         given = dict(action)
-                        calls.append({"name": given.pop("type"), "arguments": given})
+                        calls.append({"name": given.pop("type", ""), "arguments": given})
                 case "function_call":
-                    calls.append({"name": item["name"], "arguments": json.loads(item["arguments"])})
+                    calls.append({"name": item.get("name", ""), "arguments": _loaded(item.get("arguments"))})
         usage = told.get("usage") or {}
-        cut = (told.get("incomplete_details") or {}).get("reason") == "max_output_tokens"
-        found = _reply(say, calls, usage.get("input_tokens"), usage.get("output_tokens"), cut)
+        reason = (told.get("incomplete_details") or {}).get("reason") or "stop"
+        cached = _detail(usage, "input_tokens_details", "cached_tokens")
+        tokens_in = _count(usage.get("input_tokens"))
+        found = _reply(say, calls, max(tokens_in, cached), usage.get("output_tokens"), reason)
         return replace(
             found,
             reasoning=reasoning,
             tokens_reasoning=_detail(usage, "output_tokens_details", "reasoning_tokens"),
-            tokens_cached=_detail(usage, "input_tokens_details", "cached_tokens"),
+            tokens_cached=cached,
         )
 
 
@@ -219,20 +233,19 @@ class Anthropic:
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
         say, calls, reasoning = "", list[Json](), ""
-        for block in told["content"]:
+        for block in told["content"] or ():
             if block["type"] == "text":
-                say += block["text"]
+                say += str(block.get("text") or "")
             elif block["type"] == "thinking":
                 reasoning += str(block.get("thinking", ""))
             elif block["type"] == "tool_use":
-                given = dict(block["input"])
-                name = given.pop("action") if block["name"] == "computer" else block["name"]
+                given = dict(block.get("input") or {})
+                name = given.pop("action", "") if block.get("name") == "computer" else block.get("name", "")
                 calls.append({"name": name, "arguments": given})
         usage = told.get("usage") or {}
-        cut = told.get("stop_reason") == "max_tokens"
         cached = _count(usage.get("cache_read_input_tokens"))  # which input_tokens leaves out
         tokens_in = _count(usage.get("input_tokens")) + cached + _count(usage.get("cache_creation_input_tokens"))
-        found = _reply(say, calls, tokens_in, usage.get("output_tokens"), cut)
+        found = _reply(say, calls, tokens_in, usage.get("output_tokens"), told.get("stop_reason"))
         return replace(found, reasoning=reasoning, tokens_cached=cached)
 
 
@@ -273,36 +286,78 @@ class Gemini:
 
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
-        candidate = told["candidates"][0]
+        blocked = (told.get("promptFeedback") or {}).get("blockReason")
+        candidate = _first(told, "candidates") if not blocked else {"finishReason": blocked}
         say, calls, reasoning = "", list[Json](), ""
-        for part in candidate["content"]["parts"]:
+        for part in (candidate.get("content") or {}).get("parts") or ():
             if "functionCall" in part:
                 called = part["functionCall"]
-                calls.append({"name": called["name"], "arguments": dict(called.get("args") or {})})
+                calls.append({"name": called.get("name", ""), "arguments": dict(called.get("args") or {})})
             elif part.get("thought"):
                 reasoning += str(part.get("text", ""))
             else:
                 say += str(part.get("text", ""))
         usage = told.get("usageMetadata") or {}
-        cut = candidate.get("finishReason") == "MAX_TOKENS"
         thoughts = _count(usage.get("thoughtsTokenCount"))  # which the candidates' count leaves out
         tokens_out = _count(usage.get("candidatesTokenCount")) + thoughts
-        found = _reply(say, calls, usage.get("promptTokenCount"), tokens_out, cut)
         cached = _count(usage.get("cachedContentTokenCount"))
+        tokens_in = max(_count(usage.get("promptTokenCount")), cached)
+        found = _reply(say, calls, tokens_in, tokens_out, candidate.get("finishReason"))
         return replace(found, reasoning=reasoning, tokens_reasoning=thoughts, tokens_cached=cached)
 
 
-def _reply(say: str, calls: Iterable[Json], tokens_in: Any, tokens_out: Any, cut: bool) -> ModelReply:
+_ENDS = {
+    "stop": "stop",
+    "end_turn": "stop",
+    "tool_use": "stop",
+    "max_tokens": "length",
+    "max_output_tokens": "length",
+}
+"""The providers' words for an answer that ended by itself or was cut off; any other word is kept."""
+
+
+def _reply(say: str, calls: Iterable[Json], tokens_in: Any, tokens_out: Any, reason: object) -> ModelReply:
     text = json.dumps({"say": say, "calls": list(calls)}, ensure_ascii=False)
-    return ModelReply(text, _count(tokens_in), _count(tokens_out), finish="length" if cut else "stop")
+    word = str(reason or "stop").lower()
+    return ModelReply(text, _count(tokens_in), _count(tokens_out), finish=_ENDS.get(word, word))
 
 
-def _count(tokens: Any) -> int:
-    return int(tokens or 0)
+def _first(told: Any, name: str) -> Json:
+    """The first of a list of answers; an empty one for an empty list, which a model that says nothing may leave."""
+    if told.get("error"):
+        raise ValueError("the endpoint reports an error in place of an answer")
+    found = told[name]
+    if not isinstance(found, list):
+        raise TypeError(f"{name} is no list")
+    first: Json = found[0] if found else {"finish_reason": f"no {name}", "finishReason": f"no {name}"}
+    return first
+
+
+def _loaded(arguments: object) -> object:
+    """The arguments of a call; as they are if they are no JSON, which the format's reader then says."""
+    try:
+        return json.loads(arguments) if isinstance(arguments, str) else dict(arguments or {})  # type: ignore[call-overload]
+    except (ValueError, TypeError, RecursionError):
+        return str(arguments)
+
+
+def _tool_calls(calls: object) -> str:
+    """Calls that the server has taken out of the answer, in the form in which models write them."""
+    named = [each["function"] for each in calls if each.get("function")] if isinstance(calls, list) else []
+    told = ({"name": each.get("name", ""), "arguments": _loaded(each.get("arguments"))} for each in named)
+    return "\n".join(f"<tool_call>\n{json.dumps(each, ensure_ascii=False)}\n</tool_call>" for each in told)
+
+
+def _count(tokens: object) -> int:
+    """A number of tokens; 0 for what is none."""
+    if isinstance(tokens, bool) or not isinstance(tokens, int | float) or not 0 <= tokens <= MOST_TOKENS:
+        return 0
+    return int(tokens)
 
 
 def _detail(usage: Json, group: str, name: str) -> int:
-    return _count((usage.get(group) or {}).get(name))
+    details = usage.get(group)
+    return _count(details.get(name)) if isinstance(details, dict) else 0
 
 
 def _text(content: object) -> str:

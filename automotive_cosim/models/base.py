@@ -14,6 +14,9 @@ from automotive_cosim.contracts import Json
 CHARACTERS_PER_TOKEN = 4
 """A usual estimate for English, for models that count no tokens themselves."""
 
+ENDED_BY_ITSELF = ("stop", "tool_calls", "function_call", "eos", "end_turn", "stop_sequence")
+"""What providers say of an answer that ended by itself."""
+
 
 @dataclass(frozen=True, slots=True)
 class ChatMessage:
@@ -48,6 +51,13 @@ class ModelReply:
     def as_json(self) -> Json:
         """The reply as a JSON object."""
         return asdict(self)
+
+    @property
+    def ending(self) -> str:
+        """Why it did not end by itself, to be put after an error about its text; empty if it did."""
+        if self.finish == "length":
+            return "; the answer was cut off at its longest"
+        return "" if self.finish in ENDED_BY_ITSELF else f"; the provider ended the answer: {self.finish}"
 
 
 class ChatModel(Protocol):

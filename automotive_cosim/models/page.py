@@ -4,11 +4,9 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from math import inf
-
-from automotive_cosim.contracts.ids import resource_id
 
 KM_PER_MILE = 1.609344
 HEAVY_RAIN_MMH = 7.6
@@ -20,7 +18,6 @@ class ListedElement:
     """One element as the prompt lists it."""
 
     index: int
-    resource_id: str
     text: str
     description: str
     is_checked: bool
@@ -28,6 +25,11 @@ class ListedElement:
     is_scrollable: bool
     bounds: tuple[int, int, int, int]
     """Pixels: left, top, right, bottom; zeros where the prompt states none."""
+
+    def is_called(self, label: str) -> bool:
+        """Whether it has that text or description; a text may go on after a colon, with the level."""
+        texts = (self.text, self.text.partition(": ")[0], self.description)
+        return label.casefold() in (text.casefold() for text in texts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,6 +53,8 @@ class Page:
     before: tuple[str, ...]
     after: tuple[str, ...]
     """The screen's lines before and after the last action, if the prompt asks to look back."""
+    changes: tuple[str, ...] = ()
+    """What changed on the screen instead, if the prompt is the short one."""
 
     @classmethod
     def read(cls, prompt: str) -> Page:
@@ -63,7 +67,7 @@ class Page:
 
         return cls(
             goal=sections.get("What the driver said", "").partition("\n")[0],
-            screen=tuple(line for line in map(_line, lines("The screen")) if line is not None),
+            screen=tuple(found for line in lines("The screen") for found in _elements(line)),
             car=dict(text.split(": ", 1) for text in lines("The car") if ": " in text),
             context=lines("What applies here"),
             done=lines("Done so far"),
@@ -74,20 +78,20 @@ class Page:
             memory=lines("What worked here before"),
             before=lines("The screen before"),
             after=lines("The screen after"),
+            changes=lines("What changed on the screen"),
         )
 
     @property
     def looks_back(self) -> bool:
         """Whether it asks about the result of the last action."""
-        return bool(self.before or self.after)
+        return bool(self.before or self.after or self.changes)
 
-    def find(self, key: str) -> ListedElement | None:
-        """The element of that key, or, after ``=``, with that text."""
-        if key.startswith("="):
-            wanted = key[1:].casefold()
-            return next((line for line in self.screen if line.text.casefold() == wanted), None)
-        wanted = resource_id(key)
-        return next((line for line in self.screen if line.resource_id == wanted), None)
+    def find(self, label: str) -> ListedElement | None:
+        """The first element with that text or description; ``label#2`` is the second."""
+        name, _, number = label.partition("#")
+        found = [line for line in self.screen if line.is_called(name)]
+        at = int(number or 1) - 1
+        return found[at] if at < len(found) else None
 
     def number(self, name: str) -> float | None:
         """The number at the start of one of the car's lines."""
@@ -164,12 +168,37 @@ class Page:
         return bool(kinds & self.sky())
 
 
+BRIEF = re.compile(r"(?<!\S)(\d+) (\"(?:[^\"\\]|\\.)*\")(?: - (\"(?:[^\"\\]|\\.)*\"))?(?: \[([^\]]*)\])?")
+"""An element of the short prompt: its index, label, description and state."""
+ACROSS = re.compile(r"x (\d+) to (\d+), y (\d+)")
+
+
+def _elements(line: str) -> Iterator[ListedElement]:
+    """The elements on a line of either prompt."""
+    if line.startswith("{"):
+        listed = _line(line)
+        yield from () if listed is None else (listed,)
+        return
+    for found in BRIEF.finditer(line):
+        state = found[4] or ""
+        across = ACROSS.search(state)
+        left, right, y = map(int, across.groups()) if across else (0, 0, 0)
+        yield ListedElement(
+            index=int(found[1]),
+            text=json.loads(found[2]),
+            description=json.loads(found[3] or '""'),
+            is_checked="on" in state.split(", ") or "chosen" in state,
+            is_enabled="disabled" not in state,
+            is_scrollable="scrolls" in state,
+            bounds=(left, y, right, y),
+        )
+
+
 def _line(text: str) -> ListedElement | None:
     try:
         entry = json.loads(text)
         return ListedElement(
             index=int(entry["index"]),
-            resource_id=str(entry.get("id", "")),
             text=str(entry.get("text", "")),
             description=str(entry.get("description", "")),
             is_checked=bool(entry.get("checked")),

@@ -70,19 +70,19 @@ def opened(app: str) -> SkillMove:
     return ("open", app)
 
 
-def tap(resource_id: str) -> SkillMove:
-    """Taps the element with this id, or with this text after ``=``; scrolls to it if necessary."""
-    return ("tap", resource_id)
+def tap(label: str) -> SkillMove:
+    """Taps the element with this text or description (``Page.find``); scrolls to it if necessary."""
+    return ("tap", label)
 
 
-def slide(resource_id: str, share: float) -> SkillMove:
+def slide(label: str, share: float) -> SkillMove:
     """Sets a slider to a share of its range, 0 to 1."""
-    return ("slide", resource_id, f"{share:.3f}")
+    return ("slide", label, f"{share:.3f}")
 
 
-def typed(resource_id: str, text: str) -> SkillMove:
+def typed(label: str, text: str) -> SkillMove:
     """Types into a text field."""
-    return ("type", resource_id, text)
+    return ("type", label, text)
 
 
 def say(text: str) -> SkillMove:
@@ -95,9 +95,9 @@ def call(action_type: str, **fields: object) -> SkillMove:
     return ("do", json.dumps({"action_type": action_type} | fields))
 
 
-def in_app(app: str, *ids: str, because: str) -> Course:
+def in_app(app: str, *labels: str, because: str) -> Course:
     """Opens an app and taps elements."""
-    return Course(because, (opened(app), *map(tap, ids)))
+    return Course(because, (opened(app), *map(tap, labels)))
 
 
 # --- decisions that read the page -------------------------------------------------------------------------
@@ -109,18 +109,18 @@ def _watch_speed(page: Page) -> SkillDecision:
         return Decline("not_needed", "none", f"At {speed} km/h and no limit known there is nothing to say.")
     if speed > limit + SPEEDING_MARGIN_KMH:
         because = f"{speed:.0f} km/h where {limit:.0f} is the limit."
-        return in_app("safety", "safety.kind.speed", "safety.warn", because=because)
+        return in_app("safety", "Speed", "Warn driver", because=because)
     return Decline("not_needed", "already_so", f"{speed:.0f} km/h is within the limit of {limit:.0f}.")
 
 
 TELLS: tuple[tuple[str, str], ...] = (
-    (r"belt: driver's belt open", "seat_belt"),
+    (r"belt: open: .*driver", "seat_belt"),
     (r"behind: blue light", "yield"),
     (r"breakdown: in \d{1,3} m", "move_over"),
     (r"(jam|roadworks): in \d{1,3} m", "traffic"),
-    (r"vehicle ahead: .* 0\.\d s", "distance"),
+    (r"vehicle ahead: .* time gap 0\.\d s", "distance"),
     (r"open: .*(trunk|flap)", "vehicle"),
-    (r"tyre: lowest 1\d\d kPa", "vehicle"),
+    (r"tyres: .*(left|right) 1\d\d\b", "vehicle"),
     (r"(glass|rain): .* [2-9]\d\.\d%", "visibility"),
     (r"weather: .*(snow|freezing|rime)", "slippery"),
     (r"driving time: [2-9]\.", "fatigue"),
@@ -130,7 +130,8 @@ TELLS: tuple[tuple[str, str], ...] = (
 
 def _keep_watch(page: Page) -> SkillDecision:
     """Tells what has just changed, if it is something to tell."""
-    changed = page.told.split("; ")
+    mark = " (changed)"
+    changed = [f"{name.removesuffix(mark)}: {words}" for name, words in page.car.items() if name.endswith(mark)]
     speed, limit = page.number("speed_kmh"), page.limit_kmh()
     too_fast = speed is not None and limit is not None and speed > limit + SPEEDING_MARGIN_KMH
     if too_fast and any(change.startswith(("speed: ", "limit: ")) for change in changed):
@@ -153,7 +154,7 @@ def _tell_limit(page: Page) -> SkillDecision:
 def _high_beam(page: Page) -> SkillDecision:
     if page.forbids_high_beam():
         return Decline("infeasible", "law", "High beam is not allowed on a road like this.")
-    return in_app("vehicle", "lights.high_beam", because="Nothing speaks against high beam here.")
+    return in_app("vehicle", "High beam", because="Nothing speaks against high beam here.")
 
 
 def _fog_lamp(rule: str, switch: str) -> Callable[[Page], SkillDecision]:
@@ -167,28 +168,26 @@ def _fog_lamp(rule: str, switch: str) -> Callable[[Page], SkillDecision]:
 
 def _rear_fog_left_on(page: Page) -> SkillDecision:
     if page.is_on("is_rear_fog_on") and page.allows_now("Rear fog lamp") is False:
-        return in_app(
-            "vehicle", "lights.rear_fog", because="The rear fog lamp is not allowed in this weather here."
-        )
+        return in_app("vehicle", "Rear fog", because="The rear fog lamp is not allowed in this weather here.")
     return Decline("not_needed", "already_so", "The rear fog lamp may stay as it is.")
 
 
 def _windshield(page: Page) -> SkillDecision:
     outside, inside = page.number("ambient_temperature_c"), page.number("cabin_temperature_c")
     if outside is not None and inside is not None and outside > inside:
-        return in_app("vehicle", "wiper.front.slow", because="Warm damp air outside meets cold glass: wipe it off.")
-    return in_app("climate", "hvac.front_defroster", because="The glass is fogged from inside: blow dry air on it.")
+        return in_app("vehicle", "Slow", because="Warm damp air outside meets cold glass: wipe it off.")
+    return in_app("climate", "Front defrost", because="The glass is fogged from inside: blow dry air on it.")
 
 
 def _rear_window(page: Page) -> SkillDecision:
     if (page.number("rain_intensity_pct") or 0.0) > RAIN_PCT:
-        return in_app("vehicle", "wiper.rear.slow", because="It is rain on the outside: wipe it.")
-    return in_app("climate", "hvac.rear_defroster", because="The glass is fogged from inside: heat it.")
+        return in_app("vehicle", "Slow#2", because="It is rain on the outside: wipe it.")
+    return in_app("climate", "Rear defrost", because="The glass is fogged from inside: heat it.")
 
 
 # --- the table ----------------------------------------------------------------------------------------------
 
-_REAR_FOG = r"(rear fogs?\b|fog light at the back|red fog lamp)"
+_REAR_FOG = r"(rear fog(s|light)?\b|fog light at the back)"
 _FRONT_FOG = r"(front fogs?\b|fog lights at the front)"
 _HIGH_BEAM = r"((high|full|main) (beam|lights)|far lights|high lights|full headlights|\bbrights\b)"
 
@@ -201,8 +200,8 @@ SKILLS: tuple[Skill, ...] = (
         ),
         _rear_fog_left_on,
     ),
-    Skill((_REAR_FOG,), _fog_lamp("Rear fog lamp", "lights.rear_fog")),
-    Skill((_FRONT_FOG,), _fog_lamp("Front fog lamps", "lights.front_fog")),
+    Skill((_REAR_FOG,), _fog_lamp("Rear fog lamp", "Rear fog")),
+    Skill((_FRONT_FOG,), _fog_lamp("Front fog lamps", "Front fog")),
     Skill((_HIGH_BEAM,), _high_beam),
     Skill(
         (
@@ -211,11 +210,11 @@ SKILLS: tuple[Skill, ...] = (
             r"(the|give .*) limits?\b(?! disagrees)",
             r"give me one",
             r"\bpost(ed|s)\b",
-            r"\bsign says\b",
+            r"\bsign (says|gives)\b",
             r"read me mine",
             r"speed (for here|they want)",
             r"what.s allowed between",
-            r"how fast (in|one|is|i should)\b",
+            r"how fast (in|one|is|i should|may i)\b",
         ),
         _tell_limit,
     ),
@@ -255,18 +254,18 @@ SKILLS: tuple[Skill, ...] = (
     Skill((r"windshield|windscreen|front window|fogg(y|ed|ing)", r"steamed.up"), _windshield),
     Skill(
         (r"\bfan\b", r"\bblower\b"),
-        in_app("climate", "hvac.fan.max", because="The fan belongs to the climate screen."),
+        in_app("climate", "Fan at full speed", because="The fan belongs to the climate screen."),
     ),
     Skill(
         (r"seat (heat|warm)", r"driver seat"),
-        in_app("climate", "hvac.driver_seat_heating", because="The driver's seat is heated on the climate screen."),
+        in_app("climate", "Driver: Seat heat", because="The driver's seat is heated on the climate screen."),
     ),
     Skill(
         (r"(faster|quicker) (route|way)", r"get there faster", r"recalculate"),
-        in_app("map", "map.faster_route", because="The map knows the traffic and the other ways."),
+        in_app("map", "Faster", because="The map knows the traffic and the other ways."),
     ),
     Skill(
         (r"hands|fingers",),
-        in_app("climate", "hvac.steering_wheel_heating", because="Cold hands want a warm wheel."),
+        in_app("climate", "Wheel", because="Cold hands want a warm wheel."),
     ),
 )

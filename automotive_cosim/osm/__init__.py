@@ -2,6 +2,11 @@
 
     overpass    fetches a map from a server, if asked to
     extract     reads any format (overpass_json: a server's), keeps the roads that cars use
+    access      who may drive a road, by its access keys
+    oneway      in which directions
+    lanes       how many lanes each has, and which are for buses
+    barriers    where cars cannot pass
+    turns       which turns they may not make
     limits      the limits and zones that a road's tags state
     towns       town or country by the density of the streets, where the tags do not tell
     assumed     the limit that the law of the place sets, where none is stated (country: the most common one)
@@ -9,7 +14,9 @@
     ground      water, green and buildings, for pictures (shores: water that the extract cuts)
     network     netconvert, and its result
     repair      opens the lanes in which cars would be trapped
-    agreement   compares every edge with its road
+    expected    reads the tags a second time, in another way
+    agreement   compares the network with the map, and with that second reading
+    doubts      what the map does not say clearly, in words
     demand      random traffic
     trips       routes for the ego
     folder      scenario.toml, .sumocfg, README

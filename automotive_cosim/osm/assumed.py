@@ -13,11 +13,15 @@ from automotive_cosim.geo.applied import limits
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.geo.situation import Situation
 from automotive_cosim.osm.country import assumed_limit_kmh
-from automotive_cosim.osm.limits import Zone, zones_of
+from automotive_cosim.osm.limits import CYCLE_ZONES, WALKING_ZONES, Zone, zones_of
 from automotive_cosim.traffic.network import class_of
+from automotive_cosim.traffic.posted import WALK_KMH
 
 AS_OF = datetime(2026, 11, 1, 12, tzinfo=UTC)
 """The day whose law fills the gaps."""
+
+PEDESTRIAN_ZONE_KMH = {"CZ": 20.0, "SK": 20.0}
+"""Where the code sets a number for pedestrian zones (CZ: 361/2000 Sb. § 39; SK: 8/2009 Z. z. § 59), not a pace."""
 
 MAYBE_DUAL = frozenset(("trunk", "trunk_link", "primary", "primary_link", "secondary", "secondary_link"))
 """One-way roads of these classes may be one carriageway of two; other one-way roads are streets."""
@@ -34,7 +38,9 @@ def assumed_sign(tags: Mapping[str, str], atlas: Atlas, place: Place, *, built_u
     """
     zone = next(zones_of(tags), None)
     country = zone.country if zone else place.country
-    there = place if zone is None or zone.place == place.country else _named(zone, atlas, place)
+    if zone and zone.name in WALKING_ZONES:
+        return f"{PEDESTRIAN_ZONE_KMH.get(country, WALK_KMH):g}"
+    there = place if zone is None else _named(zone, atlas, place)
     situation = _situation(tags, zone.name if zone else "", built_up=built_up)
     found = [applied for applied in limits(there, situation) if applied.rule.fixed]
     if len(found) == 1 and found[0].certain:
@@ -48,18 +54,23 @@ def assumed_sign(tags: Mapping[str, str], atlas: Atlas, place: Place, *, built_u
 
 
 def _named(zone: Zone, atlas: Atlas, place: Place) -> Place:
-    """The place that a zone names: the country with the region, or with the cities and regions around the way."""
+    """The place that a zone names, as exactly as it is known: the way's own, if that lies in it; else the region
+    with its country, or the country alone. A region without rules of its own is the country around the way."""
     around = {layer.code for layer in place.layers}
-    layers = tuple(
-        layer
-        for layer in atlas.country(zone.country)
-        if layer.code in (zone.country, zone.place) or (layer.code in around and zone.place == zone.country)
-    )
+    known = {layer.code for layer in atlas.country(zone.country)}
+    if zone.place in around or (zone.country == place.country and zone.place not in known):
+        return place
+    wanted = (zone.country, zone.place)
+    layers = tuple(layer for layer in atlas.country(zone.country) if layer.code in wanted)
     return Place(country=zone.country, layers=layers)
 
 
 def _situation(tags: Mapping[str, str], zone: str, *, built_up: bool) -> Situation:
-    road_class = "living_street" if zone == "living_street" else class_of(tags["highway"], tags)
+    road_class = class_of(tags["highway"], tags)
+    if zone in CYCLE_ZONES:
+        road_class = "cycle_street"
+    elif zone == "living_street":
+        road_class = zone
     motorway = road_class == "motorway" or zone == "motorway" or (None if road_class == "motorway_link" else False)
     return Situation(
         local_time=AS_OF,
@@ -94,7 +105,7 @@ def _dual_carriageway(tags: Mapping[str, str], zone: str) -> bool | None:
 
 
 def _expressway(tags: Mapping[str, str], zone: str) -> bool | None:
-    if zone == "trunk" or tags.get("motorroad") == "yes":
+    if zone in ("trunk", "expressway", "motorroad") or tags.get("motorroad") == "yes":
         return True
     return None if tags["highway"] in ("trunk", "trunk_link") and "motorroad" not in tags else False
 
@@ -102,6 +113,6 @@ def _expressway(tags: Mapping[str, str], zone: str) -> bool | None:
 def _lanes(tags: Mapping[str, str]) -> int:
     """Number of lanes in one direction; one where the map does not say."""
     for key, share in (("lanes:forward", 1), ("lanes", 1 if tags.get("oneway") == "yes" else 2)):
-        if tags.get(key, "").isdecimal():
+        if tags.get(key, "").isdecimal() and tags[key].isascii():
             return max(1, int(tags[key]) // share)
     return 1

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from importlib.resources import files
 
 KMH_PER_MPH = 1.609344
@@ -95,6 +96,7 @@ LIVING_STREET_KMH = 20.0
 """Limit of mapped living streets without one; the codes say 20 km/h (FR R110-2, BE, CH) or walking pace (DE)."""
 
 
+@cache
 def country_codes() -> frozenset[str]:
     """Every ISO 3166-1 code, from the time zone database's ``iso3166.tab``."""
     text = (files("tzdata") / "zoneinfo" / "iso3166.tab").read_text(encoding="utf-8")

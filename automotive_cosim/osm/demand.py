@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import gzip
 import math
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -18,7 +19,7 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.errors import ImportMapError
-from automotive_cosim.osm.network import Built
+from automotive_cosim.osm.network import Built, entries, exits
 from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
@@ -38,22 +39,42 @@ ROUNDS = 20
 ONE_PERIOD_S = 10**6
 """Contraction hierarchies hold for one period of weights; on empty roads there is no other."""
 
+PARTS = 100
+"""So many edges are asked for the part of the network around them, at most; most are in the largest."""
+
 SAMPLES = 500
-"""Number of trips that suffices to estimate the mean travel time and the share with a route."""
+"""Number of trips that suffices to estimate the mean travel time, and among which the ego's are picked."""
 
 
 @dataclass(frozen=True, slots=True)
 class Journey:
-    """A trip that can be driven."""
+    """A trip that can be driven; SUMO finds its route when it departs."""
 
     depart_s: float
+    start: Edge
+    goal: Edge
+
+
+@dataclass(frozen=True, slots=True)
+class Route:
+    """The fastest route of a trip on empty roads."""
+
     way: tuple[Edge, ...]
-    """The fastest route on empty roads."""
 
     @property
     def length_m(self) -> float:
-        """Length of the route."""
+        """Its length."""
         return sum(edge.length_m for edge in self.way)
+
+
+@dataclass(frozen=True, slots=True)
+class Demand:
+    """Traffic for a network."""
+
+    journeys: tuple[Journey, ...]
+    """In order of departure."""
+    routes: tuple[Route, ...]
+    """Those of a sample of such trips."""
 
 
 def draw(
@@ -64,8 +85,8 @@ def draw(
     density_per_km: float,
     duration_s: float,
     rng: np.random.Generator,
-) -> tuple[Journey, ...]:
-    """Draws trips and keeps those for which duarouter finds a route, in order of departure.
+) -> Demand:
+    """Draws trips between roads of which each can be reached from the other.
 
     Args:
         built: the imported network.
@@ -79,26 +100,32 @@ def draw(
     Raises:
         ImportMapError: the requested traffic is less than one vehicle, or no trip can be driven.
     """
-    samples = _routed(_pairs(built, SAMPLES, rng), built, net_file, scratch)
-    if not samples:
+    ends = _Ends(built)
+    sample = [(built.edges[start], built.edges[goal]) for start, goal in ends.pairs(SAMPLES, rng).tolist()]
+    routes = tuple(Route(way) for way in fastest_ways(sample, built.network, net_file, scratch) if way)
+    if not routes:
         raise ImportMapError("no two roads of this map are connected; give a larger extract")
-    travel_time_s = float(np.mean([sum(edge.length_m / edge.speed_mps for edge in way) for way in samples]))
+    travel_time_s = float(np.mean([sum(edge.length_m / edge.speed_mps for edge in route.way) for route in routes]))
     lane_km = sum(edge.length_m * len(edge.lane_ids) for edge in built.edges) / 1000
     count = round(density_per_km * lane_km * duration_s / travel_time_s)
     if not count:
         raise ImportMapError(
             f"{density_per_km:g} vehicles per km on {lane_km:.1f} km make less than one; raise --density"
         )
-    ways = _routed(_pairs(built, math.ceil(count * SAMPLES / len(samples)), rng), built, net_file, scratch)
-    departs = np.sort(rng.uniform(0.0, duration_s, min(count, len(ways))))
-    return tuple(Journey(float(depart_s), way) for depart_s, way in zip(departs, ways, strict=False))
+    pairs = ends.pairs(count, rng).tolist()
+    departs = np.sort(rng.uniform(0.0, duration_s, len(pairs))).tolist()
+    journeys = tuple(
+        Journey(depart_s, built.edges[start], built.edges[goal])
+        for depart_s, (start, goal) in zip(departs, pairs, strict=True)
+    )
+    return Demand(journeys, routes)
 
 
 def write(journeys: Sequence[Journey], target: Path) -> None:
     """Writes the traffic as SUMO trips (gzip); SUMO routes each by the travel times when it departs."""
     rows = (
         f'    <trip id="{number}" type="car" depart="{journey.depart_s:.2f}" departLane="best" departSpeed="max"'
-        f" {_ends(journey.way[0], journey.way[-1])}/>"
+        f" {_ends(journey.start, journey.goal)}/>"
         for number, journey in enumerate(journeys)
     )
     text = "\n".join(("<routes>", f"    {CAR}", *rows, "</routes>", ""))
@@ -109,39 +136,83 @@ def _ends(start: Edge, goal: Edge) -> str:
     return f"from={quoteattr(start.edge_id)} to={quoteattr(goal.edge_id)}"
 
 
-def _pairs(built: Built, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:
-    """Start and goal of each trip as indices of edges, (n, 2); n is less than count on a map too small for them."""
-    edges = built.edges
-    start_weights = _weights(edges, built.entries())
-    goal_weights = _weights(edges, built.exits())
-    middles = np.array([edge.shape_m[len(edge.shape_m) // 2] for edge in edges])
-    distance_m = min(MIN_TRIP_M, 0.2 * float(np.hypot(*np.ptp(middles, axis=0))))
-    found = np.empty((0, 2), dtype=np.int64)
-    for _ in range(ROUNDS):
-        short = count - len(found)
-        starts = rng.choice(len(edges), short, p=start_weights)
-        goals = rng.choice(len(edges), short, p=goal_weights)
-        far = np.hypot(*(middles[goals] - middles[starts]).T) >= distance_m
-        found = np.concatenate((found, np.column_stack((starts, goals))[far & (starts != goals)]))
-        if len(found) == count:
+class _Ends:
+    """The edges on which trips start and end, with their weights."""
+
+    def __init__(self, built: Built) -> None:
+        edges = built.edges
+        from_here, to_here = connected(built)
+        self._count = len(edges)
+        self._starts = _weights(edges, entries(edges), to_here)
+        self._goals = _weights(edges, exits(edges), from_here)
+        self._middles = np.array([edge.shape_m[len(edge.shape_m) // 2] for edge in edges])
+        self._least_m = min(MIN_TRIP_M, 0.2 * float(np.hypot(*np.ptp(self._middles, axis=0))))
+
+    def pairs(self, count: int, rng: np.random.Generator) -> npt.NDArray[np.int64]:
+        """Start and goal of each trip as indices of edges, (n, 2); n is less than count on a map too small."""
+        found = np.empty((0, 2), dtype=np.int64)
+        for _ in range(ROUNDS):
+            short = count - len(found)
+            starts = rng.choice(self._count, short, p=self._starts)
+            goals = rng.choice(self._count, short, p=self._goals)
+            far = np.hypot(*(self._middles[goals] - self._middles[starts]).T) >= self._least_m
+            found = np.concatenate((found, np.column_stack((starts, goals))[far & (starts != goals)]))
+            if len(found) == count:
+                break
+        return found
+
+
+def connected(built: Built) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_]]:
+    """The edges that can be reached from the largest part of the network within which every edge reaches every
+    other, and those from which that part can be reached. So each of the latter reaches each of the former."""
+    index = {edge.edge_id: number for number, edge in enumerate(built.edges)}
+    ahead: list[list[int]] = [[] for _ in built.edges]
+    behind: list[list[int]] = [[] for _ in built.edges]
+    for edge_id, onward in built.network.crossings.items():
+        for to_edge in onward:
+            ahead[index[edge_id]].append(index[to_edge])
+            behind[index[to_edge]].append(index[edge_id])
+    left = np.ones(len(built.edges), dtype=np.bool_)
+    best = left, left
+    size = 0
+    for middle in range(0, len(left), math.ceil(len(left) / PARTS)):
+        if size >= left.sum():
             break
-    return found
+        if not left[middle]:
+            continue
+        found = _reached(middle, ahead), _reached(middle, behind)
+        part = found[0] & found[1]
+        if part.sum() > size:
+            best, size = found, int(part.sum())
+        left = left & ~part
+    return best
 
 
-def _weights(edges: Sequence[Edge], fringe: frozenset[str]) -> npt.NDArray[np.float64]:
+def _reached(start: int, onward: Sequence[Sequence[int]]) -> npt.NDArray[np.bool_]:
+    seen = np.zeros(len(onward), dtype=np.bool_)
+    seen[start] = True
+    waiting = [start]
+    while waiting:
+        for following in onward[waiting.pop()]:
+            if not seen[following]:
+                seen[following] = True
+                waiting.append(following)
+    return seen
+
+
+def _weights(
+    edges: Sequence[Edge], fringe: frozenset[str], usable: npt.NDArray[np.bool_]
+) -> npt.NDArray[np.float64]:
     """Probability of each edge to be one end of a trip: inside the map by length and lanes, at its edge by the
     capacity of the road, taken as lanes times the square of the speed."""
-    inside = np.array([edge.length_m * len(edge.lane_ids) for edge in edges])
-    outside = np.array([len(edge.lane_ids) * edge.speed_mps**2 * (edge.edge_id in fringe) for edge in edges])
+    inside = np.array([edge.length_m * len(edge.lane_ids) for edge in edges]) * usable
+    outside = (
+        np.array([len(edge.lane_ids) * edge.speed_mps**2 * (edge.edge_id in fringe) for edge in edges]) * usable
+    )
     weights = inside / inside.sum()
     if outside.any():
         weights = (1 - OUTSIDE_SHARE) * weights + OUTSIDE_SHARE * outside / outside.sum()
     return np.asarray(weights, dtype=np.float64)
-
-
-def _routed(pairs: npt.NDArray[np.int64], built: Built, net_file: Path, scratch: Path) -> list[tuple[Edge, ...]]:
-    ends = [(built.edges[start], built.edges[goal]) for start, goal in pairs.tolist()]
-    return [way for way in fastest_ways(ends, built.network, net_file, scratch) if way]
 
 
 def fastest_ways(
@@ -164,15 +235,16 @@ def fastest_ways(
     ok, printed = run(
         "duarouter",
         (
-            f"--net-file={net_file}",
-            f"--route-files={asked}",
-            f"--output-file={routed}",
+            f"--net-file={os.path.relpath(net_file, scratch)}",
+            f"--route-files={asked.name}",
+            f"--output-file={routed.name}",
             "--ignore-errors",
             "--no-warnings",
             "--no-step-log",
             "--routing-algorithm=CH",
             f"--weight-period={ONE_PERIOD_S}",
         ),
+        folder=scratch,
     )
     if not ok:
         raise ImportMapError(f"SUMO's duarouter cannot route on this map: {first_error(printed)}")

@@ -6,19 +6,24 @@ ways (paths, railways) are removed, because each path that meets a road would sp
 
 from __future__ import annotations
 
+import codecs
 import re
-from collections.abc import Iterable, Iterator, Mapping
+import tempfile
+from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.formats.files import open_file, opened
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.ground import MappedArea
+from automotive_cosim.osm.oneway import directions
 from automotive_cosim.osm.overpass_json import OverpassJson, is_json
 from automotive_cosim.osm.shores import cut_water
 from automotive_cosim.traffic.sumo_programs import INSTALL
@@ -31,14 +36,11 @@ ROAD_CLASSES = frozenset(
 )
 """OSM highway values to keep. Service roads are left out: SUMO's type map opens them to deliveries only."""
 
-ACCESS_KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
-"""Access keys, the most specific to cars first (OSM wiki, "Key:access"); netconvert ignores them."""
-
-BARRED = frozenset(("no", "private", "agricultural", "forestry", "military", "emergency", "psv", "bus", "delivery"))
-"""Values that exclude an ordinary car."""
-
 POSITION = re.compile(r"-?\d{1,3}(\.\d*)?([eE]-?\d{1,2})?")
 """A latitude or longitude as OpenStreetMap writes it."""
+
+
+_ID = re.compile(r"-?\d{1,19}")
 
 
 class Position(NamedTuple):
@@ -84,12 +86,15 @@ class Extract:
     """The roads of an OSM extract."""
 
     ways: tuple[OsmWay, ...]
+    """Those that cars may drive, in the order of their ids."""
     nodes: Mapping[int, Node]
     restrictions: tuple[TurnRestriction, ...]
     cameras: tuple[Position, ...] = ()
     """Positions of speed cameras, on a road or beside it."""
     ground: tuple[MappedArea, ...] = ()
     """Water, green and buildings, wherever in the extract."""
+    closed: tuple[OsmWay, ...] = ()
+    """Roads that cars may not drive in any direction."""
 
     def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
@@ -115,6 +120,7 @@ class Extract:
             turns,
             tuple(camera for camera in self.cameras if area.holds(*camera)),
             self.ground,
+            tuple(way for way in self.closed if nodes.keys() & set(way.nodes)),
         )
 
     @property
@@ -141,13 +147,23 @@ def read(source: Path) -> Extract:
         SetupError: the osmium package is not installed.
     """
     ways, restrictions, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
-    complete = tuple(piece for way in ways for piece in _known_pieces(way, nodes))
-    if not complete:
+    ways.sort(key=lambda way: way.way_id)
+    complete = [piece for way in ways for piece in _known_pieces(way, nodes)]
+    opened = tuple(way for way in complete if any(directions(way.tags)))
+    if not opened:
         raise ImportMapError(
             f"{source} has no roads for cars ({len(ways)} ways tagged as such, with {len(nodes)} of their nodes);"
             " give an extract that keeps highway=* ways and their nodes"
         )
-    return Extract(complete, nodes, restrictions, cameras, ground.in_order(areas))
+    used = {ref for way in opened for ref in way.nodes}
+    return Extract(
+        opened,
+        {ref: node for ref, node in sorted(nodes.items()) if ref in used},
+        tuple(sorted(restrictions, key=lambda turn: turn.relation_id)),
+        cameras,
+        ground.in_order(areas),
+        tuple(way for way in complete if not any(directions(way.tags))),
+    )
 
 
 _Read = tuple[
@@ -158,24 +174,59 @@ _Read = tuple[
 
 def _read_osm(source: Path) -> _Read:
     kind = _format(source, _head(source))
-    if kind != "pbf":
-        _check_positions(source)
+    deleted = _checked(source) if kind != "pbf" else set[tuple[str, int]]()
     osmium = _osmium()
-    file = osmium.io.File(str(source), kind)
-    try:
-        ways, restrictions = _read_ways(file)
-        nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
-        lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
-        areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
-        return ways, restrictions, nodes, _read_cameras(file), areas
-    except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
-        raise ImportMapError(_explain(source, str(error))) from error
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-map-") as scratch:
+        try:
+            if deleted:
+                return _read_sorted(source, kind, deleted, Path(scratch))
+            try:
+                return _read_file(osmium.io.File(str(source), kind))
+            except RuntimeError as error:
+                if not _UNSORTED.search(str(error)):
+                    raise
+                return _read_sorted(source, kind, deleted, Path(scratch))
+        except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
+            raise ImportMapError(_explain(source, str(error))) from error
+
+
+_UNSORTED = re.compile(r"out of order|twice")
+"""What libosmium says of a file whose elements are not sorted, or are there twice."""
+
+
+def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch: Path) -> _Read:
+    """Reads a file in which elements are in any order, more than once (the newest version counts), or deleted."""
+    osmium = _osmium()
+    merged = osmium.MergeInputReader()
+    named = scratch / f"map.{kind}"  # by its ending libosmium knows the format here
+    named.symlink_to(source.absolute())
+    merged.add_file(str(named))
+    target = osmium.io.File(str(scratch / "sorted.osm.pbf"), "pbf,add_metadata=false")
+    with osmium.SimpleWriter(target) as writer:
+
+        def keep(kind: str, element: Any) -> None:
+            if element.visible and (kind, element.id) not in deleted:
+                getattr(writer, f"add_{kind}")(element)
+
+        handler = osmium.make_simple_handler(
+            node=partial(keep, "node"), way=partial(keep, "way"), relation=partial(keep, "relation")
+        )
+        merged.apply(handler, simplify=True)
+    return _read_file(osmium.io.File(str(scratch / "sorted.osm.pbf"), "pbf"))
+
+
+def _read_file(file: Any) -> _Read:
+    ways, restrictions = _read_ways(file)
+    nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
+    lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
+    areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
+    return ways, restrictions, nodes, _read_cameras(file), areas
 
 
 def _read_json(source: Path) -> _Read:
     read = OverpassJson(source)
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
-    turns = tuple(TurnRestriction(*relation) for relation in read.relations() if "restriction" in relation[1])
+    turns = tuple(TurnRestriction(*relation) for relation in read.relations() if _is_restriction(relation[1]))
     wanted = {ref for way in ways for ref in way.nodes}
     outlines = [(kind, refs) for _, tags, refs in read.ways() if (kind := _ground_of(tags, refs)) is not None]
     corners = {ref for _, refs in outlines for ref in refs}
@@ -209,30 +260,40 @@ def _osmium() -> Any:
 
 def _head(source: Path) -> bytes:
     try:
-        with source.open("rb") as stream:
+        with open_file(source) as stream:
             return stream.read(4096)
     except OSError as error:
-        raise ImportMapError(f"{source}: {error.strerror}; give the path of an OSM extract") from error
+        raise ImportMapError(f"{source}: {error.strerror or error}; give the path of an OSM extract") from error
 
 
 class _UnreadableError(ImportMapError):
     """XML that osmium's own words describe better."""
 
 
-def _check_positions(source: Path) -> None:
-    """Refuses positions that libosmium would misread (1e300 becomes 0), and an archive of more than is read."""
+def _checked(source: Path) -> set[tuple[str, int]]:
+    """Refuses positions that libosmium would misread (1e300 becomes 0), and an archive of more than is read.
+
+    Returns:
+        The elements that JOSM keeps although they were deleted, by kind and id: libosmium takes them for real.
+    """
+    deleted: set[tuple[str, int]] = set()
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
         for key, most in (("lat", 90), ("lon", 180)) if name == "node" else ():
             text = attributes.get(key, "0")
             if not POSITION.fullmatch(text) or abs(float(text)) > most:
                 raise ImportMapError(f"{source} line {line}: {key} is {text[:40]!r}; it is from {-most} to {most}")
+        if attributes.get("action") == "delete" or attributes.get("visible") == "false":
+            number = attributes.get("id", "")
+            if _ID.fullmatch(number):
+                deleted.add((name, int(number)))
 
     try:
         scan(source, start, error=_UnreadableError)
     except _UnreadableError as error:
         if isinstance(error.__cause__, OSError):
             raise ImportMapError(f"{source} is truncated or damaged ({error.__cause__})") from error
+    return deleted
 
 
 def _format(source: Path, head: bytes) -> str:
@@ -255,34 +316,49 @@ def _explain(source: Path, error: str) -> str:
         return f"{source} is XML but not OSM ({error}); give an extract whose root is <osm>"
     if "gzip error" in error or "bzip2 error" in error or "EOF" in error or "truncated" in error:
         return f"{source} is truncated or damaged ({error}); download it again"
+    if "unknown encoding" in error or ("invalid token" in error and not _is_utf8(source)):
+        return (
+            f"{source} has letters that are not in the encoding that it names, or that is not read ({error});"
+            ' save it as UTF-8, or begin it with <?xml version="1.0" encoding="ISO-8859-1"?> if it is in Latin-1'
+        )
     if "XML parsing error" in error:
         return f"{source} is truncated or not OSM XML ({error}); download it again"
     return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
+
+
+def _is_utf8(source: Path) -> bool:
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        with opened(source) as file:
+            while piece := file.read(2**20):
+                decoder.decode(piece)
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[TurnRestriction, ...]]:
     osmium = _osmium()
     ways: list[OsmWay] = []
     restrictions: list[TurnRestriction] = []
-    wanted = osmium.filter.KeyFilter("highway", "restriction")
+    wanted = osmium.filter.KeyFilter("highway", "type")
     for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(wanted):
         tags = {tag.k: tag.v for tag in item.tags}
         if item.is_way():
             if _is_road(tags):
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
-        elif "restriction" in tags:
+        elif _is_restriction(tags):
             members = tuple((member.type, member.ref, member.role) for member in item.members)
             restrictions.append(TurnRestriction(item.id, tags, members))
     return ways, tuple(restrictions)
 
 
+def _is_restriction(tags: Mapping[str, str]) -> bool:
+    return tags.get("type", "").partition(":")[0] == "restriction"
+
+
 def _is_road(tags: Mapping[str, str]) -> bool:
-    return tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes" and _cars_may(tags)
-
-
-def _cars_may(tags: Mapping[str, str]) -> bool:
-    access = next((tags[key] for key in ACCESS_KEYS if key in tags), "yes")
-    return access not in BARRED
+    return tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes"
 
 
 def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:

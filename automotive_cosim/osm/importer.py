@@ -17,7 +17,7 @@ from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, ground, network, trips
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import country_codes
-from automotive_cosim.osm.demand import Journey
+from automotive_cosim.osm.demand import Demand, Journey
 from automotive_cosim.osm.report import ImportReport, make_report
 from automotive_cosim.osm.roads import describe
 from automotive_cosim.scenarios import Scenario, Sumo, Trip, load
@@ -206,16 +206,16 @@ class _Search:
         building: Path,
         options: ImportOptions,
         place: Place,
-        journeys: Sequence[Journey],
+        drawn: Demand,
         rng: np.random.Generator,
         tell: Tell,
     ) -> None:
         self._building = building
         self._options = options
         self._place = place
-        self._journeys = list(journeys)
-        self._most_stuck = math.ceil(STUCK_SHARE_MAX * len(journeys))
-        self._ways = trips.pick(journeys, rng)
+        self._journeys = list(drawn.journeys)
+        self._most_stuck = math.ceil(STUCK_SHARE_MAX * len(drawn.journeys))
+        self._ways = trips.pick(drawn.routes, rng)
         self._tell = tell
         self._stuck: list[Stuck] = []
 

@@ -13,10 +13,12 @@ from xml.sax.saxutils import quoteattr, unescape
 import shapely
 
 from automotive_cosim.errors import ImportMapError
+from automotive_cosim.osm.barriers import Cut, Piece, cut
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, Position
 from automotive_cosim.osm.repair import open_traps
-from automotive_cosim.osm.roads import MappedRoad, way_of
+from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
+from automotive_cosim.osm.turns import Turns, read_turns
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
@@ -54,25 +56,28 @@ class Built:
     """The network built from a map."""
 
     network: Network
+    edges: tuple[Edge, ...]
+    """Its edges, without those inside junctions."""
     signals: int
     roundabouts: int
+    cut: Cut
+    """The roads, and the barriers at which they were cut."""
+    turns: Turns
+    """The turn restrictions, as read for cars."""
     opened: tuple[str, ...] = ()
     """Edges with a lane that was opened to cars, so that none is trapped beside it."""
 
-    @property
-    def edges(self) -> tuple[Edge, ...]:
-        """The edges, without those inside junctions."""
-        return tuple(self.network.edges.values())
 
-    def entries(self) -> frozenset[str]:
-        """Edges by which traffic enters the map: only their own opposite direction leads to them."""
-        from_where = _neighbours((edge.to_node, edge.from_node) for edge in self.edges)
-        return frozenset(e.edge_id for e in self.edges if from_where.get(e.from_node, set()) <= {e.to_node})
+def entries(edges: Sequence[Edge]) -> frozenset[str]:
+    """Edges by which traffic enters a map: only their own opposite direction leads to them."""
+    from_where = _neighbours((edge.to_node, edge.from_node) for edge in edges)
+    return frozenset(e.edge_id for e in edges if from_where.get(e.from_node, set()) <= {e.to_node})
 
-    def exits(self) -> frozenset[str]:
-        """Edges by which traffic leaves the map."""
-        where_to = _neighbours((edge.from_node, edge.to_node) for edge in self.edges)
-        return frozenset(e.edge_id for e in self.edges if where_to.get(e.to_node, set()) <= {e.from_node})
+
+def exits(edges: Sequence[Edge]) -> frozenset[str]:
+    """Edges by which traffic leaves a map."""
+    where_to = _neighbours((edge.from_node, edge.to_node) for edge in edges)
+    return frozenset(e.edge_id for e in edges if where_to.get(e.to_node, set()) <= {e.from_node})
 
 
 _ESCAPED_TWICE = re.compile(r"&amp;(amp|apos|gt|lt|quot);")
@@ -103,19 +108,24 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
         ImportMapError: netconvert refuses the map, or nothing drivable remains.
         SetupError: netconvert is not installed.
     """
-    osm, raw = scratch / "roads.osm", scratch / "roads.net.xml"
-    write_osm(extract, roads, osm)
+    raw = scratch / "roads.net.xml"
+    barred = cut(extract)
+    turns = read_turns(
+        extract.restrictions, barred.pieces, [roads[piece.way.way_id].directions for piece in barred.pieces]
+    )
+    write_osm(extract, barred, turns, roads, scratch / "roads.osm")
     ok, printed = run(
         "netconvert",
         (
-            f"--osm-files={osm}",
+            "--osm-files=roads.osm",
             f"--type-files={home() / 'data' / 'typemap' / 'osmNetconvert.typ.xml'}",
             "--osm.lane-access",
             *GEOMETRY,
             *SIGNALS,
             *(["--lefthand"] if country in LEFT_HAND else []),
-            f"--output-file={raw}",
+            f"--output-file={raw.name}",
         ),
+        folder=scratch,
     )
     if not ok and "No nodes loaded" not in printed:
         raise ImportMapError(f"netconvert cannot build a network from this map: {first_error(printed)}")
@@ -127,6 +137,7 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
         )
     text = re.sub(r"<!-- generated on .*?-->\s*", "", text, count=1, flags=re.DOTALL)
     text = _ESCAPED_TWICE.sub(r"&\1;", text)
+    text = _NUMBER.sub(lambda number: _id_of(barred.pieces[int(number[0]) - FIRST_NUMBER]), text)
     text, opened = open_traps(text)
     text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
@@ -136,21 +147,44 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
     if watched:
         _write(_with_parameters(text, lambda edge_id: _cameras(watched.get(edge_id, ()))), target)
         network = read_network(target)
-    return Built(network, signals, roundabouts, opened)
+    return Built(network, tuple(network.edges.values()), signals, roundabouts, barred, turns, opened)
 
 
-def write_osm(extract: Extract, roads: Mapping[int, MappedRoad], target: Path) -> None:
-    """Writes the roads as OSM XML for netconvert (``MappedRoad.for_netconvert``)."""
+FIRST_NUMBER = 7 * 10**17
+"""netconvert knows the pieces of roads by numbers from here on, all equally long: it looks for the ways of a turn
+restriction by the first digits of its edges' ids, so that way 12 would be way 123 too. OSM's ids are smaller, and
+no other number in a network looks like these."""
+
+_NUMBER = re.compile(r"(?<![\d.])70{9}\d{8}(?!\d)")
+
+
+def _id_of(piece: Piece) -> str:
+    return id_of(piece.way.way_id, piece.part)
+
+
+def write_osm(extract: Extract, barred: Cut, turns: Turns, roads: Mapping[int, MappedRoad], target: Path) -> None:
+    """Writes the roads as OSM XML for netconvert (``MappedRoad.for_netconvert``), numbered from
+    ``FIRST_NUMBER``."""
     osmium = import_module("osmium")
     mutable = osmium.osm.mutable
     with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True) as writer:
-        for node_id, node in sorted(extract.nodes.items()):
+        for node_id, node in extract.nodes.items():
             writer.add_node(mutable.Node(id=node_id, location=node.position, tags=dict(node.tags)))
-        for way in extract.ways:
-            tags = roads[way.way_id].for_netconvert()
-            writer.add_way(mutable.Way(id=way.way_id, nodes=way.nodes, tags=tags))
-        for turn in extract.restrictions:
-            writer.add_relation(mutable.Relation(id=turn.relation_id, members=turn.members, tags=dict(turn.tags)))
+        for node_id, position in barred.ends.items():
+            writer.add_node(mutable.Node(id=node_id, location=position))
+        for number, piece in enumerate(barred.pieces, start=FIRST_NUMBER):
+            tags = roads[piece.way.way_id].for_netconvert()
+            writer.add_way(mutable.Way(id=number, nodes=piece.nodes, tags=tags))
+        told = (("no_entry", turns.bans), ("only_straight_on", turns.only))
+        bans = ((kind, ban) for kind, barred_turns in told for ban in barred_turns)
+        for relation, (kind, ban) in enumerate(bans, start=1):
+            members = (
+                ("w", FIRST_NUMBER + ban.from_piece, "from"),
+                ("n", ban.via, "via"),
+                ("w", FIRST_NUMBER + ban.to_piece, "to"),
+            )
+            tags = {"type": "restriction", "restriction": kind}
+            writer.add_relation(mutable.Relation(id=relation, members=members, tags=tags))
 
 
 def _write(text: str, target: Path) -> None:

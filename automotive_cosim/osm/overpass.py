@@ -89,8 +89,9 @@ def query(area: Area, limits: DownloadLimits) -> str:
         f"[out:xml][timeout:{limits.timeout_s:.0f}][maxsize:{limits.size_mb * 1e6:.0f}];"
         f"way[highway]({box})->.roads;"
         f"({ground})->.ground;"
-        f"(.roads;node(w.roads);rel(bw.roads)[restriction];node[highway=speed_camera]({box});.ground;.ground >;);"
-        "out body qt;"
+        f'(.roads;node(w.roads);rel(bw.roads)[type~"^restriction"];'
+        f"node[highway=speed_camera]({box});.ground;.ground >;);"
+        "out body;"
     )
 
 

@@ -29,6 +29,8 @@ class _Lanes:
     length_m: dict[str, float] = field(default_factory=dict)
     links: dict[str, list[_Link]] = field(default_factory=dict)
     """By the edge they leave."""
+    origins: dict[str, set[str]] = field(default_factory=dict)
+    """The edges from which links lead onto an edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +69,8 @@ def _traps(edge: str, lanes: _Lanes) -> bool:
         return True
     ahead = [_targets(edge, block, lanes) for block in blocks]
     everywhere = frozenset[str]().union(*ahead)
-    for origin, links in lanes.links.items():
+    for origin in sorted(lanes.origins.get(edge, ())):
+        links = lanes.links[origin]
         for start in _blocks(lanes.open.get(origin, [])):
             sides = [
                 targets
@@ -115,6 +118,7 @@ def _read(text: str) -> _Lanes:
                 element.get("via", ""),
             )
             lanes.links.setdefault(element.attrib["from"], []).append(link)
+            lanes.origins.setdefault(link.to_edge, set()).add(element.attrib["from"])
         if element.tag in ("edge", "connection", "junction", "tlLogic"):
             element.clear()  # a whole network as a tree takes hundreds of megabytes
     return lanes

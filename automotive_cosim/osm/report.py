@@ -13,18 +13,14 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import LEFT_HAND
+from automotive_cosim.osm.doubts import doubts, in_words, unconnected
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.folder import ATTRIBUTION
 from automotive_cosim.osm.ground import DrawnGround
-from automotive_cosim.osm.limits import NO_UNIT, doubts
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.posted import timed_limits
 from automotive_cosim.traffic.stability import Stability, Stuck
-
-WAYS_SHOWN = 10
-"""How many OSM ways a line names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +72,8 @@ class ImportReport:
     guessed: tuple[str, ...]
     """What was guessed or left out, in words."""
     differences: tuple[str, ...]
-    """Every limit, name, class, tunnel and number of lanes in which an edge differs from its way's tags."""
+    """Everything in which the network differs from the map: limits, names, classes, tunnels and lanes of edges;
+    and, by a second reading of the tags, access, directions, limits, barriers and turns."""
 
     def write(self, target: Path) -> None:
         """Writes the report as JSON."""
@@ -139,10 +136,12 @@ def make_report(
         stability=stability,
         guessed=(
             *_guesses(extract, built, country, (length_m - posted_m) / 1000),
+            *doubts(extract, roads, built, country),
+            *unconnected(extract, built),
             *_of_ground(around),
             *_of_traffic(stability, stuck, quick=quick),
         ),
-        differences=tuple(map(str, differences(edges, roads))),
+        differences=tuple(map(str, differences(extract, built, roads, country))),
     )
 
 
@@ -174,20 +173,12 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
         yield f"junctions and phases of {counted(built.signals, 'signal')}, from {points} in the map"
     if built.roundabouts:
         yield f"right of way in {built.roundabouts} roundabouts"
-    for doubt, ways in sorted(_doubted(extract, country).items()):
-        about = (
-            "limits without mph, read as km/h" if doubt == NO_UNIT else f"{doubt}, which is not a limit, left out"
-        )
-        yield f"{about}: {_ways_in_words(ways)}"
     density_m = sum(edge.length_m for edge in built.edges if edge.built_up is None)
     if density_m:
         yield f"built-up or not on {density_m / 1000:.2f} km of road, by the density of the streets"
-    unread = {part for way in extract.ways for part in timed_limits(way.tags.get("maxspeed:conditional", ""))[1]}
-    if unread:
-        yield f"limits under conditions other than times, left out: {', '.join(sorted(unread))}"
     if built.opened:
         ways = sorted({way_of(edge_id) for edge_id in built.opened})
-        yield f"lanes for buses or taxis that part the lanes for cars, opened to cars: {_ways_in_words(ways)}"
+        yield f"lanes for buses or taxis that part the lanes for cars, opened to cars: {in_words('way', ways)}"
     yield "lanes and right of way that the map does not state: by road class"
     yield "date, weather and ego trips: to be changed in scenario.toml"
 
@@ -209,17 +200,4 @@ def _of_traffic(stability: Stability, stuck: Sequence[Stuck], *, quick: bool) ->
     if stuck:
         ways = sorted({way_of(each.lane) for each in stuck if not each.lane.startswith(":")})
         reasons = ", ".join(sorted({each.reason for each in stuck}))
-        yield f"{counted(len(stuck), 'trip')} left out that stood for good ({reasons}): {_ways_in_words(ways)}"
-
-
-def _doubted(extract: Extract, country: str) -> dict[str, list[int]]:
-    found: dict[str, list[int]] = {}
-    for way in extract.ways:
-        for doubt in dict.fromkeys(doubts(way.tags, country)):
-            found.setdefault(doubt, []).append(way.way_id)
-    return found
-
-
-def _ways_in_words(ways: Sequence[int]) -> str:
-    more = f" and {len(ways) - WAYS_SHOWN} more" if len(ways) > WAYS_SHOWN else ""
-    return f"way{'s' * (len(ways) > 1)} {', '.join(map(str, ways[:WAYS_SHOWN]))}{more}"
+        yield f"{counted(len(stuck), 'trip')} left out that stood for good ({reasons}): {in_words('way', ways)}"

@@ -12,9 +12,12 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from automotive_cosim.geo.place import Atlas, Place
+from automotive_cosim.osm import lanes
 from automotive_cosim.osm.assumed import assumed_sign
+from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, OsmWay
-from automotive_cosim.osm.limits import Stated, built_up_of, stated_limits
+from automotive_cosim.osm.limits import Stated, built_up_of, conditional_of, stated_limits
+from automotive_cosim.osm.oneway import Directions, directions
 from automotive_cosim.osm.towns import is_dense, town_cells
 
 KEPT_TAGS = (
@@ -27,7 +30,6 @@ KEPT_TAGS = (
     "lane_markings",
     "layer",
     "lit",
-    "maxspeed:conditional",
     "maxspeed:type",
     "motorroad",
     "overtaking",
@@ -41,14 +43,14 @@ KEPT_TAGS = (
 )
 """OSM tags that become parameters of the edges."""
 
-SPEED_KEYS = ("maxspeed", "source:maxspeed", "zone")
-TYPE_KEYS = ("railway", "cycleway", "sidewalk", "public_transport", "route")
-"""Keys that make netconvert give a road a compound type instead of its class."""
+TOLD = re.compile(r"highway|junction|layer|bridge|tunnel|bus|psv|foot|(?:bicycle:lanes|turn|change|width)(?::.*)?")
+"""The tags that netconvert is told as they are. All others that it knows are about speed, access, direction and the
+number of lanes, which are read here first, or make it give a road a compound type instead of its class."""
 
-_UNTOLD = re.compile(rf"(?:{'|'.join((*SPEED_KEYS, *TYPE_KEYS))})(?::.*)?")
-"""What netconvert is not told: these keys, with any suffix after a colon."""
+ONEWAY = {(True, True): "no", (True, False): "yes", (False, True): "-1"}
 
-_WAY = re.compile(r"-?(\d+)")
+_WAY = re.compile(r"-?(new)?(\d+)")
+"""An edge's id begins with the way's: ``100``, ``-100#1``, ``100.2`` beyond a barrier, ``new5`` for way -5."""
 
 
 def way_of(edge_id: str) -> int:
@@ -60,7 +62,17 @@ def way_of(edge_id: str) -> int:
     match = _WAY.match(edge_id)
     if match is None:
         raise ValueError(f"{edge_id!r} is not an edge made from an OSM way")
-    return int(match[1])
+    return -int(match[2]) if match[1] else int(match[2])
+
+
+def id_of(way: int, part: int = 1) -> str:
+    """The id of a way's edges, without what netconvert adds.
+
+    Args:
+        way: its OSM number, negative if JOSM drew it and it was not uploaded.
+        part: which of the pieces into which barriers cut it.
+    """
+    return f"{f'new{-way}' if way < 0 else way}{f'.{part}' if part > 1 else ''}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,6 +90,8 @@ class MappedRoad:
     """Whether its tags put it in a built-up area; None if they do not say."""
     is_dense: bool
     """Whether the streets around it are as dense as in a built-up area."""
+    left_hand: bool = False
+    """Whether traffic keeps left."""
 
     @property
     def name(self) -> str:
@@ -85,11 +99,14 @@ class MappedRoad:
         return self.tags.get("name") or self.tags.get("ref", "")
 
     @property
+    def directions(self) -> Directions:
+        """The directions open to cars."""
+        return directions(self.tags)
+
+    @property
     def is_two_way(self) -> bool:
         """Whether cars drive in both directions."""
-        circle = self.tags.get("junction") in ("roundabout", "circular")
-        usual = "yes" if circle or self.tags["highway"].startswith("motorway") else "no"
-        return self.tags.get("oneway", usual) in ("no", "false", "0")
+        return self.directions.is_two_way
 
     def limit(self, edge_id: str) -> str:
         """The limit of one of its edges, as netconvert reads it."""
@@ -97,31 +114,25 @@ class MappedRoad:
 
     def lanes(self, edge_id: str) -> int | None:
         """The lanes of one of its edges, those for buses included; None if its tags do not determine the number."""
-        keys = ["lanes:backward" if edge_id.startswith("-") else "lanes:forward"]
-        if not self.is_two_way:
-            keys.append("lanes")
-        return next((int(self.tags[key]) for key in keys if self.tags.get(key, "").isdecimal()), None)
+        return lanes.lanes_of(self.tags, self.directions, left_hand=self.left_hand).of(edge_id)
 
     def for_netconvert(self) -> dict[str, str]:
         """The tags from which netconvert builds the road. The limit backwards is told of a two-way road only:
-        netconvert would open another to both directions. A lane of both directions is left out: netconvert would
-        give it to the one backwards."""
-        tags = {key: value for key, value in self.tags.items() if not _UNTOLD.fullmatch(key)}
+        netconvert would open another to both directions."""
+        may = self.directions
+        tags = {key: value for key, value in self.tags.items() if TOLD.fullmatch(key)}
+        tags |= lanes.for_netconvert(self.tags, may, left_hand=self.left_hand) | {"oneway": ONEWAY[may]}
         if self.name:
             tags["name"] = self.name
-        if self.is_two_way:
-            each = [tags.get(f"lanes:{direction}", "") for direction in ("forward", "backward")]
-            if all(map(str.isdecimal, each)):
-                tags["lanes"] = str(sum(map(int, each)))
+        if may.is_two_way:
             return tags | {"maxspeed": self.limit(""), "maxspeed:backward": self.limit("-")}
-        return tags | {"maxspeed": self.limit("-" if self.tags.get("oneway") == "-1" else "")}
+        return tags | {"maxspeed": self.limit("" if may.forward else "-")}
 
     def parameters(self, edge_id: str) -> dict[str, str]:
         """The parameters of one of its edges: OSM's own keys, ``maxspeed`` only where a limit is stated, and what
         was assumed under keys that end in ``:assumed``."""
         kept = {key: self.tags[key] for key in KEPT_TAGS if key in self.tags}
-        direction = "backward" if edge_id.startswith("-") else "forward"
-        conditional = self.tags.get(f"maxspeed:{direction}:conditional")
+        conditional = conditional_of(self.tags, "backward" if edge_id.startswith("-") else "forward")
         if conditional:
             kept["maxspeed:conditional"] = conditional
         posted = self.stated.of(edge_id)
@@ -145,14 +156,16 @@ def describe(extract: Extract, atlas: Atlas, country: str) -> dict[int, MappedRo
         country: ISO 3166-1 code of the map; a way in another country is under the law of this one all the same, so
             that a wrong position near a border changes nothing.
     """
-    towns = town_cells(extract)
+    towns, left = town_cells(extract), country in LEFT_HAND
     roads: dict[int, MappedRoad] = {}
     for way in extract.ways:
         place = _place_of(way, extract, atlas, country)
         built_up, dense = built_up_of(way.tags), is_dense(way, extract.nodes, towns)
         in_town = dense if built_up is None else built_up
         assumed = assumed_sign(way.tags, atlas, place, built_up=in_town)
-        roads[way.way_id] = MappedRoad(way.tags, country, stated_limits(way.tags), assumed, built_up, dense)
+        roads[way.way_id] = MappedRoad(
+            way.tags, country, stated_limits(way.tags, country), assumed, built_up, dense, left
+        )
     return roads
 
 

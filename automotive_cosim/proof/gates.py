@@ -4,13 +4,17 @@
 |---|---|
 | oracle | every reference solution succeeds by public actions, within the budget and 70 % of the deadline |
 | start | the goal does not hold at the hand-over, and the context does not leave the deciding rule to a query |
-| world | the weather is one that the place has at that date and hour |
+| world | weather, speed, lamps and cabin are such as the place has at that date and hour |
+| wording | each phrasing to be asked about says that one of several is meant |
 | slip | each usual mistake that the task names can be made, and fails |
 | prefix | ``complete`` after any earlier step of the reference solution scores 0 |
 | late | the reference solution after the deadline fails |
 | undone | with the goal's own writes reverted, it fails |
 | near | another zone, value or direction fails |
 | coupled | the reference solution and one switch more fails, for every switch of the car |
+| uncoupled | undoing what the car coupled to the reference solution, or keeping it from happening, still wins |
+| optional | the reference solution still wins with every field that the prompt offers for its alerts |
+| effect | where the words do not say what to do, a solution that acts on the air has an effect on it |
 | knowable | what was drawn has been told before the reference solution uses it |
 | lawful | the reference solution breaks no sign and no verified rule, nor has cruise control break one |
 | trivial | no negative control wins both halves of a pair, or the only half |
@@ -28,17 +32,27 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
 from dataclasses import replace
 from functools import partial
 from itertools import product
 
 from automotive_cosim.agents.trivial import AlwaysAlert, AlwaysAsk, NoOp, PressEverything, Random
-from automotive_cosim.cockpit.screens.person import PHOTO
-from automotive_cosim.cockpit.signals import ACTUATORS, ADAS, named
-from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCode, GoalStatus, Observation
+from automotive_cosim.cockpit.apps.phone.person import PHOTO
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.signals import ACTUATORS, ADAS, GLASS, HVAC, named
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    Action,
+    ActionType,
+    AlertKind,
+    FeedbackCode,
+    GoalStatus,
+    Observation,
+)
 from automotive_cosim.contracts.ids import resource_id
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.counterfactual import replayed
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import ScenarioError, TriggerNotReachedError
@@ -51,13 +65,13 @@ from automotive_cosim.proof.place import mistagged
 from automotive_cosim.proof.sight import undeclared
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking.binding import rules_of
-from automotive_cosim.tasking.checks import NothingDone
+from automotive_cosim.tasking.checks import AlertGiven, Check, NothingDone
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Consult, Move
 from automotive_cosim.tasking.parameters import FromCockpit
 from automotive_cosim.tasking.task import Basis, Differs, Half, Task
 from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
-from automotive_cosim.tasking.verdict import judge
+from automotive_cosim.tasking.verdict import COUPLED_BY, judge
 from automotive_cosim.traffic.fork import Simulations
 
 PACE = 0.7
@@ -68,6 +82,9 @@ PRESSES = 60
 """Steps for pressing everything: more controls than the fullest screen has."""
 PATIENCE = 200
 """Steps for waiting, independent of the budget."""
+ONE_OF_SEVERAL = re.compile(
+    r"\b(one|either|just|only|that|which|whichever|whose|whoever|whatever)\b", re.IGNORECASE
+)
 BY_NUMBER = re.compile(r"\b(element|index|widget)\s*(number\s*)?\d", re.IGNORECASE)
 
 Wrong = Iterator[str]
@@ -173,7 +190,7 @@ def coupled(ground: Ground, right: Played) -> Wrong:
     changes nothing is skipped.
     """
     before, end = right.moments[:-1], right.moments[-1]
-    done = replayed(ground.episode.at_hand_over, right.deeds, before)
+    done = replayed(ground.episode.at_hand_over, right.given, before)
     for path in sorted(set(ACTUATORS) - ground.half.allowed_writes):
         car = done.copy()
         value = mutations.another_value(named(path), car.signals[named(path)])
@@ -183,6 +200,123 @@ def coupled(ground: Ground, right: Played) -> Wrong:
         last = replace(end, signals=car.signals.snapshot(), commands=car.commands())
         if last.commands != end.commands and _wins(ground, right, (*before, last)):
             yield f"succeeds with {path} {value} as well"
+
+
+def uncoupled(ground: Ground, right: Played) -> Wrong:
+    """Sets back what followed a command of the reference solution without being asked for, and parts what couples
+    two commands before or after it; what breaks the goal itself or what the car refuses is skipped."""
+    before, start, end = right.moments[:-1], right.moments[0], right.moments[-1]
+    aims = frozenset().union(*(record.aims for record in right.given))
+    followed = {
+        path
+        for path in ACTUATORS
+        if end.commands[path] != right.baseline[-1].commands[path] and path not in ground.half.goal.writes | aims
+    }
+    done = replayed(ground.episode.at_hand_over, right.given, before)
+    for what, paths in [*((path, {path}) for path in sorted(followed)), ("all that followed", followed)]:
+        car = done.copy()
+        _give(car, {path: start.commands[path] for path in paths}, end, before[-1])
+        if ground.half.goal.holds(start, last := _as_left(car, end), (*before, last)) and not _wins(
+            ground, right, (*before, last)
+        ):
+            yield f"fails once {what} is as before, which only followed"
+    for switch in COUPLED_BY:
+        if len(COUPLED_BY[switch] & ground.half.allowed_writes) == 1 and start.commands[switch]:
+            car = ground.episode.at_hand_over.copy()
+            car.command(named(switch), False)
+            car = replayed(car, right.given, before)
+            car.sense(end.surroundings, end.time_s - before[-1].time_s)
+            if not _wins(ground, right, (*before, _as_left(car, end))):
+                yield f"fails with {switch} off first, so that nothing else follows"
+
+
+def _give(car: Cockpit, values: Mapping[str, object], end: Moment, before: Moment) -> None:
+    for path, value in values.items():
+        car.command(named(path), value)
+    car.sense(end.surroundings, end.time_s - before.time_s)
+
+
+def _as_left(car: Cockpit, end: Moment) -> Moment:
+    return replace(end, signals=car.signals.snapshot(), commands=car.commands())
+
+
+def optional(ground: Ground, right: Played) -> Wrong:
+    """Fills in whatever an alert of the reference solution may take besides, with what is true."""
+    start, end = right.moments[0], right.moments[-1]
+    given = end.commands["alerts"][len(start.commands["alerts"]) :]
+    limit = binding_limit(end.context)
+    advice = round(end.driving.speed_mps * KMH_PER_MPS) if limit is None else round(limit.kmh)
+    for at, alert in enumerate(given):
+        for fields in ({"severity": "critical"}, {"text": "Careful, please"}, {"speed_kmh": float(advice)}):
+            if alert["speed_kmh"] is not None and "speed_kmh" in fields:
+                continue
+            if "speed_kmh" in fields and not _may_advise(ground, alert["kind"], advice):
+                continue
+            alerts = [*end.commands["alerts"]]
+            alerts[len(start.commands["alerts"]) + at] = {**alert, **fields}
+            last = replace(end, commands={**end.commands, "alerts": alerts})
+            if not _wins(ground, right, (*right.moments[:-1], last)):
+                yield f"fails if the {alert['kind']} alert has {fields} as well"
+
+
+def _may_advise(ground: Ground, kind: AlertKind, kmh: float) -> bool:
+    """Whether a goal that names a speed names this one; another is wrong, and one that names none takes any."""
+    named_kmh = {found.speed_kmh for found in _alerts_of(ground.half.goal) if found.kind == kind}
+    return None in named_kmh or any(abs(speed - kmh) < 1.0 for speed in named_kmh if speed is not None)
+
+
+def _alerts_of(check: Check) -> Iterator[AlertGiven]:
+    if isinstance(check, AlertGiven):
+        yield check
+    for part in getattr(check, "checks", ()):
+        yield from _alerts_of(part)
+
+
+AIR = frozenset(
+    signal.path
+    for signal in (
+        HVAC.DRIVER_TEMPERATURE, HVAC.PASSENGER_TEMPERATURE, HVAC.FAN_SPEED, HVAC.AIR_CONDITIONING, HVAC.AUTO,
+        HVAC.RECIRCULATION, HVAC.PURIFIER, HVAC.FRONT_DEFROSTER, HVAC.MAX_DEFROST, HVAC.MAX_COOLING,
+    )
+)  # fmt: skip
+"""What acts on nothing but the air of the cabin and, through it, on the glass."""
+FELT: Mapping[str, float] = {
+    HVAC.CABIN_TEMPERATURE.path: 0.05,
+    HVAC.CABIN_HUMIDITY.path: 0.2,
+    HVAC.CABIN_FINE_DUST.path: 0.2,
+    GLASS.WINDSHIELD_FOG.path: 0.01,
+    GLASS.REAR_FOG.path: 0.01,
+}
+"""The least change of a reading within ``EFFECT_S`` that is one; our choice."""
+EFFECT_S = 60.0
+
+
+def effect(ground: Ground) -> Wrong:
+    """Lets a minute pass after each solution and after none, under the sky and on the road of its end."""
+    if not ground.task.is_implicit or not ground.half.goal.writes & AIR:
+        return
+    others = (ground.play(ground.oracle(way)) for way in ground.half.ways)
+    for number, played in enumerate((ground.reference, *others)):
+        aims = frozenset().union(*(record.aims for record in played.given))
+        if not aims or not aims <= AIR or not played.success:
+            continue
+        acted, idle = (_later(ground, played, keys) for keys in (None, frozenset[str]()))
+        if all(abs(acted[path] - idle[path]) < least for path, least in FELT.items()):
+            yield f"solution {number} has no effect on the air: a minute later it is as if nothing had been done"
+
+
+def _later(ground: Ground, played: Played, keys: frozenset[str] | None) -> Mapping[str, float]:
+    car = replayed(ground.episode.at_hand_over, played.given, played.moments, keys)
+    car.sense(played.moments[-1].surroundings, EFFECT_S)
+    return {path: float(car.signals[named(path)]) for path in FELT}
+
+
+def wording(ground: Ground) -> Wrong:
+    """Looks, where the settings alone make a wish unclear, for words that say that one of several is meant."""
+    if ground.half.needed_topics and ground.task.differs == {Differs.SETTINGS}:
+        for words in ground.task.templates:
+            if not ONE_OF_SEVERAL.search(words):
+                yield f"{words!r} does not say that one of several is meant"
 
 
 def lawful(ground: Ground, right: Played) -> Wrong:

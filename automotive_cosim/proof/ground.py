@@ -9,7 +9,7 @@ from typing import Any
 
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
-from automotive_cosim.cockpit.messages import Deed
+from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
@@ -38,7 +38,7 @@ class Played:
     baseline: tuple[Moment, ...]
     counterfactual: Mapping[str, Any]
     """What would be commanded at the end, had only the commands that belong to the goal been given."""
-    deeds: tuple[Deed, ...]
+    given: tuple[CommandRecord, ...]
     """What was commanded, in order."""
     steps: tuple[Step, ...]
     stuck: str = ""
@@ -221,7 +221,7 @@ def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> P
         tuple(episode.moments),
         episode.baseline_moments,
         episode.counterfactual,
-        episode.world.cockpit.deeds,
+        episode.world.cockpit.given,
         tuple(episode.steps),
         stopping.stuck,
     )

@@ -9,6 +9,8 @@ from typing import Any
 from automotive_cosim.cockpit.signals import ACTUATORS, Signal, named
 from automotive_cosim.contracts import Hazards, PullOver, RoadRequest
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.checks import Check
+from automotive_cosim.tasking.effects import EFFECTS
 from automotive_cosim.tasking.task import Half
 
 SIBLINGS = (("Driver", "Passenger"), ("Front", "Rear"), ("Left", "Right"), ("Row1", "Row2"), ("Low", "High"))
@@ -27,7 +29,7 @@ def near_misses(start: Moment, moments: Sequence[Moment], half: Half) -> Iterato
     writes = half.goal.writes
     for key in sorted(writes):
         before, after = start.commands.get(key), end.commands.get(key)
-        if before == after:
+        if before == after or key in _by_effect(half.goal):
             continue
         if key in ACTUATORS:
             for sibling in _siblings(key):
@@ -50,6 +52,13 @@ def put(moments: Sequence[Moment], values: Mapping[str, Any]) -> tuple[Moment, .
     signals = {path: value for path, value in values.items() if path in end.signals}
     last = replace(end, commands={**end.commands, **values}, signals={**end.signals, **signals})
     return (*moments[:-1], last)
+
+
+def _by_effect(goal: Check) -> frozenset[str]:
+    """The commands of which only the effect counts: another one that has it is no miss."""
+    if isinstance(goal, EFFECTS):
+        return goal.writes
+    return frozenset().union(*map(_by_effect, getattr(goal, "checks", ())))
 
 
 def _another(entry: Any) -> Any:

@@ -21,12 +21,16 @@ GATES = (
     "oracle",
     "start",
     "world",
+    "wording",
     "slip",
     "prefix",
     "late",
     "undone",
     "near",
     "coupled",
+    "uncoupled",
+    "optional",
+    "effect",
     "knowable",
     "lawful",
     "trivial",
@@ -152,10 +156,10 @@ class Prover:
         right = ground.reference
         found.oracle_steps[half] = len(right.actions)
         found.traces[half] = right.trace_sha256
-        for gate in ("oracle", "start", "world", "slip", "prefix", "late", "random"):
+        for gate in ("oracle", "start", "world", "wording", "slip", "prefix", "late", "random", "effect"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground), half)
-        for gate in ("undone", "near", "coupled", "knowable", "lawful"):
+        for gate in ("undone", "near", "coupled", "uncoupled", "optional", "knowable", "lawful"):
             if gate in self._chosen and right.success:
                 found.take(gate, getattr(gates, gate)(ground, right), half)
         for gate in ("leak", "road", "repeat"):

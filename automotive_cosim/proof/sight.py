@@ -13,8 +13,9 @@ from datetime import datetime
 from enum import StrEnum
 from typing import Any
 
-from automotive_cosim.cockpit.screens.notices import LOW_KPA, NOTICED, TYRES
+from automotive_cosim.cockpit.notices import LOW_KPA, NAMES, NOTICED, TYRES
 from automotive_cosim.cockpit.signals import GLASS
+from automotive_cosim.cockpit.telltales import Telltale
 from automotive_cosim.contracts import BoundingBox, Element, Observation, VehicleState
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.cosim.moment import Moment
@@ -86,17 +87,18 @@ READINGS: Mapping[str, frozenset[Facet]] = {
         "leader_gap_m": {Facet.TRAFFIC},
         "leader_time_to_collision_s": {Facet.TRAFFIC},
         "aboard": {Facet.ABOARD},
+        "noticed": {Facet.TRAFFIC, Facet.CAR, Facet.WEATHER},
     }.items()
 }
 """What each reading follows from. In a tunnel no rain falls, and lamps on auto come on."""
 _ELEMENTS: Mapping[str, frozenset[Facet]] = {
     begin: frozenset(causes)
     for begin, causes in {
-        "home.map": {Facet.VIEW},
-        "map.": {Facet.VIEW},
-        "home.street": {Facet.VIEW, Facet.ROAD},
-        "home.turn": {Facet.VIEW},
-        "home.route": {Facet.VIEW},
+        "home.map": {Facet.VIEW, Facet.PLACE},
+        "map.": {Facet.VIEW, Facet.PLACE},
+        "home.street": {Facet.VIEW, Facet.ROAD, Facet.PLACE},
+        "home.turn": {Facet.VIEW, Facet.PLACE},
+        "home.route": {Facet.VIEW, Facet.PLACE},
         "home.speed": {Facet.SPEED},
         "home.telltales": {Facet.SPEED},  # they stand beside its figures
         "home.sign": {Facet.SIGN},
@@ -115,8 +117,9 @@ _ELEMENTS: Mapping[str, frozenset[Facet]] = {
         "": {Facet.CAR},
     }.items()
 }
-"""What elements follow from, by the beginning of their resource id; the first that fits."""
-_MAP = frozenset({Facet.VIEW})
+"""What elements follow from, by the beginning of their resource id; the first that fits. Streets have the names of
+their place."""
+_MAP = frozenset({Facet.VIEW, Facet.PLACE})
 """Elements without a name: the streets on the map."""
 _LINES: Mapping[str, frozenset[Facet]] = {
     "place": frozenset({Facet.PLACE}),
@@ -216,7 +219,34 @@ def _on_screen(elements: tuple[Element, ...], signals: Mapping[str, Any]) -> Ite
             words, _, count = element.content_description.rpartition(" ")
             yield from _notices(int(count), signals)
             element = replace(element, content_description=words)
+        if name in ("status.telltales", "home.telltales"):
+            yield from _telltales(told, element.content_description)
+            element = replace(element, content_description=element.content_description.partition(": ")[0])
         yield told, (causes, element)
+
+
+_LAMPS: Mapping[Telltale, frozenset[Facet]] = {
+    Telltale.WARNING: frozenset({Facet.WEATHER, Facet.SETTINGS}),
+    Telltale.BELT: frozenset({Facet.ABOARD, Facet.GEAR}),
+    Telltale.DOOR: frozenset({Facet.SETTINGS}),
+    Telltale.BATTERY: frozenset({Facet.CAR}),
+    Telltale.HAZARD: frozenset({Facet.SETTINGS}),
+    Telltale.TYRE: frozenset({Facet.WEATHER}),
+    Telltale.STABILITY: frozenset({Facet.SETTINGS}),
+    Telltale.FROST: frozenset({Facet.WEATHER}),
+    Telltale.HIGH_BEAM: READINGS["is_high_beam_on"],
+    Telltale.LOW_BEAM: READINGS["is_low_beam_on"],
+    Telltale.FRONT_FOG: READINGS["is_front_fog_on"],
+    Telltale.REAR_FOG: READINGS["is_rear_fog_on"],
+}
+"""What each tell-tale follows from."""
+
+
+def _telltales(where: str, words: str) -> Iterator[Fact]:
+    """Each tell-tale that is lit, apart from the others."""
+    lit = words.partition(": ")[2].split(", ")
+    for telltale, causes in _LAMPS.items():
+        yield f"{telltale} of {where}", (causes, NAMES[telltale] in lit)
 
 
 def _notices(count: int, signals: Mapping[str, Any]) -> Iterator[Fact]:

@@ -17,6 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import open_file
 from automotive_cosim.publish.contents import NAME
 
 MEMBER = re.compile(
@@ -64,21 +65,29 @@ def unpacked(bundle: Path) -> Iterator[Path]:
     """A bundle's files in a folder that is removed afterwards.
 
     Raises:
-        UserError: it is not a bundle, or contains a file that does not belong there.
+        UserError: as ``unpack``.
     """
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-") as name:
-        folder = Path(name)
-        (folder / "traces").mkdir()
-        try:
-            with zipfile.ZipFile(bundle) as archive:
-                _unpack(bundle, archive, folder)
-        except (zipfile.BadZipFile, NotImplementedError, OSError, EOFError, ValueError, RuntimeError) as error:
-            raise UserError(f"{bundle} is not a bundle: {error}; `automotive-cosim bundle` makes one") from error
-        yield folder
+        unpack(bundle, Path(name))
+        yield Path(name)
+
+
+def unpack(bundle: Path, folder: Path) -> None:
+    """Unpacks a bundle into an empty folder.
+
+    Raises:
+        UserError: it is not a bundle, or contains a file that does not belong there.
+    """
+    (folder / "traces").mkdir()
+    try:
+        with open_file(bundle) as file, zipfile.ZipFile(file) as archive:
+            _unpack(bundle, archive, folder)
+    except (zipfile.BadZipFile, NotImplementedError, OSError, EOFError, ValueError, RuntimeError) as error:
+        raise UserError(f"{bundle} is not a bundle: {error}; `automotive-cosim bundle` makes one") from error
 
 
 def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
-    left = MOST_BYTES
+    left = min(MOST_BYTES, bundle.stat().st_size)  # nothing is compressed, so together they are smaller than that
     for entry in archive.infolist():
         path = folder / entry.filename
         left -= entry.file_size
@@ -87,7 +96,10 @@ def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
                 f"{bundle} contains {entry.filename[:100]!r}, which does not belong in a bundle or is there twice"
             )
         if entry.compress_type != zipfile.ZIP_STORED or left < 0:
-            raise UserError(f"{bundle} is compressed or larger than {MOST_BYTES >> 30} GB; a bundle is neither")
+            raise UserError(
+                f"{bundle} is compressed, larger than {MOST_BYTES >> 30} GB or holds more than its size; a bundle "
+                "does not"
+            )
         with archive.open(entry) as source, path.open("wb") as target:
             while chunk := source.read(_CHUNK_BYTES):
                 target.write(chunk)

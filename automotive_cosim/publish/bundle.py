@@ -92,6 +92,10 @@ def _stage(folder: Path, row: TrialRow, staged: Path) -> TrialRow:
     )
     if row.outcome is not None:
         for path in (trace_file(folder, row.id), judged_file(folder, row.id)):
+            if path.is_symlink():
+                raise UserError(
+                    f"{path} is a link, and may lead to what is not to be published; copy the file there"
+                )
             if path.is_file():
                 target = staged / "traces" / path.name
                 target.parent.mkdir(exist_ok=True)

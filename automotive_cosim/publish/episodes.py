@@ -11,6 +11,7 @@ from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
+from automotive_cosim.formats.files import CHUNK_BYTES, opened
 from automotive_cosim.interface.trace import SAID, Step, plain, sha256
 from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
@@ -31,6 +32,11 @@ from automotive_cosim.scenarios import shipped
 from automotive_cosim.tasking.dialogue import dialogue, questions
 from automotive_cosim.tasking.instance import Instance, phrased
 
+STEP_BYTES, SPARE_STEPS = 2**20, 4
+"""Bytes that a step may have in a trace, on average: a full screen has 40 kB, a question to a model 100 kB."""
+SECOND_BYTES, SPARE_S = 2**15, 120.0
+"""The same for a second of the agent's drive and of the baseline run; a dense city has 10 kB. The last answer may
+take an episode beyond its limit."""
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
     "conditions", "seed", "repeat", "split",
@@ -79,13 +85,34 @@ def check_trial(folder: Path, job: TrialJob, row: TrialRow) -> tuple[Problem, ..
         if isinstance(job, DriveJob) and isinstance(row, DriveTrialRow):
             return tuple(drive_problems(folder, job, row))
         if isinstance(job, EpisodeJob) and isinstance(row, EpisodeRow):
+            if large := _too_large(folder, job, row):
+                return (large,)
             return tuple(_problems(folder, job, row))
         return (Problem(ROWS, row.id, "is of another kind than the plan says"),)
     except (
         CosimError, OSError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RecursionError,
+        MemoryError,
     ) as error:  # fmt: skip
         why = str(error) if isinstance(error, CosimError) else f"{type(error).__name__}: {error}"
         return (Problem(f"traces/{row.id}", "", f"cannot be checked: {why}"),)
+
+
+def _too_large(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Problem | None:
+    """The first file of an episode that is larger than its plan allows."""
+    steps = job.setup.max_steps or job.task.max_steps
+    for path, most in (
+        (trace_file(folder, row.id), STEP_BYTES * (steps + SPARE_STEPS)),
+        (judged_file(folder, row.id), SECOND_BYTES * (job.limits.sim_s + SPARE_S)),
+    ):
+        if path.is_file():
+            left = most
+            with opened(path) as file:
+                while left >= 0 and (chunk := file.read(CHUNK_BYTES)):
+                    left -= len(chunk)
+            if left < 0:
+                where = path.relative_to(folder).as_posix()
+                return Problem(where, "", f"unpacks to over {most / 1e6:.0f} MB, which the plan does not allow")
+    return None
 
 
 def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Problem]:

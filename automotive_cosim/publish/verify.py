@@ -10,7 +10,6 @@ import filecmp
 import json
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import ProcessPoolExecutor
 from contextlib import ExitStack, closing
 from dataclasses import dataclass
 from datetime import datetime
@@ -24,10 +23,11 @@ import numpy as np
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.errors import CosimError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, Contents, counts, file_sha256, read_contents
 from automotive_cosim.publish.episodes import check_trial
+from automotive_cosim.publish.limited import LimitedProcesses
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.run.coverage import Coverage, coverage
@@ -95,17 +95,55 @@ def verify(
         UserError: it is neither, or it cannot be read.
     """
     with ExitStack() as ends:
-        bundle = None if path.is_dir() else path
-        folder = path if bundle is None else ends.enter_context(archive.unpacked(bundle))
-        try:
-            return _verified(folder, bundle, replays, seed, workers, tell)
-        except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
-            raise UserError(f"{path} is incomplete or malformed: {error!r:.200}") from error
+        processes = ends.enter_context(LimitedProcesses(path, workers))
+        bundle, folder = None, path
+        if not path.is_dir():
+            bundle = path
+            folder = Path(ends.enter_context(tempfile.TemporaryDirectory(prefix="automotive-cosim-bundle-")))
+            processes.call(archive.unpack, bundle, folder)
+        read = processes.call(_read, folder, bundle)
+        names = sorted(read.rows)
+        jobs, rows = [read.jobs[name] for name in names], [read.rows[name] for name in names]
+        problems = [*read.problems]
+        for number, found in enumerate(processes.map(partial(check_trial, folder), jobs, rows), start=1):
+            problems += found
+            tell(number, len(names))
+        drawn = _sample(read.rows, replays, seed)
+        for name in drawn:
+            problems += _replayed(folder, read.jobs[name], read.rows[name])
+    judged = sum(row.outcome is not None for row in read.rows.values())
+    contents = read.contents
+    facts = [
+        *([f"{counted(len(contents.files), 'file')}, sha256 of {NAME} {contents.sha256}"] if contents else []),
+        str(read.coverage),
+        f"{counted(judged, 'verdict')} recomputed",
+        f"{counted(len(drawn), 'drive')} replayed" + (f", drawn with seed {seed}" if drawn else ""),
+        *(f"  {name}" for name in drawn),
+        *read.versions,
+    ]
+    unknown = [*UNKNOWN]
+    if len(drawn) < judged:
+        unknown.append(UNKNOWN_WITHOUT_REPLAY)
+    if contents is None:
+        unknown.append(UNKNOWN_WITHOUT_HASHES)
+    return Verified(read.coverage, tuple(facts), tuple(problems), tuple(unknown))
 
 
-def _verified(
-    folder: Path, bundle: Path | None, replays: int, seed: int, workers: int, tell: Callable[[int, int], None]
-) -> Verified:
+@dataclass(frozen=True, slots=True)
+class _Read:
+    """What the files that list the episodes say, and what is wrong with it."""
+
+    contents: Contents | None
+    coverage: Coverage
+    jobs: Mapping[str, TrialJob]
+    """Those with a row."""
+    rows: Mapping[str, TrialRow]
+    """Those that the plan has."""
+    versions: tuple[str, ...]
+    problems: tuple[Problem, ...]
+
+
+def _read(folder: Path, bundle: Path | None) -> _Read:
     contents = None if bundle is None else read_contents(folder)
     problems = [] if contents is None else hash_problems(folder, contents)
     problems += [] if bundle is None else _archive_problems(folder, bundle)
@@ -120,23 +158,8 @@ def _verified(
         problems += [] if "episodes" in manifest else [Problem(MANIFEST, "episodes", "is missing")]
         problems += _count_problems(contents, manifest, found, rows)
     planned = {name: row for name, row in rows.items() if name in jobs}
-    problems += _episode_problems(folder, jobs, planned, workers, tell)
-    drawn = _sample(planned, replays, seed)
-    again = [each for name in drawn for each in _replayed(folder, jobs[name], rows[name])] if drawn else []
-    facts = [
-        *([f"{counted(len(contents.files), 'file')}, sha256 of {NAME} {contents.sha256}"] if contents else []),
-        str(found),
-        f"{counted(sum(row.outcome is not None for row in planned.values()), 'verdict')} recomputed",
-        f"{counted(len(drawn), 'drive')} replayed" + (f", drawn with seed {seed}" if drawn else ""),
-        *(f"  {name}" for name in drawn),
-        *_versions(manifest),
-    ]
-    unknown = [*UNKNOWN]
-    if len(drawn) < sum(row.outcome is not None for row in planned.values()):
-        unknown.append(UNKNOWN_WITHOUT_REPLAY)
-    if contents is None:
-        unknown.append(UNKNOWN_WITHOUT_HASHES)
-    return Verified(found, tuple(facts), (*problems, *again), tuple(unknown))
+    known = {name: jobs[name] for name in planned}
+    return _Read(contents, found, known, planned, tuple(_versions(manifest)), tuple(problems))
 
 
 # --- the parts ------------------------------------------------------------------------------------------------
@@ -193,17 +216,23 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator
 
 
 def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) -> Iterator[Problem]:
-    """Lines with unknown fields; in a bundle, also lines that are there twice or not in their only valid form."""
+    """Lines with unknown fields or about an episode that has a verdict already; in a bundle, also any second line
+    of an episode, and lines that are not in their only valid form."""
     known = {"untouched_drive", *(name for row in rows.values() for name in as_json(row))}
     texts = (folder / ROWS).read_text(encoding="utf-8").splitlines() if (folder / ROWS).is_file() else []
     names: list[str] = []
+    final: set[str] = set()
     for number, text in enumerate(texts, start=1):
         line = json.loads(text)
         names.append(line["id"])
+        if line["id"] in final:
+            yield Problem(ROWS, f"line {number}", f"is about {line['id']} again, which was judged before")
+        if strict or line.get("success") is not None:  # an episode that ended in an error may have been run again
+            final.add(line["id"])
         for name in line.keys() - known:
             yield Problem(ROWS, f"line {number} {name}", "is not a field of a row")
         if strict and text != json.dumps(as_json(rows[line["id"]]), ensure_ascii=False):
-            yield Problem(ROWS, f"line {number}", "is there twice, or not in the form in which `bundle` writes it")
+            yield Problem(ROWS, f"line {number}", "is not in the form in which `bundle` writes it")
     if strict and names != sorted(names):
         yield Problem(ROWS, "", "is not sorted by id")
 
@@ -229,30 +258,6 @@ def _count_problems(
         ).text()
     )
     yield from differences(NAME, "", told, whole, ("suite", "counts"), f"{MANIFEST} and {ROWS}")
-
-
-def _episode_problems(
-    folder: Path,
-    jobs: Mapping[str, TrialJob],
-    rows: Mapping[str, TrialRow],
-    workers: int,
-    tell: Callable[[int, int], None],
-) -> list[Problem]:
-    names = sorted(rows)
-    found: list[Problem] = []
-    check, theirs, mine = (
-        partial(check_trial, folder),
-        [jobs[name] for name in names],
-        [rows[name] for name in names],
-    )
-    with ExitStack() as ends:
-        checked: Iterator[tuple[Problem, ...]] = map(check, theirs, mine)
-        if workers > 1:
-            checked = ends.enter_context(ProcessPoolExecutor(workers)).map(check, theirs, mine, chunksize=8)
-        for number, problems in enumerate(checked, start=1):
-            found += problems
-            tell(number, len(names))
-    return found
 
 
 def _sample(rows: Mapping[str, TrialRow], count: int, seed: int) -> list[str]:

@@ -10,7 +10,7 @@ from PIL import Image
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
-from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.theme import DAY, Type
 
@@ -53,7 +53,7 @@ def sheet(tiles: Sequence[SheetTile], columns: int, width: int = 400) -> Image.I
 
 def pictures(cockpit: Cockpit) -> Iterator[tuple[str, Image.Image]]:
     """Name and picture at full size of every screen, each first by day and then by night."""
-    for screen, light in product(SCREENS, HMI.DAY_NIGHT.allowed):
+    for screen, light in product(pages(), HMI.DAY_NIGHT.allowed):
         shown = cockpit.copy()
         shown.inject(HMI.DAY_NIGHT.path, light)
         shown.visit(screen)

@@ -1,12 +1,16 @@
-"""The timeline of one drive: events as bars, acts as marks, and below the speed, with and without the agent."""
+"""The timeline of one drive, for somebody who asks what happened when.
+
+From above: events as bars, acts as numbered marks, what woke; speed with and without the agent, and advice in
+force; time to collision and time gap; visibility and grip; lamps; and what each act said and what came of it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.drives.judge import EventOutcome, JudgedEvent, Worth
+from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn
 from automotive_cosim.run.drive_row import DriveTrialRow
 
@@ -21,22 +25,32 @@ COLOURS = {
     EventOutcome.LATE: ORANGE,
     EventOutcome.MISSED: RED,
     EventOutcome.CAUSED: PURPLE,
+    EventOutcome.EVADED: PURPLE,
     EventOutcome.VOID: GREY,
     EventOutcome.AVOIDED: GREY,
     EventOutcome.TAKEN: RED,
 }
 """Colour of a bar by the outcome of the event."""
 MARKS = {
-    "right": ("o", GREEN),
-    "late": ("o", ORANGE),
-    "neutral": ("o", GREY),
-    "repeat": ("s", ORANGE),
-    "false": ("X", RED),
+    Worth.RIGHT: ("o", GREEN),
+    Worth.LATE: ("o", ORANGE),
+    Worth.NEUTRAL: ("o", GREY),
+    Worth.REPEAT: ("s", ORANGE),
+    Worth.FALSE: ("X", RED),
+    Worth.WRONG: ("P", RED),
+    Worth.LOOKALIKE: ("D", RED),
 }
-"""Marker of an act by how it was judged; acts on bait and wrong acts count as false."""
+"""Marker of an act by how it was judged."""
 LEAST_S = 6.0
 """Shortest bar that can be seen."""
-ROW_IN, SPEED_IN = 0.24, 1.7
+ROW_IN, SPEED_IN, PANEL_IN, LAMPS_IN, LINE_IN, GAP_IN = 0.24, 1.5, 0.9, 0.55, 0.17, 0.28
+LAMPS = ("dipped", "high", "front_fog", "rear_fog", "hazard")
+MOST_ACTS = 40
+"""Acts of which the chart says what came; all of them are in the results."""
+NEAR_S = 3.0
+"""Time to collision below which a driver is exposed; marked by a line."""
+ANSWER_S = 8.0
+"""Within this time after an act, what the driver does is the answer to it."""
 
 
 def timeline_chart(row: DriveTrialRow, timeline: Json) -> tuple[str, str]:
@@ -55,32 +69,81 @@ def timeline_chart(row: DriveTrialRow, timeline: Json) -> tuple[str, str]:
 
 def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
     kinds = _kinds(row.events)
-    height_in = 0.9 + ROW_IN * (len(kinds) + 1) + SPEED_IN
+    told = row.acts[:MOST_ACTS]
+    panels: list[tuple[float, Callable[[Axes], None]]] = [(SPEED_IN, lambda axes: _speeds(axes, timeline))]
+    if "ttc_s" in timeline:  # a drive of an earlier version has speeds alone
+        panels += [
+            (PANEL_IN, lambda axes: _gaps(axes, timeline)),
+            (PANEL_IN, lambda axes: _sky(axes, timeline)),
+            (LAMPS_IN, lambda axes: _lamps(axes, timeline)),
+        ]
+    rows_in = ROW_IN * (len(kinds) + 3)
+    below_in = sum(height + GAP_IN for height, _ in panels) + 0.35 + LINE_IN * (len(told) + 1)
+    height_in = rows_in + below_in
 
     def draw(axes: Axes) -> None:
-        share = SPEED_IN / (height_in - 0.6)
-        speeds = axes.inset_axes((0.0, 0.0, 1.0, share))
-        _speeds(speeds, timeline)
-        for side in ("top", "right", "left"):
-            speeds.spines[side].set_visible(False)
-        speeds.tick_params(length=0)
-        speeds.grid(axis="both", color=INK, alpha=0.15, linewidth=0.8)
-        rows = len(kinds) + 1
-        hidden = rows * share / (1 - share)
-        axes.set_ylim(rows + hidden - 0.3, -0.7)
-        axes.set_yticks(range(rows), ["acts", *(kind.replace("_", " ") for kind in kinds)])
+        end_s = timeline["time_s"][-1]
+        ticks = range(0, int(end_s) + 1, 300 if end_s > 900 else 120)
+        rows = len(kinds) + 2
+        axes.set_ylim(rows - 0.3 + below_in / ROW_IN, -0.7)
+        axes.set_yticks(range(rows), ["acts", "wakes", *(kind.replace("_", " ") for kind in kinds)])
         _events(axes, row.events, kinds)
         _acts(axes, row)
-        end_s = timeline["time_s"][-1]
-        for each in (axes, speeds):
-            each.set_xlim(0, end_s)
-            ticks = range(0, int(end_s) + 1, 300 if end_s > 900 else 120)
-            each.set_xticks(list(ticks), [f"{tick // 60}" for tick in ticks])
-        axes.tick_params(labelbottom=False)
+        for time_s, _ in timeline.get("wakes", ()):
+            axes.plot(time_s, 1, "|", color=GREY, markersize=6, alpha=0.6)
+        top = below_in / height_in
+        for panel_in, fill in panels:
+            top -= GAP_IN / height_in
+            panel = axes.inset_axes((0.0, top - panel_in / height_in, 1.0, panel_in / height_in))
+            fill(panel)
+            panel.spines[["top", "right", "left"]].set_visible(False)
+            panel.tick_params(length=0, labelbottom=fill is panels[-1][1])
+            panel.grid(axis="both", color=INK, alpha=0.15, linewidth=0.8)
+            panel.set_xlim(0, end_s)
+            panel.set_xticks(list(ticks), [f"{tick // 60}" for tick in ticks])
+            _unwatched(panel, timeline)
+            top -= panel_in / height_in
+        panel.set_xlabel("minutes since departure")
+        axes.set_xlim(0, end_s)
+        axes.set_xticks(list(ticks), [])
         axes.spines["bottom"].set_visible(False)
-        speeds.set_xlabel("minutes since departure")
+        lines = [_told(number, act, timeline) for number, act in enumerate(told, 1)]
+        words = axes.text(
+            0.0,
+            max(0.0, top - 0.45 / height_in),
+            "\n".join(lines),
+            transform=axes.transAxes,
+            va="top",
+            fontsize=7.5,
+            linespacing=1.25,
+        )
+        words.set_in_layout(False)
 
     return height_in, draw
+
+
+def _unwatched(axes: Axes, timeline: Json) -> None:
+    """Shades the time in which nobody watched."""
+    from_s = timeline.get("watched_until_s")
+    if from_s is not None:
+        axes.axvspan(from_s, timeline["time_s"][-1], color=GREY, alpha=0.2, linewidth=0)
+
+
+def _told(number: int, act: JudgedAct, timeline: Json) -> str:
+    """What an act said, what it was, and what the driver did."""
+    answers = [
+        text.removeprefix("driver ")
+        for time_s, text in timeline.get("driver", ())
+        if act.time_s <= time_s <= act.time_s + ANSWER_S
+    ]
+    what = f"{act.worth}" + (f": {act.about}" if act.about else "") + (f" ({act.reason})" if act.reason else "")
+    at = f"{int(act.time_s) // 60}:{int(act.time_s) % 60:02d}"
+    line = f"{number}  {at}  {act.words}: {what}" + (f"; {answers[0]}" if answers else "")
+    return line if len(line) <= LONGEST else f"{line[: LONGEST - 1]}…"
+
+
+LONGEST = 150
+"""Characters of a line of the chart."""
 
 
 def _kinds(events: Sequence[JudgedEvent]) -> list[str]:
@@ -93,7 +156,7 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> 
     for event in events:
         if event.kind not in kinds:
             continue
-        place = kinds.index(event.kind) + 1
+        place = kinds.index(event.kind) + 2
         colour = COLOURS[event.outcome]
         length_s = max(LEAST_S, event.ends_s - event.observable_s)
         axes.barh(
@@ -101,9 +164,9 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> 
             length_s,
             left=event.observable_s,
             height=0.62,
-            color="none" if event.bait else colour,
+            color="none" if event.lookalike else colour,
             edgecolor=colour,
-            hatch="////" if event.bait else None,
+            hatch="////" if event.lookalike else None,
             alpha=0.45 if event.outcome in (EventOutcome.VOID, EventOutcome.AVOIDED) else 0.75,
             linewidth=0.8,
         )
@@ -116,11 +179,45 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> 
 
 
 def _acts(axes: Axes, row: DriveTrialRow) -> None:
-    for act in row.acts:
-        name = "false" if act.worth.is_false else act.worth.value
-        mark, colour = MARKS[name]
+    for number, act in enumerate(row.acts, 1):
+        mark, colour = MARKS[act.worth]
         size = 4 if act.worth is Worth.NEUTRAL else 6
         axes.plot(act.time_s, 0, mark, color=colour, markersize=size, clip_on=False)
+        if number <= MOST_ACTS:
+            axes.annotate(f"{number}", (act.time_s, -0.45), ha="center", fontsize=6.5, annotation_clip=False)
+
+
+def _gaps(axes: Axes, timeline: Json) -> None:
+    """Time to collision, and time gap, up to ten seconds."""
+    for key, colour, words in (("gap_s", SKY, "gap"), ("ttc_s", RED, "TTC")):
+        values = [float("nan") if value is None or value > 10 else value for value in timeline[key]]
+        axes.plot(timeline["time_s"], values, color=colour, linewidth=1.0, label=words)
+    axes.axhline(NEAR_S, color=INK, linewidth=0.6, linestyle=(0, (1, 2)))
+    axes.set_ylim(0, 10)
+    axes.set_yticks([0, 3, 10])
+    axes.set_ylabel("s")
+    axes.legend(loc="upper right", ncols=2, frameon=False, fontsize=8)
+
+
+def _sky(axes: Axes, timeline: Json) -> None:
+    """Visibility on a logarithmic scale, and grip."""
+    axes.plot(timeline["time_s"], timeline["visibility_m"], color=BLUE, linewidth=1.0, label="visibility")
+    axes.set_yscale("log")
+    axes.set_ylim(10, 40_000)
+    axes.set_yticks([10, 100, 1000, 10_000], ["10 m", "100 m", "1 km", "10 km"])
+    axes.minorticks_off()
+    grips = [10 * 1000.0**grip for grip in timeline["grip"]]
+    axes.plot(timeline["time_s"], grips, color=ORANGE, linewidth=1.0, label="grip: 1 at 10 km, 0 at 10 m")
+    axes.legend(loc="lower right", ncols=2, frameon=False, fontsize=8)
+
+
+def _lamps(axes: Axes, timeline: Json) -> None:
+    """A line for each lamp while it is on."""
+    for place, lamp in enumerate(LAMPS):
+        lit = [place if lamp in on else float("nan") for on in timeline["lamps"]]
+        axes.plot(timeline["time_s"], lit, color=ORANGE, linewidth=2.5, solid_capstyle="butt")
+    axes.set_ylim(len(LAMPS) - 0.4, -0.6)
+    axes.set_yticks(range(len(LAMPS)), [lamp.replace("_", " ") for lamp in LAMPS], fontsize=7)
 
 
 def _speeds(axes: Axes, timeline: Json) -> None:
@@ -130,6 +227,8 @@ def _speeds(axes: Axes, timeline: Json) -> None:
     axes.plot(times_s, limits, color=RED, linewidth=1.0, drawstyle="steps-post", alpha=0.8)
     axes.plot(times_s[: len(nobodys)], nobodys, color=GREY, linewidth=1.0, linestyle=(0, (3, 2)))
     axes.plot(times_s, speeds, color=BLUE, linewidth=1.3)
+    for from_s, to_s in timeline.get("advice", ()):
+        axes.axvspan(from_s, to_s, color=GREEN, alpha=0.15, linewidth=0)
     known = [limit for limit in timeline["limit_kmh"] if limit is not None]
     axes.set_ylim(0, 1.08 * max([1.0, *speeds, *nobodys, *known]))
     axes.set_ylabel("km/h")

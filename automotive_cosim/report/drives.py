@@ -95,6 +95,18 @@ def _per_hour(of: Callable[[DriveTrialRow], float]) -> Figure:
     return figure
 
 
+def _watched_share(rows: Sequence[DriveTrialRow]) -> float | None:
+    """The share of the driving time in which the agent watched, before it failed or its budget was spent."""
+    judged = [row for row in rows if row.score is not None]
+    driven_s = sum(row.score.driven_s for row in judged if row.score is not None)
+    watched_s = sum(
+        row.score.driven_s if row.unwatched_from_s is None else row.unwatched_from_s
+        for row in judged
+        if row.score is not None
+    )
+    return 100 * watched_s / driven_s if driven_s else None
+
+
 FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("Score", _value, ".0f"),
     ("Recall %", _share(lambda score: score.recall), ".0f"),
@@ -102,6 +114,7 @@ FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("False alarms/h", lambda rows: whole(rows).false_alarms_per_h, ".1f"),
     ("Nuisances/h", lambda rows: whole(rows).nuisances_per_h, ".1f"),
     ("Median delay s", lambda rows: whole(rows).median_delay_s, ".1f"),
+    ("Watched %", _watched_share, ".0f"),
     ("Overspeed saved %", _saved(lambda harm: float(harm.over_limit_m)), ".0f"),
     ("Short TTC saved %", _saved(lambda harm: float(harm.short_ttc_s)), ".0f"),
     ("Distraction s/h", _per_hour(lambda row: row.distraction_s), ".0f"),
@@ -189,9 +202,9 @@ def _kinds(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         for mine in groups.values():
             events = [event for row in mine for event in row.events if event.kind == name]
             real = [event for event in events if event.outcome.counts]
-            baits = [event for event in events if event.bait]
-            met, left = sum(e.outcome.is_credited for e in real), sum(e.outcome == "avoided" for e in baits)
-            cells.append(f"{met}/{len(real)}, {left}/{len(baits)}" if events else "–")
+            lookalikes = [event for event in events if event.lookalike]
+            met, left = sum(e.outcome.is_credited for e in real), sum(e.outcome == "avoided" for e in lookalikes)
+            cells.append(f"{met}/{len(real)}, {left}/{len(lookalikes)}" if events else "–")
         if any(cell != "–" for cell in cells):
             lines.append((name, kind.about, *cells))
     return Table(

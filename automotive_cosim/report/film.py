@@ -37,6 +37,8 @@ BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
 AFTER_EVERY_S = 1.0
 BEFORE_MS, STEP_MS, AFTER_MS, LAST_MS = 350, 1500, 350, 4000
 QUALITY = 72
+SAME_TIME_S = 0.05
+"""Times closer than this are the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,10 +96,14 @@ class Film(EpisodeObserver):
         self._steps.append(self._frame(step.moment.time_s, shot.screenshot, title, words, STEP_MS))
 
     def finished(self, result: EpisodeResult) -> None:
-        """Composes and writes the film, if there was a hand-over."""
-        if self._map is None:
+        """Composes and writes the film, if there was a hand-over and a drive to it."""
+        if self._map is None or not result.path:
             return
-        frames = [*self._before, *self._steps, *self._after]
+        # An earlier departure, on which the situation did not arise, is no part of the drive.
+        begin_s = self._hand_over_s + result.path[0].at_s - SAME_TIME_S
+        frames = [frame for frame in (*self._before, *self._steps, *self._after) if frame.time_s >= begin_s]
+        if not frames:
+            return
         frames[-1] = replace(frames[-1], milliseconds=LAST_MS, title=_outcome(result), words=_why(result))
         road = self._path.with_name(NAME)
         painter = RoadPainter(read_record(road) if road.is_file() else EMPTY, self._map)
@@ -125,7 +131,7 @@ class Film(EpisodeObserver):
 
     def _compose(self, frame: FilmFrame, result: EpisodeResult, painter: RoadPainter) -> Image.Image:
         at_s = frame.time_s - self._hand_over_s
-        past = [sample for sample in result.path if sample.at_s <= at_s + 0.05]
+        past = [sample for sample in result.path if sample.at_s <= at_s + SAME_TIME_S]
         here = past[-1]
         canvas = Canvas.plain(round(WIDTH * SCALE), round(HEIGHT * SCALE), SCALE, NIGHT.background)
         canvas.box(COCKPIT.inset(-3), NIGHT.pressed, 17)

@@ -10,23 +10,22 @@ from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
-from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
+from automotive_cosim.contracts import Element, Json
 from automotive_cosim.contracts.given import Clock
-from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, judge
-from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, facts_of, judge
 from automotive_cosim.drives.result import DriveResult, judged_since, result_of
 from automotive_cosim.drives.score import Score
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener, Listeners
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import End
-from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.models.base import ModelReply
@@ -58,14 +57,42 @@ class JudgedDrive:
     """By number of an event, when its obligation arose in its do-nothing copy."""
     commands: Mapping[str, Any]
     """What was commanded at departure."""
+    facts: tuple[tuple[str, float, str | None], ...]
+    """What speaks against an act at its time, by kind of event; None for nothing."""
+    untouched: tuple[DriveEvent, ...]
+    """Events of the do-nothing run, if an act of the agent holds something back."""
     begun_s: float
     seconds: float
     """Duration of the drive."""
 
     def judgement(self) -> tuple[tuple[JudgedEvent, ...], tuple[JudgedAct, ...], Score]:
         """Events, acts and score by the current checks; their times are seconds since departure."""
-        return judged_since(
-            judge(KINDS, self.events, self.acts, self.due_anyway, self.commands), self.begun_s, self.seconds
+        facts = {(kind, time_s): fact for kind, time_s, fact in self.facts}
+        judged = judge(
+            KINDS,
+            self.events,
+            self.acts,
+            self.due_anyway,
+            lambda kind, time_s: facts[kind.name, time_s],
+            self.commands,
+            self.untouched,
+        )
+        return judged_since(judged, self.begun_s, self.seconds)
+
+    @classmethod
+    def of(cls, watch: Watch) -> JudgedDrive:
+        """The input of a drive's judgement that is over."""
+        against = facts_of(watch.moments)
+        times_s = sorted({act.time_s for act in watch.acts})
+        return cls(
+            tuple(watch.events),
+            tuple(watch.acts),
+            dict(watch.due_anyway),
+            watch.moments[0].commands,
+            tuple((kind.name, time_s, against(kind, time_s)) for kind in KINDS.values() for time_s in times_s),
+            watch.untouched,
+            watch.moments[0].time_s,
+            watch.seconds,
         )
 
 
@@ -123,7 +150,7 @@ def run_drive(
     *,
     simulations: Simulations | None = None,
     observers: Sequence[DriveObserver] = (),
-    plan: DrivePlan | None = None,
+    plan: DriveScript | None = None,
 ) -> DriveRecord:
     """Runs a drive to its end and judges it.
 
@@ -155,16 +182,9 @@ def run_drive(
         result = result_of(watch)
         record = DriveRecord(
             row=judged_row(planned, end, channels, result, **meter.totals()),
-            timeline=_timeline(watch),
+            timeline=timeline(watch),
             steps=tuple(_steps(watch)),
-            judged=JudgedDrive(
-                tuple(watch.events),
-                tuple(watch.acts),
-                dict(watch.due_anyway),
-                watch.moments[0].commands,
-                watch.moments[0].time_s,
-                watch.seconds,
-            ),
+            judged=JudgedDrive.of(watch),
         )
         for observer in observers:
             observer.arrived(watch, record)
@@ -209,20 +229,6 @@ class _Meter:
             "cost_usd": sum(reply.cost_usd for reply in replies),
             "model_seconds": round(sum(reply.seconds for reply in replies), 3),
         }
-
-
-def _timeline(watch: Watch) -> Json:
-    def speeds(moments: Sequence[Moment]) -> list[float]:
-        return [round(moment.driving.speed_mps * KMH_PER_MPS, 1) for moment in moments]
-
-    limits = [limit_at(moment.context).kmh for moment in watch.moments]
-    begun_s = watch.moments[0].time_s
-    return {
-        "time_s": [round(moment.time_s - begun_s, 1) for moment in watch.moments],
-        "speed_kmh": speeds(watch.moments),
-        "limit_kmh": [None if limit is None else round(limit, 1) for limit in limits],
-        "baseline_kmh": speeds(watch.baseline_moments),
-    }
 
 
 def _steps(watch: Watch) -> list[Json]:

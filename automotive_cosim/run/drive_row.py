@@ -32,6 +32,8 @@ class DriveTrialRow(TrialRow):
     """Seconds for which messages took the driver's eyes off the road."""
     events: tuple[JudgedEvent, ...] = ()
     acts: tuple[JudgedAct, ...] = ()
+    unwatched_from_s: float | None = None
+    """From when nobody watched: the agent had failed or spent its budget. None if somebody did to the end."""
     waits: int = 0
     wakes: int = 0
     """Waits and acts after which something had changed."""

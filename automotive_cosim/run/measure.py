@@ -28,7 +28,7 @@ from automotive_cosim.scenery import open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
+from automotive_cosim.traffic.options import Setup, command_line, copied, read_configuration, run_options
 
 TASK = "hvac_fan_max"
 """A task whose trigger holds anywhere: the car is driving."""
@@ -149,7 +149,7 @@ def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
     end_s = warm_s + steps * scenario.sumo.step_length_s
     with _options(scenario) as (own, scratch):
         options = own | {"duration-log.disable": "false"}
-        state = str(scratch / "warm.xml.gz")
+        state = "warm.xml.gz"
         saving = {"save-state.times": f"{warm_s:g}", "save-state.files": state, "save-state.rng": "true"}
         _seconds_of_program(program, options | saving | {"end": f"{warm_s + 1:g}"}, warm_s, scratch)
         going_on = options | {"load-state": state, "begin": f"{warm_s:g}", "end": f"{end_s:g}"}
@@ -191,7 +191,7 @@ def _options(scenario: Scenario) -> Iterator[tuple[dict[str, str], Path]]:
     """SUMO's options, the same as in the environment's simulation, and the folder to run in."""
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-bench-") as name:
         scratch = Path(name)
-        yield run_options(read_configuration(scenario.config), Setup(scenario), scratch), scratch
+        yield run_options(copied(read_configuration(scenario.config), scratch), Setup(scenario)), scratch
 
 
 def _plan(scenario: Scenario) -> EgoPlan:

@@ -10,14 +10,16 @@ import sys
 from contextlib import suppress
 from pathlib import Path
 
+from automotive_cosim.agents.leftovers import SWEEP_S, children, end_all, strangers, take_orphans, tree
 from automotive_cosim.agents.process import AgentRequest
 from automotive_cosim.agents.wire import GoneError, Wire
 from automotive_cosim.errors import InfrastructureError
-from automotive_cosim.run.memory import tree
 from automotive_cosim.traffic.fork import CAN_FORK
 
 ANSWER_S = 60.0
 """Wall time in which a nursery has to answer; it starts in about one second."""
+END_S = SWEEP_S + 5.0
+"""The same for the end of an agent's process, beyond the time that this is given: an agent may have stopped it."""
 WITHHELD = ("AUTOMOTIVE_COSIM_", "RAY_")
 WITHHELD_NAMES = frozenset({"PWD", "OLDPWD", "_", "PYTHONSTARTUP", "PYTHONINSPECT"})
 """Environment variables that an agent's process does not get: they tell what was started, and where."""
@@ -30,6 +32,8 @@ class Nursery:
         """Starts nothing before the first agent."""
         self._popen: subprocess.Popen[bytes] | None = None
         self._wire: Wire | None = None
+        self._known: frozenset[int] = frozenset()
+        """This process's children before the nursery was started."""
 
     def start(self, request: AgentRequest) -> Wire:
         """Starts an agent's process and returns the connection to it.
@@ -47,8 +51,8 @@ class Nursery:
         """Ends the agent's process and all that it has started; returns how it ended, if by itself."""
         if self._wire is not None and CAN_FORK:
             try:
-                self._wire.send_object(("end", grace_s), ANSWER_S)
-                return str(self._wire.receive_json(ANSWER_S).get("ended", ""))
+                self._wire.send_object(("end", grace_s), END_S)
+                return str(self._wire.receive_json(grace_s + END_S).get("ended", ""))
             except (GoneError, TimeoutError, ValueError):
                 pass
         self.close()
@@ -64,9 +68,12 @@ class Nursery:
         self._popen.wait()
         self._wire.close()
         self._wire = self._popen = None
+        end_all(lambda: strangers(self._known))  # orphans of an agent that has ended the nursery
 
     def _forked(self, request: AgentRequest) -> Wire:
         if self._wire is None:
+            take_orphans()
+            self._known = frozenset(children())
             self._wire, self._popen = _started()
         self._wire.send_object(("start" if CAN_FORK else "become", request), ANSWER_S)
         if not CAN_FORK:

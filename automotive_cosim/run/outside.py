@@ -10,18 +10,18 @@ The references and negative controls are this project's own, and some are told t
 from __future__ import annotations
 
 import base64
-import shutil
 import tempfile
 import time
-from collections.abc import Callable
-from contextlib import closing, suppress
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 from automotive_cosim.agents import MODELLED, AgentSettings, Stage, StageName, model_of
+from automotive_cosim.agents.leftovers import remove
 from automotive_cosim.agents.process import AgentRequest
-from automotive_cosim.agents.wire import GoneError, Wire
+from automotive_cosim.agents.wire import GoneError, Wire, packed
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UserError
@@ -96,6 +96,7 @@ class OutsideAgent:
         self.model = "none" if self._model is None else self._model.name
         self._settings = settings
         self._step_s = step_s
+        self._step_left_s = step_s
         self._left_s = self._episode_s = episode_s
         self._wire: Wire | None = None
         self._folder: Path | None = None
@@ -130,21 +131,21 @@ class OutsideAgent:
             ModelError: this program's client could not reach the model.
             AgentError: its process has failed, ended or hung.
         """
-        self.stages, self.answer_s = (), 0.0
+        self.stages, self.answer_s, self._step_left_s = (), 0.0, self._step_s
         self._send("seen", observation)
-        answer = self._answer(self._step_s)
+        answer = self._answer()
         self.stages = self._read(_stages, answer.get("stages", [])) if self._model is not None else ()
         if "spent" in answer:
-            raise OutOfBudgetError(str(answer["spent"]))
+            raise OutOfBudgetError(self._text(answer["spent"]))
         if "refused" in answer:
-            raise ActionError(str(answer["refused"])[:LONGEST_REFUSAL])
-        return parse(answer.get("action"))  # type: ignore[arg-type]  # anything else is refused
+            raise ActionError(self._text(answer["refused"]))
+        return self._read(parse, answer.get("action"))
 
     def close(self) -> None:
         """Ends its process and all that it has started, and removes its folder; may be called again."""
         self._end()
         if self._folder is not None:
-            shutil.rmtree(self._folder, ignore_errors=True)
+            remove(self._folder)
 
     def _start(self) -> None:
         self._folder = Path(tempfile.mkdtemp(prefix="agent-"))
@@ -160,21 +161,15 @@ class OutsideAgent:
         self._wire = self._nursery.start(request)
 
     def _hello(self) -> frozenset[Channel]:
-        answer = self._answer(self._episode_s)
-        return self._read(lambda names: frozenset(map(Channel, names)), answer.get("channels"))
+        self._step_left_s = self._episode_s
+        return self._read(lambda answer: frozenset(map(Channel, answer["channels"])), self._answer())
 
-    def _answer(self, limit_s: float) -> Json:
+    def _answer(self) -> Json:
         """Its answer, after the model has answered all its questions."""
         while True:
-            began_s = time.monotonic()
-            answer = self._received(limit_s)
-            took_s = time.monotonic() - began_s
-            limit_s -= took_s
-            self._left_s -= took_s
-            if self._model is None:
-                self.answer_s += took_s
+            answer = self._received()
             if "failed" in answer:
-                self._fail(str(answer["failed"]))
+                self._fail(self._text(answer["failed"]))
             if "ask" not in answer:
                 return answer
             if self._model is None:
@@ -183,36 +178,58 @@ class OutsideAgent:
             self.answer_s += reply.seconds
             self._send("reply", reply)
 
-    def _received(self, limit_s: float) -> Json:
+    def _received(self) -> Json:
         if self._wire is None:
             raise AgentError(self.failure or "its process has ended")
         try:
-            return self._wire.receive_json(min(limit_s, self._left_s))
+            with self._timed() as left_s:
+                return self._wire.receive_json(left_s)
         except GoneError:
             self._fail(self._end(GRACE_S) or "its process closed its connection")
         except TimeoutError:
-            self._too_slow(limit_s)
+            self._too_slow()
         except ValueError as error:
             self._fail(f"it sent something that is not an answer: {error}")
 
     def _send(self, kind: str, value: object) -> None:
         if self._wire is None:
             raise AgentError(self.failure or "its process has ended")
+        message = packed((kind, value))
         try:
-            self._wire.send_object((kind, value), max(MOMENT_S, min(self._step_s, self._left_s)))
+            with self._timed() as left_s:
+                self._wire.send(message, left_s)
         except GoneError:
             pass  # what it sent before it ended can still be read
         except TimeoutError:
-            self._too_slow(self._step_s)
+            self._too_slow()
+
+    @contextmanager
+    def _timed(self) -> Iterator[float]:
+        """What its process has left of its time, of which the block takes. It starts with the first byte that is
+        sent to it: the rest may be read when it has thought."""
+        began_s = time.monotonic()
+        try:
+            yield max(MOMENT_S, min(self._step_left_s, self._left_s))
+        finally:
+            took_s = time.monotonic() - began_s
+            self._step_left_s -= took_s
+            self._left_s -= took_s
+            if self._model is None:
+                self.answer_s += took_s
+
+    def _text(self, told: Any) -> str:
+        if not isinstance(told, str):
+            self._fail("it sent something that is not an answer: no text in the place of one")
+        return told[:LONGEST_REFUSAL]
 
     def _read(self, reads: Callable[[Any], T], told: Any) -> T:
         try:
             return reads(told)
-        except (TypeError, ValueError, LookupError, AttributeError) as error:
+        except (TypeError, ValueError, LookupError, AttributeError, ArithmeticError, RecursionError) as error:
             self._fail(f"it sent something that is not an answer: {error}")
 
-    def _too_slow(self, limit_s: float) -> NoReturn:
-        if self._left_s <= limit_s:
+    def _too_slow(self) -> NoReturn:
+        if self._left_s <= self._step_left_s:
             self._fail(f"its process took over {self._episode_s:g} s in the whole episode")
         self._fail(f"its process took over {self._step_s:g} s for one step")
 

@@ -15,6 +15,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic
 
+from automotive_cosim.agents.leftovers import children, end_all, strangers, take_orphans
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
 from automotive_cosim.run.meter import Budget, Meter, MeterHandle, Spent, served
 
@@ -24,6 +25,9 @@ if TYPE_CHECKING:
 PRELOADED = ["automotive_cosim.agents", "pydantic"]
 """What workers have from the process that they are forked from: most of what they import, but nothing that depends
 on the environment, as the catalogue does (``tasks.folder``)."""
+
+ORPHANS_S = 3.0
+"""Wall time in which the agents' processes of a killed worker have to end by themselves."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,6 +65,8 @@ class _Process(Generic[J, R]):
         self._pipe, theirs = context.Pipe()
         work = (theirs, opener, folder, dict(os.environ))
         self._process = context.Process(target=_work, args=work, daemon=False)
+        take_orphans()
+        self._known = frozenset(children())
         self._process.start()
         theirs.close()
         self.is_ready = False
@@ -94,6 +100,8 @@ class _Process(Generic[J, R]):
                 self._pipe.send(None)
         self._process.join()
         self._pipe.close()
+        if at_once:
+            end_all(lambda: strangers(self._known), ORPHANS_S)
 
 
 def _context() -> SpawnContext | ForkServerContext:

@@ -28,6 +28,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.formats.files import open_file
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot
@@ -303,7 +304,7 @@ def is_being_written(path: Path) -> bool:
     if sys.platform == "win32":
         return False
     try:
-        with path.open("rb") as file:
+        with open_file(path) as file:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
     except BlockingIOError:
         return True

@@ -140,7 +140,8 @@ def read_rows(folder: Path, kind: RowKind[R]) -> dict[str, R]:
     path = folder / "episodes.jsonl"
     if not path.is_file():
         return rows
-    *lines, _cut = path.read_bytes().split(b"\n")
+    with files.open_file(path) as file:
+        *lines, _cut = file.read().split(b"\n")
     for number, line in enumerate(lines, start=1):
         try:
             of: type[R] = kind if isinstance(kind, type) else kind(line)
@@ -214,8 +215,7 @@ def read_trace(folder: Path, episode: str) -> list[Json]:
     """
     path = trace_file(folder, episode)
     try:
-        with files.opened(path) as file:
-            lines = [files.parse_json(line) for line in file]
+        lines = files.read_json_lines(path)
         if not lines or not all(isinstance(line, dict) for line in lines):
             raise ValueError("it has no steps")
         return lines

@@ -168,6 +168,10 @@ class Scenario(Described):
     """Empty if the file says ``weather = "climate"``: drawn by seed from the climate of the place and month."""
     notes: tuple[str, ...] = ()
     """Assumptions, in words for the user."""
+    language: str = ""
+    """Of the names of streets in a network that is moved, as an ISO 639-1 code."""
+    mirrored: bool = False
+    """Whether the network is the mirror image of the one in its file, because traffic keeps the other side."""
 
     @property
     def config(self) -> Path:

@@ -41,6 +41,8 @@ def load(name_or_folder: str | Path) -> Scenario:
     if not (folder / "scenario.toml").is_file():
         if folder.is_dir():
             raise ScenarioError(f"{folder} has no scenario.toml; make one with `automotive-cosim scenarios import`")
+        if is_file(folder):
+            raise ScenarioError(f"{folder} is not a scenario's folder, which this needs: it has no scenario.toml")
         names = shipped()
         if str(name_or_folder) not in names:
             raise UnknownNameError("scenario", str(name_or_folder), names, "automotive-cosim scenarios list")

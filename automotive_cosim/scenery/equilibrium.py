@@ -20,7 +20,7 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.gap import NOTICED_S, Driven, DrivenTrip, Gap, drive, vehicle_types
-from automotive_cosim.traffic.options import Configuration, Setup, read_configuration, run_options
+from automotive_cosim.traffic.options import Configuration, copied, read_configuration
 
 ROUTES = "equilibrium.rou.xml"
 RECORD = "equilibrium.json"
@@ -68,8 +68,7 @@ class Assigned:
     def written(self, path: Path) -> Configuration:
         """The configuration with the trips as its demand, which are written to a file."""
         path.write_text(self.demand, encoding="utf-8")
-        options = self.configuration.options | {"route-files": str(path)}
-        return replace(self.configuration, options=options)
+        return replace(self.configuration, files={**self.configuration.files, "route-files": (path,)})
 
     @property
     def demand(self) -> str:
@@ -100,7 +99,7 @@ def equilibrate(
     configuration = read_configuration(scenario.config)
     variant.check_demand(configuration)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-equilibrium-") as scratch:
-        given = run_options(configuration, Setup(scenario, options.seed), Path(scratch))
+        given = copied(configuration, Path(scratch))
         types = vehicle_types(given, ["route-files"])  # those of additional files stay where they are
         steps, best = _search(scenario, configuration, types, options, tell, Path(scratch))
     kept = min(steps, key=lambda step: step.gap.relative)

@@ -18,7 +18,7 @@ from automotive_cosim.scenarios import Ego, Scenario, Sumo, WeatherAt
 from automotive_cosim.scenery.relocation import zone_of
 from automotive_cosim.scenery.routes import drawn_trips
 from automotive_cosim.traffic.georeference import middle
-from automotive_cosim.traffic.network import Network, read_network
+from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import DEFAULTS, FIXED, INPUTS, QUIET, Configuration, read_configuration
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
 from automotive_cosim.traffic.vetting import vet
@@ -58,10 +58,12 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         ScenarioError: the files are missing or invalid, or no two roads are connected.
     """
     configuration = read_configuration(path)
-    network = read_network(configuration.net)
-    for name in INPUTS:
-        for file in filter(None, configuration.options.get(name, "").split(",")):
-            vet(Path(file))
+    reader = NetworkReader(configuration.net)
+    vet(configuration.net, reader, FORM)
+    network = reader.network()
+    for name in INPUTS[1:]:
+        for file in configuration.files.get(name, ()):
+            vet(file)
     place = NOWHERE if network.unplaced else Atlas().place(*middle(network.map))
     notes = []
     if network.unplaced and not to_be_moved:
@@ -113,7 +115,7 @@ def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
 
 def _overridden(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
     """What a run sets or leaves out whatever the configuration says."""
-    run = DEFAULTS | configuration.options | FIXED
+    run = DEFAULTS | dict(configuration.options) | FIXED
     run["step-length"] = f"{sumo.step_length_s:g}"
     if sumo.action_step_length_s != sumo.step_length_s:
         run["default.action-step-length"] = f"{sumo.action_step_length_s:g}"
@@ -138,10 +140,8 @@ def _about(network: Network, place: Place) -> str:
 
 
 def _has_demand(configuration: Configuration) -> bool:
-    if configuration.options.get("route-files"):
-        return True
-    files = configuration.options.get("additional-files", "").split(",")
-    return any(_has_travellers(Path(file.strip())) for file in files if file)
+    files = configuration.files
+    return "route-files" in files or any(map(_has_travellers, files.get("additional-files", ())))
 
 
 def _has_travellers(file: Path) -> bool:

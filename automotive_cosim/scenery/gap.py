@@ -25,7 +25,15 @@ from automotive_cosim.formats import files
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import read_network
-from automotive_cosim.traffic.options import Configuration, Setup, command_line, read_configuration, run_options
+from automotive_cosim.traffic.options import (
+    Configuration,
+    Copied,
+    Setup,
+    command_line,
+    copied,
+    read_configuration,
+    run_options,
+)
 from automotive_cosim.traffic.stability import summary
 
 INTERVAL_S = 300.0
@@ -222,7 +230,7 @@ def drive(
         times = cost(EdgeTimes(free_s, trips))
         counted = [trip for trip in trips if first_s <= trip.departed_s < last_s]
         arrived = [trip for trip in counted if trip.has_arrived and len(trip.edges) > 1]
-        found = quickest(arrived, times, configuration.net, ran.types, scratch)
+        found = quickest(arrived, times, ran.net, ran.types, scratch)
     own_s: dict[str, float] = {}
     best_s: dict[str, float] = {}
     for trip in arrived:
@@ -241,12 +249,12 @@ def drive(
     return Driven(trips, gap, excess_s, found)
 
 
-def vehicle_types(options: Mapping[str, str], inputs: Sequence[str] = ("route-files", "additional-files")) -> str:
+def vehicle_types(configuration: Copied, inputs: Sequence[str] = ("route-files", "additional-files")) -> str:
     """All vehicle types of some inputs, as SUMO's XML."""
     found = []
     for name in inputs:
-        for path in filter(None, options.get(name, "").split(",")):
-            with files.opened(Path(path)) as file:
+        for path in configuration.files.get(name, ()):
+            with files.opened(path) as file:
                 found += [ET.tostring(each, "unicode") for each in ET.parse(file).getroot().iter("vType")]
     return "".join(found)
 
@@ -276,6 +284,8 @@ class Ran:
     teleports: int
     types: str
     """The vehicle types, as SUMO's XML."""
+    net: Path
+    """The network that it drove on."""
 
 
 def run(configuration: Configuration, scenario: Scenario, observe_s: float, seed: int, scratch: Path) -> Ran:
@@ -289,22 +299,26 @@ def run(configuration: Configuration, scenario: Scenario, observe_s: float, seed
         scratch: a folder for intermediate files.
     """
     sumo = replace(scenario.sumo, step_length_s=1.0)
-    options = run_options(configuration, Setup(replace(scenario, sumo=sumo), seed), scratch)
+    copies = copied(configuration, scratch)
+    options = run_options(copies, Setup(replace(scenario, sumo=sumo), seed))
     end_s = configuration.begin_s + sumo.warm_up_s + observe_s + TAIL_S
     whole = dict(options) | {
         "end": f"{end_s:g}",
         "summary-output": "stdout",
-        "vehroute-output": str(scratch / "routes.xml"),
+        "vehroute-output": "routes.xml",
         "vehroute-output.exit-times": "true",
         "vehroute-output.last-route": "true",
         "vehroute-output.write-unfinished": "true",
     }
     teleports = 0
-    with closing(summary(configuration.path.name, command_line(whole)[1:], scratch)) as steps:
+    with (
+        copies.named_as_given(),
+        closing(summary(configuration.path.name, command_line(whole)[1:], scratch)) as steps,
+    ):
         for step in steps:
             teleports = int(step.get("teleports", 0))
     trips = tuple(sorted(read_trips(scratch / "routes.xml"), key=lambda trip: trip.departed_s))
-    return Ran(trips, teleports, vehicle_types(options))
+    return Ran(trips, teleports, vehicle_types(copies), copies.net)
 
 
 def quickest(
@@ -320,7 +334,7 @@ def quickest(
     Args:
         trips: only departures, types, first and last edges are read.
         times: times of the edges.
-        net: the network's file.
+        net: the network's file, in that folder.
         types: the vehicle types, as SUMO's XML.
         scratch: a folder for intermediate files.
         via: an edge that the route of a trip must use, by the trip's id.
@@ -331,27 +345,28 @@ def quickest(
     if not trips:
         return {}
     via = via or {}
-    wanted, weights, answer = (scratch / name for name in ("trips.xml", "weights.xml", "best.xml"))
-    times.write(weights)
+    wanted, weights, answer = "trips.xml", "weights.xml", "best.xml"
+    times.write(scratch / weights)
     lines = (
         f'<trip id={quoteattr(trip.id)} type={quoteattr(trip.type_id)} depart="{trip.departed_s:.2f}" '
         f"from={quoteattr(trip.edges[0])} to={quoteattr(trip.edges[-1])}"
         f"{f' via={quoteattr(via[trip.id])}' if trip.id in via else ''}/>\n"
         for trip in trips
     )
-    wanted.write_text(f"<routes>{types}\n{''.join(lines)}</routes>", encoding="utf-8")
+    (scratch / wanted).write_text(f"<routes>{types}\n{''.join(lines)}</routes>", encoding="utf-8")
     ok, printed = sumo_programs.run(
         "duarouter",
         [
-            *("-n", net, "--route-files", wanted, "-o", answer),
+            *("-n", net.name, "--route-files", wanted, "-o", answer),
             *("--weight-files", weights, "--weight-attribute", "traveltime", "--weights.expand", "true"),
             *("--ignore-errors", "true", "--no-warnings", "true"),
         ],
+        scratch,
     )
     if not ok:
         raise ScenarioError(f"duarouter cannot route the trips: {sumo_programs.first_error(printed)}")
     found: dict[str, tuple[str, ...]] = {}
-    for _, element in ET.iterparse(answer):
+    for _, element in ET.iterparse(scratch / answer):
         if element.tag == "vehicle":
             route = element.find("route")
             if route is not None:

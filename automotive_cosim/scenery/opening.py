@@ -9,9 +9,9 @@ from automotive_cosim import scenarios
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Ego, Scenario
 from automotive_cosim.scenery.foreign import foreign_scenario
-from automotive_cosim.scenery.relocation import relocated
+from automotive_cosim.scenery.relocation import at_home, relocated
 from automotive_cosim.scenery.routes import chosen_trips
-from automotive_cosim.traffic.ground import read_mapped
+from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.network import Network, root_of
 from automotive_cosim.traffic.options import read_configuration
 
@@ -45,6 +45,8 @@ def open_scenario(
     scenario = _opened(name, to_be_moved=origin is not None)
     if origin is not None:
         scenario = relocated(scenario, origin)
+    if scenario.origin is not None:
+        scenario = at_home(scenario)
     if not gps:
         scenario = replace(scenario, has_place=False)
     if from_place or to_place:
@@ -54,13 +56,12 @@ def open_scenario(
 
 
 def network_of(scenario: Scenario) -> Network:
-    """The scenario's network, at the scenario's place.
+    """The scenario's network, on its side of the road and at its place.
 
     Raises:
         ScenarioError: it cannot be read.
     """
-    network = read_mapped(read_configuration(scenario.config))
-    return network if scenario.origin is None else network.at(scenario.origin)
+    return placed(read_mapped(read_configuration(scenario.config)), scenario)
 
 
 def _opened(name: str | Path, *, to_be_moved: bool) -> Scenario:

@@ -29,7 +29,7 @@ from automotive_cosim.scenarios import load
 from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, Options, changes, is_stuck, rerouted
 from automotive_cosim.scenery.gap import TAIL_S, DrivenTrip, EdgeTimes, drive, run, vehicle_types
-from automotive_cosim.traffic.options import Setup, read_configuration, run_options
+from automotive_cosim.traffic.options import copied, read_configuration
 
 RECORD = "optimum.json"
 
@@ -142,7 +142,7 @@ def _equilibrium(folder: Path, scratch: Path) -> Assigned:
     """The routes of the folder's demand."""
     scenario = load(folder)
     configuration = read_configuration(scenario.config)
-    types = vehicle_types(run_options(configuration, Setup(scenario, 0), scratch), ["route-files"])
+    types = vehicle_types(copied(configuration, scratch), ["route-files"])
     trips = []
     for element in ET.parse(folder / ROUTES).getroot().iter("vehicle"):
         route = element.find("route")

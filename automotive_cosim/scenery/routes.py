@@ -14,7 +14,7 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
-from automotive_cosim.traffic.ways import ways_from
+from automotive_cosim.traffic.ways import NEAREST, ways_from
 
 TRIPS = 6
 """How many routes are drawn, so that a task's situation arises on one of them."""
@@ -83,7 +83,7 @@ def drawn_trips(
     for begin in begins:
         ways = sorted(
             (way_m, begin, goal)
-            for goal, way_m in ways_from(network, begin).length_m.items()
+            for goal, way_m in ways_from(network, begin, None if goals else NEAREST).length_m.items()
             if goal in ends and goal != begin
         )
         long = [way for way in ways if way[0] >= min(LONG_M, 0.5 * ways[-1][0])]

@@ -39,8 +39,8 @@ def check_demand(configuration: Configuration) -> None:
         UserError: it has stops or persons, or stands in additional files.
     """
     for option, pattern in (("route-files", NOT_TAKEN), ("additional-files", DEMAND)):
-        for path in filter(None, configuration.options.get(option, "").split(",")):
-            with files.opened(Path(path)) as file:
+        for path in configuration.files.get(option, ()):
+            with files.opened(path) as file:
                 found = pattern.search(file.read())
             if found:
                 raise UserError(
@@ -95,8 +95,8 @@ def write_variant(
     shutil.rmtree(draft, ignore_errors=True)
     shutil.copytree(folder, draft)
     (draft / routes[0]).write_text(routes[1], encoding="utf-8")
-    options = {name: _local(value, scenario.config.parent) for name, value in configuration.options.items()}
-    options |= {"route-files": routes[0]}
+    inputs = {name: _local(paths, scenario.config.parent) for name, paths in configuration.files.items()}
+    options = {**inputs, **configuration.options, "route-files": routes[0]}
     if begin_s is not None:
         options["begin"] = f"{begin_s:g}"
     lines = "".join(f"    <{name} value={quoteattr(value)}/>\n" for name, value in options.items())
@@ -111,13 +111,10 @@ def write_variant(
     draft.replace(target)
 
 
-def _local(value: str, folder: Path) -> str:
-    """File names of a configuration relative to its folder again."""
-    parts = value.split(",")
-    return ",".join(
-        str(Path(part).relative_to(folder.absolute())) if Path(part).is_relative_to(folder.absolute()) else part
-        for part in parts
-    )
+def _local(paths: Iterable[Path], folder: Path) -> str:
+    """The files of a configuration, those in its folder relative to it again."""
+    here = folder.absolute()
+    return ",".join(str(path.relative_to(here) if path.is_relative_to(here) else path) for path in paths)
 
 
 def settings(text: str) -> str:

@@ -310,7 +310,7 @@ class Content:
         if row:
             head |= {name: value for name, value in _head(row).items() if name in ("screen", "conditions")}
         head["task"] = row.get("family", head["task"])
-        met = [event for event in events if not event["bait"]]
+        met = [event for event in events if not event["lookalike"]]
         return {
             **head,
             "id": entry.id,
@@ -382,7 +382,7 @@ def _kind(plan: Json) -> str:
 
 def _span(event: Json) -> Json:
     """An event of a drive, from when it becomes observable to its deadline or its end."""
-    told = {name: event[name] for name in ("kind", "words", "bait", "outcome", "obliged_s", "deadline_s")}
+    told = {name: event[name] for name in ("kind", "words", "lookalike", "outcome", "obliged_s", "deadline_s")}
     return {**told, "from_s": event["observable_s"], "to_s": event["deadline_s"] or event["ends_s"]}
 
 
@@ -390,9 +390,9 @@ def _drive_timeline(events: Sequence[Json], acts: Sequence[Json]) -> list[Json]:
     """Every instant that the page lists, in order."""
     told = []
     for event in events:
-        what = f"{'look-alike' if event['bait'] else 'event'} {event['kind']}: {event['words']}"
+        what = f"{'look-alike' if event['lookalike'] else 'event'} {event['kind']}: {event['words']}"
         told.append((event["observable_s"], "event", f"{what} [{event['outcome']}]"))
-        if event["deadline_s"] is not None and not event["bait"]:
+        if event["deadline_s"] is not None and not event["lookalike"]:
             told.append((event["deadline_s"], "deadline", f"deadline of {event['kind']}"))
     told += [(act["time_s"], "alert", f"{act['words']} [{act['worth']}]") for act in acts]
     return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(told)]

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import gzip
 import hmac
-import ipaddress
 import json
 import mimetypes
 import re
@@ -34,6 +33,7 @@ from automotive_cosim.serve.content import Content
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.shelf import NotHereError, Shelf
 from automotive_cosim.serve.study import PeopleStudy
+from automotive_cosim.service.own_names import ANY, is_own, own_names
 
 SECURITY = {
     "Content-Security-Policy": "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' blob:; "
@@ -316,7 +316,7 @@ class WebServer(ThreadingHTTPServer):
         except (OSError, OverflowError) as error:
             why = getattr(error, "strerror", None) or str(error)
             raise UserError(f"cannot listen on {host} port {port}: {why}; give another --host or --port") from error
-        self.names = _own_names(host)
+        self.names = own_names(host)
 
     @property
     def address(self) -> str:
@@ -329,7 +329,7 @@ class WebServer(ThreadingHTTPServer):
         return self._address(self.people_token, "#/study")
 
     def _address(self, token: str, page: str) -> str:
-        host = socket.gethostname() if self.host in ("0.0.0.0", "::") else self.host
+        host = socket.gethostname() if self.host in ANY else self.host
         return f"http://{f'[{host}]' if ':' in host else host}:{self.server_port}/?token={token}{page}"
 
     def server_close(self) -> None:
@@ -396,7 +396,7 @@ class RequestHandler(BaseHTTPRequestHandler):
             RefusedRequestError: it comes from elsewhere, or without the token.
         """
         host = self.headers.get("Host", "")
-        if not self._is_own(host):
+        if not is_own(host, self._web.names, self._web.server_port):
             raise RefusedRequestError(
                 HTTPStatus.BAD_REQUEST, "this server has another name; open the address that it printed"
             )
@@ -412,14 +412,6 @@ class RequestHandler(BaseHTTPRequestHandler):
         raise RefusedRequestError(
             HTTPStatus.FORBIDDEN, "the token is missing or wrong; open the address that the server printed"
         )
-
-    def _is_own(self, host: str) -> bool:
-        """Whether a request names this server: a foreign name that resolves to it would get around the browser."""
-        name, _, port = host.rpartition(":")
-        if not port.isdigit() or int(port) != self._web.server_port:
-            return False
-        name = name.strip("[]").lower()
-        return name in self._web.names or (not self._web.names.isdisjoint(ANY) and _is_address(name))
 
     def _cookie(self) -> str:
         try:
@@ -458,26 +450,6 @@ class RequestHandler(BaseHTTPRequestHandler):
         self.end_headers()
         if self.command != "HEAD":
             self.wfile.write(body)
-
-
-ANY = frozenset(("0.0.0.0", "::"))
-"""Addresses that listen everywhere."""
-
-
-def _own_names(host: str) -> frozenset[str]:
-    """The names under which a browser may reach the server."""
-    loopback = {"127.0.0.1", "localhost", "::1"}
-    if host in loopback:
-        return frozenset(loopback)
-    return frozenset({host.lower(), socket.gethostname().lower(), *(loopback if host in ANY else ())})
-
-
-def _is_address(name: str) -> bool:
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True
 
 
 def _start(game: Game, asked: Json) -> None:

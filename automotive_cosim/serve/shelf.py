@@ -121,7 +121,7 @@ def _seek(folder: Path, depth: int) -> Iterator[ShelfEntry]:
         yield ShelfEntry(_id(folder), folder, is_evaluation=False, is_drive=True)
     elif (folder / "steps.jsonl").is_file():
         yield ShelfEntry(_id(folder), folder, is_evaluation=False)
-    elif (folder / "manifest.json").is_file() and (folder / "episodes.jsonl").is_file():
+    elif all(_is_own(folder / name) for name in ("manifest.json", "episodes.jsonl")):
         yield ShelfEntry(_id(folder), folder, is_evaluation=True)
     elif depth:
         try:
@@ -130,6 +130,11 @@ def _seek(folder: Path, depth: int) -> Iterator[ShelfEntry]:
             return
         for path in inner:
             yield from _seek(path, depth - 1)
+
+
+def _is_own(path: Path) -> bool:
+    """Whether it is a file, and no link, which may lead out of the folders."""
+    return path.is_file() and not path.is_symlink()
 
 
 def _id(folder: Path) -> str:

@@ -266,7 +266,7 @@ class EpisodeService:
                         running.used_s = self._clock()
                     return
         raise UserError(
-            f"no episode {episode_id!r}: finished, failed, or idle for {self._limits.idle_s:g} s; start another"
+            f"no episode {episode_id[:40]!r}: finished, failed, or idle for {self._limits.idle_s:g} s; start one"
         )
 
     def _drop(self, episode_id: str) -> None:

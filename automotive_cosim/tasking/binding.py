@@ -41,7 +41,9 @@ class UnmetNeedError(Exception):
 def needs(half: Half) -> tuple[str, ...]:
     """What a place must have for the half to be judged there, in words."""
     if half.basis is Basis.LAW:
-        return tuple(f"a verified rule: {TOPICS[rule.topic].lower()}, as in {rule.id}" for rule in rules_of(half))
+        return tuple(
+            f"a verified rule on the {TOPICS[rule.topic].lower()} (compare {rule.id})" for rule in rules_of(half)
+        )
     if _about_signs(half):
         return (POSTED_LIMIT,)
     if half.basis is Basis.POSTED and half.start.origin is not None:

@@ -10,9 +10,9 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
-from automotive_cosim.cockpit.desk import REMEMBERED
+from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
 from automotive_cosim.cockpit.signals import Signal
-from automotive_cosim.contracts import AlertKind, Reroute, RoadRequest
+from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, PullOver, Reroute, RoadRequest, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.dialogue import Topic, questions
 
@@ -248,6 +248,9 @@ class SeatRecalled:
         return f"seat and mirrors as in memory {self.slot}"
 
 
+REQUEST_WORDS = {Reroute: "reroute", PullOver: "pull-over", SlowDown: "slow-down"}
+
+
 @dataclass(frozen=True, slots=True)
 class RoadAsked:
     """Exactly one irrevocable request was made to the road: ``Reroute``, ``PullOver``, ``SlowDown``."""
@@ -269,8 +272,10 @@ class RoadAsked:
         return isinstance(asked[0], self.request) if isinstance(self.request, type) else asked[0] == self.request
 
     def __str__(self) -> str:
-        wanted = self.request.__name__ if isinstance(self.request, type) else self.request
-        return f"the road asked once for {wanted}"
+        if isinstance(self.request, Reroute) and self.request.destination:
+            return f"exactly one reroute request, to {self.request.destination}"
+        wanted = self.request if isinstance(self.request, type) else type(self.request)
+        return f"exactly one {REQUEST_WORDS.get(wanted, wanted.__name__)} request"
 
 
 @dataclass(frozen=True, slots=True)
@@ -341,7 +346,10 @@ class AllOf:
 
 @dataclass(frozen=True, slots=True)
 class AlertGiven:
-    """The driver was alerted of ``kind`` once; an advised speed, if any, is the given one, to 1 km/h."""
+    """The driver was alerted of ``kind`` once; an advised speed, if any, is the given one, to 1 km/h.
+
+    Without a given one, any speed up to a posted limit may be advised: a warning of something else may name it.
+    """
 
     kind: AlertKind
     speed_kmh: float | None = None
@@ -355,17 +363,25 @@ class AlertGiven:
 
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether there was exactly one alert since the start, of this kind."""
-        given = now.commands["alerts"][len(start.commands["alerts"]) :]
-        return len(given) == 1 and given[0]["kind"] == self.kind and self._advises(given[0]["speed_kmh"])
+        before = len(start.commands["alerts"])
+        given = now.commands["alerts"][before:]
+        if len(given) != 1 or given[0]["kind"] != self.kind:
+            return False
+        then = next((moment for moment in trace if len(moment.commands["alerts"]) > before), now)
+        return self._advises(given[0]["speed_kmh"], then)
 
-    def _advises(self, speed_kmh: float | None) -> bool:
-        if speed_kmh is None or self.speed_kmh is None:
-            return speed_kmh is None and not self.must_advise
+    def _advises(self, speed_kmh: float | None, then: Moment) -> bool:
+        """Whether that speed was right when it was advised."""
+        if speed_kmh is None:
+            return not self.must_advise
+        if self.speed_kmh is None:
+            signed_mps = then.driving.road.limit.posted_mps
+            return signed_mps is None or speed_kmh < signed_mps * KMH_PER_MPS + 1.0
         return abs(speed_kmh - self.speed_kmh) < 1.0
 
     def __str__(self) -> str:
-        speed = "" if self.speed_kmh is None else f", to {self.speed_kmh:g} km/h"
-        return f"the driver alerted once of {self.kind}{speed}"
+        speed = "" if self.speed_kmh is None else f" (any advised speed must be {self.speed_kmh:g} km/h)"
+        return f"exactly one {self.kind} alert{speed}"
 
 
 @dataclass(frozen=True, slots=True)

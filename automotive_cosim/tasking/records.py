@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from automotive_cosim.cockpit.desk import REMEMBERED
+from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED
 from automotive_cosim.cosim.moment import Moment
 
 NUMBER = re.compile(r"(\d+):(\d\d)|\d+(?:\.\d+)?")

@@ -13,7 +13,7 @@ from enum import StrEnum
 from typing import Any
 
 from automotive_cosim.cockpit.aboard import Occupant, Seat
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.belongings import NOTHING, Belongings
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.language import Language

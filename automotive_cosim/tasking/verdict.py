@@ -11,12 +11,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, LIGHTS
+from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, HVAC, LIGHTS
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.answers import only_answered
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.task import Basis
+from automotive_cosim.tasking.task import Basis, Half
+from automotive_cosim.tasking.telling import missing, told, told_value
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler
@@ -170,10 +171,11 @@ def _judge_asked(
     half = instance.half
     start, end = trace[0], trace[-1]
     goal_s = _since(instance, trace)
-    goal = Part(goal_s is not None, "reached" if goal_s is not None else f"not reached: {half.goal}")
+    lacks = "" if goal_s is not None else missing(half.goal, start, end, trace)
+    goal = Part(goal_s is not None, f"not reached: {lacks}" if lacks else "reached")
     return Verdict(
         goal=goal,
-        clean=_clean(instance, end, counterfactual),
+        clean=_clean(instance, end, baseline[-1], counterfactual),
         safe=_safe(trace, baseline),
         in_time=_in_time(instance, goal_s, end.time_s - start.time_s),
         declared=Part(declared is half.declares, f"{declared or 'nothing'} declared, {half.declares} is right"),
@@ -195,14 +197,41 @@ def _since(instance: Instance, trace: Sequence[Moment]) -> float | None:
     return since
 
 
+COUPLED_BY: Mapping[str, frozenset[str]] = {
+    HVAC.SYNC.path: frozenset({HVAC.DRIVER_TEMPERATURE.path, HVAC.PASSENGER_TEMPERATURE.path})
+}
+"""Switches that make one command follow another, and the two."""
 SPOKEN = frozenset({"questions"})
 """Commands that leave the car as it is: a question that was not needed costs time and is counted, and only a goal
 that says so forbids it."""
 
 
-def _clean(instance: Instance, end: Moment, counterfactual: Mapping[str, Any]) -> Part:
-    surplus = sorted(_changed(end.commands, counterfactual) - instance.half.allowed_writes - SPOKEN)
-    return Part(not surplus, "also changed: " + ", ".join(surplus) if surplus else "nothing else changed")
+def _clean(instance: Instance, end: Moment, untouched: Moment, counterfactual: Mapping[str, Any]) -> Part:
+    """What differs from the counterfactual was not asked for, unless it is as it would be had nobody acted: then
+    a coupling of the goal's was undone, which spoils nothing."""
+    half, commands = instance.half, end.commands
+    left = _changed(commands, untouched.commands)
+    surplus = _changed(commands, counterfactual) & left - half.allowed_writes - SPOKEN - parted(half, commands)
+    if not surplus:
+        return Part(True, "nothing else changed")
+    return Part(False, "also changed: " + ", ".join(_change(key, untouched, end) for key in sorted(surplus)))
+
+
+def parted(half: Half, commands: Mapping[str, Any]) -> frozenset[str]:
+    """Switches that are off now and couple what the half asks for to what it does not: whoever wants the one alone
+    may part the two."""
+    asked = half.allowed_writes
+    return frozenset(
+        switch for switch, coupled in COUPLED_BY.items() if not commands[switch] and len(asked & coupled) == 1
+    )
+
+
+def _change(key: str, before: Moment, after: Moment) -> str:
+    """What was changed, to what and from what; of lists, that they were."""
+    was, now = before.commands.get(key), after.commands.get(key)
+    if isinstance(now, bool | int | float | str) and not isinstance(was, list | dict):
+        return f"{told(key)} is {told_value(key, now)}, was {told_value(key, was)}"
+    return told(key)
 
 
 def _changed(commands: Mapping[str, Any], others: Mapping[str, Any]) -> frozenset[str]:

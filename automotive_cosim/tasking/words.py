@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.tasking.binding import needs
 from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil, TypeText, Warn
@@ -29,7 +29,7 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
         yield "when", start.start[:16].replace("T", " ")
     after = f", {half.trigger.after_s:g} s after departure or later" if half.trigger.after_s else ""
     yield "trigger", f"{half.trigger.condition}, for {half.trigger.for_s:g} s{after}"
-    yield "goal", f"{half.goal}, then declare {half.declares}"
+    yield "goal", f"{half.goal}, then declare `{half.declares}`"
     if half.may_write:
         yield "allowed", f"{', '.join(sorted(half.may_write))} may be commanded besides"
     for coming in start.interruptions:
@@ -46,7 +46,7 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
     yield "deadline", f"{half.deadline.seconds:g} s: {half.deadline.reason}"
     yield "basis", f"{half.basis}: {half.rule}" if half.rule else str(half.basis)
     for need in needs(half):
-        yield "elsewhere", need
+        yield "in another country", f"needs {need}"
 
 
 def _coming(coming: Arrival | CarChange) -> str:

@@ -8,6 +8,7 @@ states for one seed.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from datetime import datetime
@@ -78,6 +79,11 @@ class EgoPlan:
     """Where it is parked for a while, in the order of the times."""
     incidents: tuple[AnyIncident, ...] = ()
     """Staged on this drive besides the scenario's own; their times count from its departure."""
+    advice_s: float = math.inf
+    """For how long the driver keeps to what was asked or advised, and stops when asked to; by default for good."""
+    brakes_early: bool = False
+    """Whether the driver brakes early and gently for what stands ahead, as attentive people do. SUMO's model brakes
+    as late as it can: from 50 km/h at 21 m."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,6 +94,7 @@ class Event:
     |---|---|
     | ``driver_...`` | the driver's reaction to a request: slows, holds, ignores, opens_gap, gives_way, ... |
     | ``driver_parks``, ``driver_sets_off`` | the ego is parked as planned, and drives on |
+    | ``driver_released`` | what was asked or advised has ended; the driver drives as before |
     | ``incident`` | an incident of the scenario begins or ends |
     | ``pet`` | the ego and another crossed or merged within five seconds, with their post-encroachment time |
     | ``collision`` | two vehicles touched |

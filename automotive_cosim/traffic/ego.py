@@ -87,6 +87,8 @@ SLOWEST_MOVE_OVER_MPS = 5 / MPH_PER_MPS
 """A driver who cannot change lanes passes at 20 mph below the limit, or at 5 mph if that is 20 or less (Florida
 statute 316.126)."""
 
+FASTEST_MPS = 130 / KMH_PER_MPS
+"""A request for this speed holds nobody back where there is no limit."""
 SLOWEST_REQUEST_KMH = 5.0
 FAST_ROADS = frozenset({"motorway", "trunk"})
 MOTORWAYS = frozenset({"motorway", "motorway_link"})
@@ -101,6 +103,12 @@ _ENDS = {
     EgoEnd.REMOVED: say("removed"),
 }
 FOR_GOOD_S = 86_400.0
+SEARCH_S = 60.0
+"""How long a driver who was asked to stop looks for a place."""
+EARLY_MPS2 = 2.5
+"""How hard an attentive driver brakes for what stands ahead: most people's decelerations before a signal lie below
+(Gates and others, 2007: 85th percentile 3.0, mean 2.2 m/s2)."""
+RELEASED = "driver_released"
 PARKS = "driver_parks"
 SETS_OFF = "driver_sets_off"
 """Kinds of the events of a planned halt."""
@@ -140,6 +148,10 @@ class Pedals(Protocol):
 
     def set_grip(self, friction: float) -> None:
         """Limits braking to ``friction * g``."""
+        ...
+
+    def set_braking(self, deceleration_mps2: float) -> None:
+        """How hard the driver brakes for what can be seen coming."""
         ...
 
     def set_hazards(self, on: bool) -> None:
@@ -193,6 +205,8 @@ class _Bounds:
     """Speed limits that the driver keeps, in m/s; infinite without a request."""
 
     asked: float = math.inf
+    asked_under: float | None = None
+    """The limit at which that was asked; in a drive it ends with it."""
     cruise: float = math.inf
     advised: float = math.inf
     advised_under: float | None = None
@@ -237,6 +251,12 @@ class Driver:
     _halting: bool = False
     """Whether the place of a halt is chosen."""
     _sets_off_s: float = math.inf
+    _advised_until_s: float = math.inf
+    """When the driver no longer keeps to what was asked or advised."""
+    _search_until_s: float = -math.inf
+    """Until when the driver looks for a place to stop, as asked."""
+    _stop: str = ""
+    """Whether a stop that was asked for is ``chosen`` or ``made``; empty without one."""
 
     def __post_init__(self) -> None:
         self._mood = self.plan.driver
@@ -244,6 +264,7 @@ class Driver:
         self._draws = np.random.default_rng([self.plan.seed, 0])
         self._headway_s = self._profile.headway_s
         self._choose_speed()
+        self._choose_braking()
 
     def request(self, request: RoadRequest, state: DrivingState) -> Answer:
         """Receives a request. What does not depend on the driver happens now, the rest after the reaction time."""
@@ -292,6 +313,8 @@ class Driver:
             if due:
                 self._intents = [intent for intent in self._intents if intent not in due]
                 events += tuple(event for intent in due for event in self._act(intent, now.state))
+        if self.plan.advice_s < math.inf:
+            events += tuple(self._end_advice(now))
         if now.time_s >= self._corridor_until_s:
             self._corridor_until_s = math.inf
             self.pedals.leave_corridor(False)
@@ -324,8 +347,16 @@ class Driver:
             case Alert():
                 return tuple(self._heed(request, state, f"{after} the alert"))
             case SlowDown(speed_kmh):
-                self._bounds.asked = speed_kmh / KMH_PER_MPS
+                limit_mps = state.road.limit.mps
+                if self.plan.advice_s < math.inf and speed_kmh / KMH_PER_MPS >= (limit_mps or FASTEST_MPS) - 0.1:
+                    self._advised_until_s = state.time_s  # which takes all advice back
+                    return ()
+                self._bounds.asked, self._bounds.asked_under = speed_kmh / KMH_PER_MPS, limit_mps
+                self._advised_until_s = state.time_s + self.plan.advice_s
                 return (self._slows(state, f"{after} the request"),)
+            case PullOver() if self.plan.advice_s < math.inf:
+                self._search_until_s = state.time_s + SEARCH_S
+                return (Event(state.time_s, "driver_pulls_over", f"driver looks for a place to stop, {after} it"),)
             case PullOver():
                 try:
                     where = self.pedals.pull_over(state, FOR_GOOD_S)
@@ -337,6 +368,10 @@ class Driver:
 
     def _heed(self, alert: Alert, state: DrivingState, after: str) -> list[Event]:
         events = []
+        self._advised_until_s = state.time_s + self.plan.advice_s
+        if self._is_told_to_stop(alert):
+            self._search_until_s = state.time_s + SEARCH_S
+            events.append(Event(state.time_s, "driver_pulls_over", f"driver looks for a place to stop, {after}"))
         if alert.kind in SPEED_KINDS:
             self._law_abiding = True
             self._easing_mps2 = BRAKING_MPS2 if alert.severity is Severity.CRITICAL else EASING_MPS2
@@ -357,6 +392,33 @@ class Driver:
         return events or [
             Event(state.time_s, "driver_notes", f"driver takes note of the {alert.kind} alert, {after}")
         ]
+
+    def _is_told_to_stop(self, alert: Alert) -> bool:
+        """By the red warning of the car itself: a leaking tyre, an open tailgate."""
+        is_red = alert.kind is AlertKind.VEHICLE and alert.severity is Severity.CRITICAL
+        return is_red and self.plan.advice_s < math.inf
+
+    def _end_advice(self, now: Instant) -> Iterator[Event]:
+        """Stops where asked to, and drives as before once what was asked or advised has ended."""
+        if now.time_s < self._search_until_s and not self._stop:
+            with suppress(RefusedError):  # further on there may be a place
+                where = self.pedals.pull_over(now.state, self.plan.advice_s)
+                self._stop = "chosen"
+                yield Event(now.time_s, "driver_pulls_over", f"driver pulls over {where}")
+        elif self._stop and self.pedals.is_parked() is not (self._stop == "made"):
+            if self._stop == "made":
+                self._stop, self._search_until_s = "", -math.inf
+                yield Event(now.time_s, RELEASED, "driver drives on")
+            else:
+                self._stop = "made"
+        bounds = self._bounds
+        if bounds.asked < math.inf and now.limit_mps != bounds.asked_under:
+            self._advised_until_s = now.time_s
+        if now.time_s >= self._advised_until_s:
+            self._advised_until_s = math.inf
+            bounds.asked = bounds.advised = math.inf
+            self._drive_as(self._profile.name)
+            yield Event(now.time_s, RELEASED, "driver drives as before; what was advised has ended")
 
     def _make_room(self, alert: Alert, state: DrivingState, after: str) -> Event:
         """Gives way to an emergency vehicle behind, in a jam by a corridor, or to a stopped vehicle at the kerb."""
@@ -424,6 +486,7 @@ class Driver:
         self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
         self.pedals.set_imperfection(self._profile.imperfection)
         self.pedals.set_overtaking(self._profile.overtaking)
+        self._choose_braking()
 
     def _halt(self, halt: HaltAt, now: Instant) -> Iterator[Event]:
         """Looks for a place to park once it is time, parks there, and drives on."""
@@ -457,6 +520,13 @@ class Driver:
         self._own_top_mps = self._profile.top_speed_kmh / KMH_PER_MPS * adapted
         if self._profile.caution:
             self._own_top_mps = min(self._own_top_mps, self._condition.sight_mps)
+
+    def _choose_braking(self) -> None:
+        if self.plan.brakes_early:
+            is_attentive = self._profile.caution >= 1.0
+            gentle_mps2 = min(EARLY_MPS2, self._profile.deceleration_mps2)
+            self.pedals.set_braking(gentle_mps2 if is_attentive else self._profile.deceleration_mps2)
+            self.pedals.set_grip(self._condition.friction)
 
     def _adapted(self, ratio: float) -> float:
         return 1.0 + self._profile.caution * (ratio - 1.0)

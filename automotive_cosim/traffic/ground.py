@@ -17,9 +17,11 @@ from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_d
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.mirror import mirrored
 from automotive_cosim.traffic.network import Network, Shape, quantity, read_network
-from automotive_cosim.traffic.options import Configuration
+from automotive_cosim.traffic.options import FALSE, TRUE, Configuration
 
 KINDS = {
     **dict.fromkeys(
@@ -36,19 +38,27 @@ KINDS = {
 AREAS_LIMIT = 20_000
 """Of more areas the largest are shown."""
 
-TRUE, FALSE = frozenset(("1", "true", "on", "yes", "x", "t")), frozenset(("0", "false", "off", "no", "-", "f", ""))
-"""How SUMO's files say so."""
 
-
-def read_mapped(configuration: Configuration) -> Network:
+def read_mapped(configuration: Configuration, read: Network | None = None) -> Network:
     """The network of a configuration with what is around its roads.
+
+    Args:
+        configuration: names the files.
+        read: the network without it, if it has been read.
 
     Raises:
         ScenarioError: a file is missing or invalid; a polygon with its line.
     """
-    network = read_network(configuration.net)
+    network = read or read_network(configuration.net)
     ground = read_ground(configuration, network.map)
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
+
+
+def placed(network: Network, scenario: Scenario) -> Network:
+    """A scenario's network as it drives there: on its side of the road, and at its place."""
+    if scenario.mirrored:
+        network = mirrored(network)
+    return network if scenario.origin is None else network.at(scenario.origin, scenario.language)
 
 
 def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[GroundArea, ...]:
@@ -64,8 +74,7 @@ def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[Groun
     """
     found: list[GroundArea] = []
     reference = None if roads.projection is None else GeoReference(roads)
-    for name in filter(None, configuration.options.get("additional-files", "").split(",")):
-        file = Path(name)
+    for file in configuration.files.get("additional-files", ()):
 
         def start(element: str, attributes: dict[str, str], line: int, file: Path = file) -> None:
             if element != "poly":

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import tempfile
+from pathlib import Path
+
 from automotive_cosim.contracts import (
     Answer,
     DrivingState,
@@ -16,7 +19,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic, WarmUpProgress
 from automotive_cosim.traffic.drive import Call, EgoDrive
 from automotive_cosim.traffic.fork import replayed
-from automotive_cosim.traffic.options import Setup
+from automotive_cosim.traffic.options import SCRATCH, Setup
 from automotive_cosim.traffic.world import World
 
 
@@ -87,7 +90,8 @@ class InProcess:
             InProcess._current = None
 
     def _warm(self) -> World:
-        world = World(self.setup)
+        with tempfile.TemporaryDirectory(prefix=SCRATCH) as scratch:
+            world = World(self.setup, Path(scratch))
         world.warm_up(self._progress)
         return world
 

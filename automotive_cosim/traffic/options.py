@@ -1,13 +1,15 @@
 """A scenario's ``.sumocfg`` and ``scenario.toml`` -> SUMO's command line, without outputs.
 
-The scenario's files are only read. Of its options those in ``vocabulary`` are taken, files are named by absolute
-paths, and those that would write are copied to a scratch folder without their outputs (``vetting``).
+The scenario's files are only read. Of its options those in ``vocabulary`` are taken, and its files are copied under
+names of ours to a scratch folder, in which SUMO runs (``vetting``).
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+import re
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -16,12 +18,21 @@ from automotive_cosim.formats.files import is_file
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import random_traffic
-from automotive_cosim.traffic.network import read_network, root_of
+from automotive_cosim.traffic.mirror import mirrored, write_mirrored
+from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_network, root_of
 from automotive_cosim.traffic.redraw import redraw
-from automotive_cosim.traffic.vetting import vet
-from automotive_cosim.traffic.vocabulary import IGNORED, REFUSED, TAKEN
+from automotive_cosim.traffic.sumo import EGO
+from automotive_cosim.traffic.vetting import OTHER_EGO, copy_vetted, refuse_variables
+from automotive_cosim.traffic.vocabulary import IGNORED, MESOSCOPIC, REFUSED, TAKEN, WINDOW
 
 INPUTS = ("net-file", "route-files", "additional-files", "weight-files")
+"""Options that name files."""
+
+TRUE, FALSE = frozenset(("1", "true", "on", "yes", "x", "t")), frozenset(("0", "false", "off", "no", "-", "f", ""))
+"""How SUMO's files say so."""
+
+EGO_LISTS = ".explicit"
+"""The ending of options that list vehicles."""
 
 DEFAULTS = {
     "time-to-teleport": "300",
@@ -41,6 +52,9 @@ QUIET = {
 
 FIXED = {"collision.action": "remove"}
 """Options of every run: SUMO's default would teleport who collides, and the ego's collision must end its drive."""
+
+SCRATCH = "automotive-cosim-"
+"""Beginning of the name of a simulation's scratch folder."""
 
 OUTPUTS = ("fcd.xml", "tripinfo.xml")
 """SUMO's own outputs that a run may write."""
@@ -66,8 +80,10 @@ class Configuration:
 
     path: Path
     net: Path
-    options: dict[str, str]
-    """Option name -> value, only those that are taken; files absolute."""
+    options: Mapping[str, str] = field(default_factory=dict)
+    """Option name -> value, only those that are taken, without files."""
+    files: Mapping[str, tuple[Path, ...]] = field(default_factory=dict)
+    """Option of ``INPUTS`` -> its files, absolute."""
     ignored: tuple[str, ...] = ()
     """Names of the options that have no effect here."""
 
@@ -100,6 +116,29 @@ class Configuration:
         return value
 
 
+@dataclass(frozen=True, slots=True)
+class Copied(Configuration):
+    """A configuration whose files are checked copies under names of ours."""
+
+    folder: Path = Path()
+    """The folder of the copies."""
+    given: Mapping[str, tuple[Path, ...]] = field(default_factory=dict)
+    """The files that were copied, like ``files``."""
+
+    @contextmanager
+    def named_as_given(self) -> Iterator[None]:
+        """Names files in errors as the user does."""
+        try:
+            yield
+        except ScenarioError as error:
+            text = str(error)
+            for name, files in self.given.items():
+                for number, file in enumerate(files):
+                    copies = rf"(?:\S*{re.escape(self.folder.name)}[/\\])?\b{name}{number}(?:-\d+)*\.xml"
+                    text = str(file).join(re.split(copies, text))
+            raise ScenarioError(text) from error
+
+
 def read_configuration(path: Path) -> Configuration:
     """Reads a ``.sumocfg``; a plain network counts as one that names nothing else.
 
@@ -107,12 +146,12 @@ def read_configuration(path: Path) -> Configuration:
         ScenarioError: it is not XML, names no network, or names a missing file.
     """
     if root_of(path).tag == "net":
-        return Configuration(path, path.absolute(), {"net-file": str(path.absolute())})
+        return Configuration(path, path.absolute(), files={"net-file": (path.absolute(),)})
     reader = _Reader(path)
     scan(path, reader.start, text=reader.text, error=ScenarioError, what="a SUMO configuration")
-    if "net-file" not in reader.options:
+    if "net-file" not in reader.files:
         raise ScenarioError(f"{path} names no net-file")
-    return Configuration(path, Path(reader.options["net-file"]), reader.options, tuple(reader.ignored))
+    return Configuration(path, reader.files["net-file"][0], reader.options, reader.files, tuple(reader.ignored))
 
 
 @dataclass(slots=True)
@@ -121,6 +160,7 @@ class _Reader:
 
     path: Path
     options: dict[str, str] = field(default_factory=dict)
+    files: dict[str, tuple[Path, ...]] = field(default_factory=dict)
     ignored: dict[str, None] = field(default_factory=dict)
     """Names, in their order."""
 
@@ -131,11 +171,15 @@ class _Reader:
             return
         where = f"{self.path} line {line}"
         if element in TAKEN:
-            name = TAKEN[element]
-            if value:
-                self.options[name] = self._files(name, value, where) if name in INPUTS else value
-        elif element in IGNORED:
-            self.ignored[IGNORED[element]] = None
+            self._take(TAKEN[element], value, where)
+        elif element in IGNORED or element in WINDOW:
+            self.ignored[IGNORED.get(element, element)] = None
+        elif element == MESOSCOPIC:
+            if value.lower() not in FALSE:
+                raise ScenarioError(
+                    f"{where}: it is mesoscopic (<{element}>), and there no car is in a lane; remove it, or give a "
+                    "scenario of single vehicles"
+                )
         elif element in REFUSED:
             raise ScenarioError(f"{where}: <{element}> names files that are not checked here; remove it")
         else:
@@ -148,13 +192,19 @@ class _Reader:
         if piece.strip():
             raise ScenarioError(f'{self.path} line {line}: {piece.strip()[:80]!r}; write <option value="..."/>')
 
-    def _files(self, name: str, value: str, where: str) -> str:
-        """The comma-separated files, absolute."""
+    def _take(self, name: str, value: str, where: str) -> None:
+        if not value:
+            return
+        refuse_variables(value, f"{where}: {name}")
+        if name not in INPUTS:
+            self.options[name] = value
+            return
         files = [self.path.parent / part.strip() for part in value.split(",") if part.strip()]
         for file in files:
-            if "${" in file.name or not is_file(file):  # SUMO may put a variable's value there
+            if not is_file(file):
                 raise ScenarioError(f"{where}: its {name} {str(file)!r} is missing")
-        return ",".join(str(file.absolute()) for file in files)
+        if files:
+            self.files[name] = tuple(file.absolute() for file in files)
 
 
 def command_line(options: Mapping[str, str]) -> list[str]:
@@ -162,31 +212,59 @@ def command_line(options: Mapping[str, str]) -> list[str]:
     return ["sumo", *(f"--{name}={value}" for name, value in options.items())]
 
 
-def run_options(configuration: Configuration, setup: Setup, scratch: Path) -> dict[str, str]:
-    """The options of a run, name -> value.
+def copied(configuration: Configuration, folder: Path, network: NetworkReader | None = None) -> Copied:
+    """The configuration with checked copies of its files.
 
     Args:
         configuration: the scenario's own.
-        setup: seed, and the scenario's step lengths, scale and rerouting.
-        scratch: an empty folder for changed files.
+        folder: a folder for the copies, and for nothing else but what SUMO writes.
+        network: reads the network while it is copied.
 
     Raises:
         ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``).
     """
-    options = DEFAULTS | configuration.options | QUIET | FIXED
-    for name in INPUTS:
-        if files := options.get(name):
-            options[name] = ",".join(str(vet(Path(file), scratch)) for file in files.split(","))
+    net = folder / copy_vetted(configuration.net, folder, "net-file0", network, FORM)
+    files = {
+        name: tuple(folder / copy_vetted(file, folder, f"{name}{number}") for number, file in enumerate(originals))
+        for name, originals in configuration.files.items()
+        if name != "net-file"
+    }
+    files["net-file"] = (net,)
+    return Copied(
+        configuration.path, net, configuration.options, files, configuration.ignored, folder, configuration.files
+    )
+
+
+def run_options(configuration: Copied, setup: Setup, network: Network | None = None) -> dict[str, str]:
+    """The options of a run, name -> value; names of files are those in the folder, in which SUMO must run.
+
+    Args:
+        configuration: the scenario's own, with copies of its files.
+        setup: seed, and the scenario's step lengths, scale and rerouting.
+        network: the configuration's as it drives, if it has been read.
+    """
+    options = DEFAULTS | dict(configuration.options) | QUIET | FIXED
+    for name, value in options.items():
+        if name.endswith(EGO_LISTS):
+            options[name] = ",".join(OTHER_EGO if each == EGO else each for each in value.split(","))
+    inputs = {name: [file.name for file in files] for name, files in configuration.files.items()}
+    if setup.scenario.mirrored:
+        image = network or mirrored(read_network(configuration.net))
+        inputs["net-file"] = ["mirrored.net.xml"]
+        write_mirrored(configuration.net, configuration.folder / "mirrored.net.xml", image.map)
     sumo = setup.scenario.sumo
     step_s = sumo.step_length_s
     if sumo.redraws_trips:
-        routes = filter(None, options.get("route-files", "").split(","))
-        days = (redraw(Path(file), scratch / f"day{n}.rou.xml", setup.seed + n) for n, file in enumerate(routes))
-        options["route-files"] = ",".join(map(str, days))
+        days = [f"day{number}.rou.xml" for number in range(len(inputs.get("route-files", ())))]
+        for number, (file, day) in enumerate(zip(configuration.files.get("route-files", ()), days, strict=True)):
+            redraw(file, configuration.folder / day, setup.seed + number)
+        inputs["route-files"] = days
     if sumo.random_traffic_per_km_h > 0:
-        drawn = scratch / "random.add.xml"
-        random_traffic.write(drawn, read_network(configuration.net), sumo.random_traffic_per_km_h, setup.seed)
-        options["additional-files"] = ",".join(filter(None, (options.get("additional-files"), str(drawn))))
+        drawn = "random.add.xml"
+        roads = network or read_network(configuration.net)
+        random_traffic.write(configuration.folder / drawn, roads, sumo.random_traffic_per_km_h, setup.seed)
+        inputs.setdefault("additional-files", []).append(drawn)
+    options |= {name: ",".join(names) for name, names in inputs.items() if names}
     options |= {
         "step-length": f"{step_s:g}",
         "default.action-step-length": f"{max(step_s, sumo.action_step_length_s):g}",
@@ -200,8 +278,8 @@ def run_options(configuration: Configuration, setup: Setup, scratch: Path) -> di
         options |= {
             "fcd-output": str(setup.outputs / "fcd.xml"),
             "fcd-output.skip-empty": "true",
-            "device.fcd.explicit": "ego",
-            "device.emissions.explicit": "ego",
+            "device.fcd.explicit": EGO,
+            "device.emissions.explicit": EGO,
             "tripinfo-output": str(setup.outputs / "tripinfo.xml"),
             "precision": "6",
         }

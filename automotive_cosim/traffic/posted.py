@@ -5,9 +5,9 @@ The words are OpenStreetMap's (wiki pages "Key:maxspeed" and "Conditional restri
     maxspeed              50        30 mph        none
     maxspeed:conditional  40 @ (Mo-Fr 08:00-09:30,14:30-16:00; SH off; PH off)
 
-Conditions on weekdays and times of day are understood. ``SH off`` and ``PH off`` are accepted but ignored: there is
-no calendar of holidays, so every Monday is a school day. A limit under any other condition (weather, axle load,
-season, ...) is omitted and reported.
+Conditions on weekdays, times of day, dates and months are understood, and ``wet`` and ``snow``, which the weather
+of the drive decides. ``SH off`` and ``PH off`` are accepted but ignored: there is no calendar of holidays, so every
+Monday is a school day. A limit under any other condition (axle load, daylight, ...) is omitted and reported.
 """
 
 from __future__ import annotations
@@ -24,10 +24,28 @@ _PER_MPS = {"": KMH_PER_MPS, "km/h": KMH_PER_MPS, "mph": MPH_PER_MPS}
 _DAYS = ("Mo", "Tu", "We", "Th", "Fr", "Sa", "Su")
 _DAY_MINUTES = 24 * 60
 
+_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
+
+WALK_KMH = 7.0
+"""``maxspeed=walk``: walking pace as interpreted by German courts (StVO sign 325)."""
+
+WEATHERS = {"wet": "when wet", "snow": "in snow"}
+"""Conditions that the weather decides, and how they are said."""
+
 _CLAUSE = re.compile(r"([^@;]+)@\s*(\([^()]*\)|[^;()]+)\s*(?:;|$)")
-_HOLIDAYS_OFF = re.compile(r"(?:PH|SH)(?:\s*,\s*(?:PH|SH))*\s+off")
-_RULE = re.compile(r"(?P<days>[A-Z][a-z](?:[-,][A-Z][a-z])*)?\s*(?P<times>[\d:,\- ]+)?")
+_SIGN = re.compile(r"(\d+(?:\.\d+)?)\s*(km/h|kmh|kph|mph)?", re.IGNORECASE)
+_DAY = "(?:Mo|Tu|We|Th|Fr|Sa|Su)"
+_HOLIDAYS = re.compile(r"(?:PH|SH)(?:\s*,\s*(?:PH|SH))*\s+off")
+_DAYS_OFF = re.compile(rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)\s+off")
+_MONTH = f"(?:{'|'.join(_MONTHS)})"
+_DATES = rf"{_MONTH}(?: \d\d?)?(?:-(?:{_MONTH}(?: \d\d?)?|\d\d?))?"
+_RULE = re.compile(rf"(?P<dates>{_DATES})?:?\s*(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?")
+_NEXT_RULE = re.compile(rf"(?<=\d)\s*,\s*(?={_DAY}\b)")
+"""Where a comma parts two rules: after a time, before a day (``Mo-Fr 07:00-17:00, Sa 08:00-12:00``)."""
 _SPAN = re.compile(r"(\d\d?):(\d\d)-(\d\d?):(\d\d)")
+
+Day = tuple[int, int]
+"""A month and a day of it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,9 +61,21 @@ class TimedLimit:
     belongs to the day on which it begins."""
     text: str
     """In words: ``40 km/h Mo-Fr 08:00-09:30, 14:30-16:00``."""
+    dates: tuple[Day, Day] = ((1, 1), (12, 31))
+    """The first and the last day of the year on which it holds; the last may be in the next year."""
+    weather: str = ""
+    """A key of ``WEATHERS`` if it holds in that weather only."""
 
-    def holds(self, local_time: datetime) -> bool:
-        """Whether it is in force at the local time."""
+    def holds(self, local_time: datetime, weather: str = "") -> bool:
+        """Whether it is in force at the local time, in a weather of ``WEATHERS`` or none of them."""
+        first_day, last_day = self.dates
+        today = (local_time.month, local_time.day)
+        in_season = (
+            first_day <= today <= last_day if first_day <= last_day else (today >= first_day or today <= last_day)
+        )
+        return in_season and self.weather in ("", weather) and self._holds_at(local_time)
+
+    def _holds_at(self, local_time: datetime) -> bool:
         minute, day = local_time.hour * 60 + local_time.minute, local_time.isoweekday()
         today, yesterday = day in self.days, (day + 5) % 7 + 1 in self.days
         for first, last in self.spans:
@@ -57,9 +87,9 @@ class TimedLimit:
         return False
 
 
-def in_force(limits: Sequence[TimedLimit], local_time: datetime) -> TimedLimit | None:
+def in_force(limits: Sequence[TimedLimit], local_time: datetime, weather: str = "") -> TimedLimit | None:
     """The limit in force now; of several, the last one, as in OpenStreetMap."""
-    return next((limit for limit in reversed(limits) if limit.holds(local_time)), None)
+    return next((limit for limit in reversed(limits) if limit.holds(local_time, weather)), None)
 
 
 def sign_mps(sign: str) -> float | None:
@@ -99,30 +129,88 @@ def timed_limits(conditional: str) -> tuple[tuple[TimedLimit, ...], tuple[str, .
 
 
 def _limits(sign: str, condition: str) -> list[TimedLimit]:
-    limit_mps = sign_mps(sign)
-    unit = "" if sign == "none" or " " in sign else " km/h"
-    rules = [rule for rule in map(str.strip, condition.split(";")) if not _HOLIDAYS_OFF.fullmatch(rule)]
-    if not rules:
+    limit_mps, shown = _read_sign(sign)
+    condition, weather = _weather(condition)
+    rules = [
+        part
+        for rule in map(str.strip, condition.split(";"))
+        for part in _NEXT_RULE.split(rule)
+        if part and not _HOLIDAYS.fullmatch(part)
+    ]
+    off = [match["days"] for match in map(_DAYS_OFF.fullmatch, rules) if match]
+    rules = [rule for rule in rules if not _DAYS_OFF.fullmatch(rule)]
+    if not rules and not weather:
         raise ValueError(condition)
-    return [_limit(limit_mps, "no limit" if sign == "none" else sign + unit, rule) for rule in rules]
+    free = frozenset[int]().union(*map(_weekdays, off))
+    return [_limit(limit_mps, shown, rule, free, off, weather) for rule in rules or ["24/7"]]
 
 
-def _limit(limit_mps: float | None, sign: str, rule: str) -> TimedLimit:
+def _read_sign(sign: str) -> tuple[float | None, str]:
+    """The speed of a sign as mappers write it, and how it is said."""
+    if sign == "none":
+        return None, "no limit"
+    if sign == "walk":
+        return WALK_KMH / KMH_PER_MPS, "walking pace"
+    match = _SIGN.fullmatch(sign)
+    if match is None:
+        raise ValueError(sign)
+    unit = "mph" if (match[2] or "").lower() == "mph" else "km/h"
+    return float(match[1]) / _PER_MPS[unit], f"{match[1]} {unit}"
+
+
+def _weather(condition: str) -> tuple[str, str]:
+    """A condition without the weather in it (``22:00-06:00 AND wet``), and that."""
+    parts = [part.strip() for part in condition.split(" AND ")]
+    found = [part for part in parts if part in WEATHERS]
+    rest = [part for part in parts if part not in WEATHERS]
+    if len(found) > 1 or len(rest) > 1:
+        raise ValueError(condition)
+    return "".join(rest), "".join(found)
+
+
+def _limit(
+    limit_mps: float | None, sign: str, rule: str, free: frozenset[int], off: Sequence[str], weather: str
+) -> TimedLimit:
     """One rule such as ``Mo-Fr 08:00-09:30,14:30-16:00``."""
     match = _RULE.fullmatch(rule)
     if match is None or not rule:
         raise ValueError(rule)
-    days, times = match["days"] or "", (match["times"] or "").strip()
+    dates, days = match["dates"] or "", re.sub(r"\s", "", match["days"] or "")
+    times = (match["times"] or "").strip().removeprefix("24/7")
     spans = tuple(_span(span.strip()) for span in times.split(",")) if times else ((0, _DAY_MINUTES),)
-    words = " ".join(part for part in (days.replace(",", ", "), re.sub(r"\s*,\s*", ", ", times)) if part)
-    return TimedLimit(limit_mps, _weekdays(days), spans, f"{sign} {words}")
+    hours = re.sub(r"\s*,\s*", ", ", times)
+    but = f"but {', '.join(off)}" if off else ""
+    words = " ".join(
+        part for part in (dates, days.replace(",", ", "), hours, but, WEATHERS.get(weather, "")) if part
+    )
+    weekdays = _weekdays(days) - free
+    return TimedLimit(limit_mps, weekdays, spans, f"{sign} {words}".strip(), _dates(dates), weather)
+
+
+def _dates(text: str) -> tuple[Day, Day]:
+    """``Apr-Oct``, ``Nov 15-Mar 15``, ``Dec 24-26``, ``May``; the whole year for none."""
+    if not text:
+        return (1, 1), (12, 31)
+    first, _, last = text.partition("-")
+    month, _, day = first.partition(" ")
+    start = (_MONTHS.index(month) + 1, int(day or 1))
+    if last.isdecimal():
+        end = (start[0], int(last))
+    elif last:
+        month, _, day = last.partition(" ")
+        end = (_MONTHS.index(month) + 1, int(day or 31))
+    else:
+        end = (start[0], int(day or 31))
+    if not all(1 <= each[1] <= 31 for each in (start, end)):
+        raise ValueError(text)
+    return start, end
 
 
 def _weekdays(text: str) -> frozenset[int]:
     if not text:
         return frozenset(range(1, 8))
     days: set[int] = set()
-    for part in text.split(","):
+    for part in re.sub(r"\s", "", text).split(","):
         first, last = (_DAYS.index(day) for day in (part.split("-") * 2)[:2])
         days.update((first + step) % 7 + 1 for step in range((last - first) % 7 + 1))
     return frozenset(days)

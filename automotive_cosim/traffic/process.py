@@ -15,7 +15,6 @@ import signal
 import socket
 import stat
 import sys
-import tempfile
 import time
 import traceback
 from collections.abc import Sequence
@@ -28,6 +27,7 @@ from automotive_cosim.traffic.accounts import Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
+from automotive_cosim.traffic.confinement import confine
 from automotive_cosim.traffic.divert import Edges, divert
 from automotive_cosim.traffic.drive import Call, EgoDrive
 from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
@@ -94,14 +94,20 @@ class Server:
 
     # --- the calls ----------------------------------------------------------------------------------------
 
-    def do_load(self, setup: Setup) -> RoadNetwork:
-        """Loads and warms up; returns the network."""
+    def do_load(self, setup: Setup, scratch: Path) -> RoadNetwork:
+        """Loads and warms up; returns the network.
+
+        From here on this process and its copies can write only to the scratch folder, which the other side removes
+        when this is done, and beside SUMO's outputs, if the kernel can see to that.
+        """
         self._set_alarm(LOADING_LIMIT_S)
-        self._world = World(setup)
-        with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as nowhere:
-            os.chdir(nowhere)  # which is gone then: nothing can be made under a relative name
+        load_library()  # which writes where Python keeps its compiled modules
+        confine([scratch] if setup.outputs is None else [scratch, setup.outputs.parent])
+        os.chdir(scratch)  # which is gone afterwards: nothing can be made under a relative name
+        self._world = World(setup, scratch)
         self._set_alarm()
         self._world.warm_up(self._progress)
+        self._world.prepare_copies()
         gc.collect()
         gc.freeze()  # collecting garbage would copy every page that the children share
         return self._world.network.map

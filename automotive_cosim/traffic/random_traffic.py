@@ -1,4 +1,7 @@
-"""Light traffic for a network without any: flows between random edges, by seed."""
+"""Light traffic for a network without any: flows between random edges, by seed.
+
+Their routes are written out: SUMO would search the whole network again for every vehicle.
+"""
 
 from __future__ import annotations
 
@@ -8,7 +11,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 
 from automotive_cosim.traffic.network import Network
-from automotive_cosim.traffic.ways import ways_from
+from automotive_cosim.traffic.ways import NEAREST, ways_from
 
 STARTS, GOALS = 24, 5
 """Number of start edges of flows, and of end edges for each."""
@@ -35,16 +38,17 @@ def write(path: Path, network: Network, per_km_h: float, seed: int) -> None:
     rng = np.random.default_rng(seed)
     edges = list(network.edges.values())
     weights = np.array([edge.length_m * len(edge.lane_ids) for edge in edges])
-    pairs: list[tuple[str, str]] = []
+    routes: list[tuple[str, ...]] = []
     for index in rng.choice(len(edges), STARTS, p=weights / weights.sum()):
         start = edges[int(index)].edge_id
-        reached = list(ways_from(network, start).before)
+        ways = ways_from(network, start, NEAREST)
+        reached = list(ways.before)
         if reached:
-            pairs += [(start, reached[int(goal)]) for goal in rng.integers(len(reached), size=GOALS)]
-    each_per_s = vehicles_per_hour(network, per_km_h) / 3600 / max(1, len(pairs))
+            routes += [ways.to(reached[int(goal)]) for goal in rng.integers(len(reached), size=GOALS)]
+    each_per_s = vehicles_per_hour(network, per_km_h) / 3600 / max(1, len(routes))
     rows = (
         f'    <flow id="random.{number}" begin="0" end="604800" period="exp({each_per_s:.9f})" departLane="best" '
-        f'departSpeed="max" from={quoteattr(start)} to={quoteattr(goal)}/>'
-        for number, (start, goal) in enumerate(pairs)
+        f'departSpeed="max"><route edges={quoteattr(" ".join(route))}/></flow>'
+        for number, route in enumerate(routes)
     )
     path.write_text("\n".join(("<additional>", *rows, "</additional>", "")), encoding="utf-8")

@@ -17,7 +17,7 @@ from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.base import WarmUpProgress
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
-from automotive_cosim.traffic.options import Setup
+from automotive_cosim.traffic.options import SCRATCH, Setup
 
 TIMEOUT_S = 20.0
 """Wall time without a sign of life after which a simulation counts as hung; it gives one every second."""
@@ -30,6 +30,11 @@ CLOSING_LIMIT_S = 2.0
 DROPPED_VARIABLES = ("SUMO_HOME", "PROJ_DATA", "PROJ_LIB", "LIBSUMO_AS_TRACI", "PYTHONSTARTUP", "PYTHONINSPECT")
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 """A process with one thread can be forked safely; numpy's libraries would start more."""
+
+
+LARGE_PAGES = {"GLIBC_TUNABLES": "glibc.malloc.hugetlb=1"}
+"""Memory in pages of 2 MB where Linux has them: a fork copies the table of pages, not the pages, so it takes half
+as long, and what a copy then writes to is still copied in pages of 4 kB."""
 
 
 class _Complaints:
@@ -79,7 +84,8 @@ class RemoteProcess:
         process._end.detach()
         process._end = weakref.finalize(process, _end, process._channel, popen)
         try:
-            network = process.call("load", setup, progress=progress, timeout_s=LOADING_LIMIT_S)
+            with tempfile.TemporaryDirectory(prefix=SCRATCH, ignore_cleanup_errors=True) as scratch:
+                network = process.call("load", setup, Path(scratch), progress=progress, timeout_s=LOADING_LIMIT_S)
         except TrafficError as error:
             process.close()
             raise TrafficError(f"{error}; it was loading or warming up {setup.scenario.config}") from None
@@ -217,7 +223,7 @@ def _end(channel: MessageChannel, popen: subprocess.Popen[bytes]) -> None:
 def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> subprocess.Popen[bytes]:
     """Starts ``process`` with one end of the connection and a controlled environment."""
     environment = {name: value for name, value in os.environ.items() if name not in DROPPED_VARIABLES}
-    environment |= ONE_THREAD
+    environment = LARGE_PAGES | environment | ONE_THREAD
     environment["PYTHONPATH"] = os.pathsep.join(str(Path(entry).absolute()) for entry in sys.path)
     command = [
         sys.executable,

@@ -44,6 +44,8 @@ class RoadCondition:
     headway_ratio: float = 1.0
     sight_mps: float = math.inf
     """Speed from which a driver can stop within the visibility."""
+    weather: str = ""
+    """``"wet"`` or ``"snow"``, for signs that hold in that weather only."""
 
 
 DRY = RoadCondition()
@@ -74,6 +76,11 @@ _OF_CODES: dict[frozenset[int], tuple[float, tuple[float, float]]] = {
 """Friction, and the ratios of speed and headway, of weather codes (WMO 4677; freezing rain and rime are ice)."""
 
 
+SNOW_CODES = frozenset((71, 73, 75, 77, 85, 86))
+WET_CODES = frozenset((51, 53, 55, 56, 57, 61, 63, 65, 66, 67, 80, 81, 82, 95, 96, 99))
+"""Weather codes in which limits for snow or for the wet are in force."""
+
+
 def condition_of(weather: Weather) -> RoadCondition:
     """The condition of an open road in some weather."""
     friction, ratios = 1.0, (1.0, 1.0)
@@ -86,7 +93,8 @@ def condition_of(weather: Weather) -> RoadCondition:
         ratios = (min(ratios[0], LOW_VISIBILITY[0]), max(ratios[1], LOW_VISIBILITY[1]))
     hot = max(0.0, weather.temperature_2m - WARM_FROM_C)
     friction = min(friction, 1.0 - LOSS_PER_KELVIN * hot)
-    return RoadCondition(friction, *ratios, sight_speed_mps(weather.visibility, friction))
+    sign = "snow" if weather.weather_code in SNOW_CODES else "wet" if weather.weather_code in WET_CODES else ""
+    return RoadCondition(friction, *ratios, sight_speed_mps(weather.visibility, friction), sign)
 
 
 def sight_speed_mps(visibility_m: float, friction: float) -> float:

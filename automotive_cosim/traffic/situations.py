@@ -59,7 +59,7 @@ class Situations:
         self._zero_s = now_s
         self._start = plan.start or self._start
         self._trip = plan.trip.name
-        self._stage.signs.follow(self._local_time(now_s))
+        self._stage.signs.follow(self._local_time(now_s), self._stage.weather)
 
     def add(self, incident: Incident) -> None:
         """One more incident; its times count like those of the others.
@@ -77,7 +77,7 @@ class Situations:
         for entry in self._entries:
             if not entry.is_over:
                 told += self._proceed(entry, since_s, local_time)
-        self._stage.signs.follow(local_time)
+        self._stage.signs.follow(local_time, self._stage.weather)
         return tuple(Event(now_s, "incident", text) for text in told if text)
 
     def reported(self, slow: Mapping[str, float]) -> tuple[RoadIncident, ...]:

@@ -22,7 +22,8 @@ from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
+from automotive_cosim.traffic.confinement import confined
+from automotive_cosim.traffic.options import Copied, Setup, command_line, copied, read_configuration, run_options
 from automotive_cosim.traffic.sumo_programs import environment, first_error, program
 
 HALTED_SHARE_LIMIT = 0.25
@@ -163,9 +164,13 @@ def measure(
     tally = _Tally(warm_s, minute_start_s=begin_s)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-stability-") as scratch:
         setup = Setup(replace(scenario, sumo=sumo), seed=seed)
-        options = _options(setup, end_s, Path(scratch))
+        copies = copied(read_configuration(scenario.config), Path(scratch))
+        options = _options(copies, setup, end_s)
         warnings: list[str] = []
-        with closing(summary(scenario.config.name, options, Path(scratch), warnings)) as steps:
+        with (
+            copies.named_as_given(),
+            closing(summary(scenario.config.name, options, Path(scratch), warnings)) as steps,
+        ):
             for step in steps:
                 minute_is_over = tally.add(step)
                 if minute_is_over and on_progress:
@@ -185,8 +190,8 @@ def _stuck(warnings: Sequence[str]) -> Iterator[Stuck]:
             yield Stuck(found[1], found[3], found[2])
 
 
-def _options(setup: Setup, end_s: float, scratch: Path) -> list[str]:
-    options = run_options(read_configuration(setup.scenario.config), setup, scratch) | {
+def _options(copies: Copied, setup: Setup, end_s: float) -> list[str]:
+    options = run_options(copies, setup) | {
         "end": f"{end_s:g}",
         "time-to-teleport": str(LONGEST_WAIT_S),
         "summary-output": "stdout",
@@ -219,7 +224,7 @@ def summary(
     with (
         tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace") as complaints,
         subprocess.Popen(
-            [program("sumo"), *options],
+            confined(scratch, [str(program("sumo")), *options]),
             cwd=scratch,
             env=environment(),
             stdin=subprocess.DEVNULL,

@@ -34,6 +34,11 @@ class IncidentStage:
         self._names = 0
         sumo.copy_type(TEMPLATE_TYPE, CAR_TYPE)
 
+    @property
+    def weather(self) -> str:
+        """The weather on the road, as signs know it: ``"wet"``, ``"snow"`` or neither."""
+        return self._surface.condition.weather
+
     def edge(self, edge_id: str) -> Edge:
         """An edge of the network.
 

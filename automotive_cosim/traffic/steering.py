@@ -91,6 +91,10 @@ class SumoPedals:
         vehicle.setApparentDecel(self._ego, service_mps2)
         vehicle.setEmergencyDecel(self._ego, hardest_mps2)
 
+    def set_braking(self, deceleration_mps2: float) -> None:
+        """See ``ego.Pedals``; it counts from the next ``set_grip``."""
+        self._service_mps2 = deceleration_mps2
+
     def set_hazards(self, on: bool) -> None:
         """See ``ego.Pedals``."""
         self._sumo.set_signals(self._ego, HAZARD_SIGNAL if on else -1)

@@ -188,7 +188,7 @@ _OWN_DATA: dict[str, str] = {}
 
 
 def start(sumo: LibSumo, command: list[str]) -> None:
-    """Starts a simulation; SUMO's output goes into the error.
+    """Starts a simulation in the current folder; SUMO's output goes into the error.
 
     Raises:
         ScenarioError: SUMO refuses the files; the message is SUMO's.
@@ -223,7 +223,7 @@ def _set_environment(values: dict[str, str | None]) -> None:
 def _standard_error(printed: list[str]) -> Iterator[None]:
     """Collects what the library writes to the standard error, line by line."""
     sys.stderr.flush()
-    with tempfile.TemporaryFile() as file:
+    with tempfile.TemporaryFile(dir=os.curdir) as file:
         kept = os.dup(2)
         os.dup2(file.fileno(), 2)
         try:
@@ -236,9 +236,8 @@ def _standard_error(printed: list[str]) -> Iterator[None]:
 
 
 def _cause(text: str, printed: Sequence[str]) -> str:
-    """SUMO's own message on one line: the exception's, or the first printed error."""
-    if text == "Process Error" or text.startswith("Could not parse"):
-        errors = [index for index, line in enumerate(printed) if line.startswith("Error:")]
-        if errors:
-            text = " ".join(printed[errors[0] : errors[0] + 3])
+    """SUMO's own message on one line: the first printed error, which tells more than the exception."""
+    errors = [index for index, line in enumerate(printed) if line.startswith("Error:")]
+    if errors:
+        text = " ".join(printed[errors[0] : errors[0] + 3])
     return re.sub(r"\s+", " ", text).strip().removeprefix("Error: ")

@@ -14,6 +14,7 @@ from importlib.metadata import Distribution, PackageNotFoundError, distribution,
 from pathlib import Path
 
 from automotive_cosim.errors import SetupError
+from automotive_cosim.traffic.confinement import confined
 
 INSTALL = "pip install 'automotive-cosim[import]'"
 
@@ -53,14 +54,22 @@ def environment() -> Mapping[str, str]:
     return os.environ | {"SUMO_HOME": str(home()), "PROJ_DATA": str(data / "proj"), "PROJ_LIB": str(data / "proj")}
 
 
-def run(name: str, arguments: Sequence[str | Path]) -> tuple[bool, str]:
+def run(name: str, arguments: Sequence[str | Path], folder: Path | None = None) -> tuple[bool, str]:
     """Runs a program to its end.
+
+    Args:
+        name: the program.
+        arguments: its options. A comma in a file's name parts two files, and a colon a host from its port: name
+            files in a folder that anybody chose from within it.
+        folder: where it runs; it can then write nowhere else, if the kernel can see to that.
 
     Returns:
         Whether it succeeded, and everything it printed.
     """
+    command = [str(program(name)), *map(str, arguments)]
     done = subprocess.run(
-        [program(name), *arguments],
+        command if folder is None else confined(folder, command),
+        cwd=folder,
         env=environment(),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,

@@ -1,19 +1,24 @@
-"""SUMO's files, checked element by element before SUMO reads them; what would write is changed in a copy.
+"""SUMO's files, copied element by element under names of ours: what is checked is what SUMO reads.
 
-The copy goes to a scratch folder; a file that needs no change is left where it is.
+A copy says the same but for what would write, and what it names is a copy too. No name of the scenario's reaches
+SUMO, which would put values for variables in it (``${HOME}``) and take a comma for the end of a name.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import itertools
+import re
+import shutil
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TextIO
+from typing import Protocol, TextIO
 from xml.sax.saxutils import escape, quoteattr
 
 from automotive_cosim.errors import ScenarioError, UnknownNameError
-from automotive_cosim.formats.files import is_file
-from automotive_cosim.formats.xml import scan
+from automotive_cosim.formats.files import is_file, opened
+from automotive_cosim.formats.xml import SHARED_ENCODINGS, OnStart, scan
+from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vocabulary import ELEMENTS, INPUTS, OUTPUTS, WRITING_LIGHT, parameter
 
 NOWHERE = "NUL"
@@ -22,33 +27,115 @@ NOWHERE = "NUL"
 LISTS = ("edgeData", "laneData")
 """Elements whose input is a list of edges and not XML."""
 
+PICTURE = "imgFile"
+"""An attribute that names a picture, which only sumo-gui shows."""
 
-def vet(path: Path, scratch: Path | None = None) -> Path:
-    """The file, or a copy of it in ``scratch`` that writes nothing if it would.
+OTHER_EGO = f"{EGO}.scenario"
+"""What a vehicle of the scenario that is called like the cockpit's car runs as."""
+
+VEHICLES = frozenset(("vehicle", "trip"))
+NAMES_OF_VEHICLES = ("lines", "join", "split")
+"""Attributes that name vehicles: of rides, and of stops."""
+
+TRAVELLERS = VEHICLES | {"flow", "person", "personFlow", "container", "containerFlow"}
+NOT_IN_IDS = re.compile(r"[ \t\n\r|\\;,']")
+"""What no id of theirs contains (SUMO's ``routeTypes.xsd``): SUMO would stop when it comes to it."""
+
+NAMING = TRAVELLERS.union(INPUTS, OUTPUTS, ("ride", "transport", "stop"))
+"""Elements of which an attribute may have to change."""
+
+
+class Listener(Protocol):
+    """Reads a file while it is checked."""
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        """Takes the start of an element."""
+        ...
+
+    def end(self, name: str) -> None:
+        """Takes its end."""
+        ...
+
+
+def vet(path: Path, also: Listener | None = None, what: str = "a SUMO file") -> None:
+    """Checks a network, a route file or an additional file, also packed, and the files that it names.
 
     Args:
-        path: a network, a route file or an additional file, also gzipped.
-        scratch: a folder for changed files; None only checks.
+        path: the file.
+        also: reads the file, too.
+        what: what the file should be, for errors.
 
     Raises:
         ScenarioError: it is not such a file, has an element or a device's parameter that is not known to write
             nothing, or names a file that is missing; with its line.
     """
-    return _vet(path, scratch, ())
+    _vet(path, None, "", (), what, also)
 
 
-def _vet(path: Path, scratch: Path | None, through: tuple[Path, ...]) -> Path:
+def copy_vetted(
+    path: Path, folder: Path, name: str, also: Listener | None = None, what: str = "a SUMO file"
+) -> str:
+    """Checks like ``vet`` and writes what SUMO may read, unpacked, into a folder.
+
+    Args:
+        path: a network, a route file or an additional file, also packed.
+        folder: the folder of the copies, in which SUMO must run.
+        name: what the copy is called, without an ending; copies of files that it names begin with it.
+        also: reads the file, too.
+        what: what the file should be, for errors.
+
+    Returns:
+        The copy's name in the folder.
+
+    Raises:
+        see ``vet``.
+    """
+    return _vet(path, folder, name, (), what, also)
+
+
+def refuse_variables(name: str, where: str) -> None:
+    """Refuses a file's name in which SUMO would replace a variable.
+
+    Raises:
+        ScenarioError: it is one.
+    """
+    if "$" in name:
+        raise ScenarioError(f"{where} names {name[:200]!r}: variables ($) are not replaced here; write it out")
+
+
+def _vet(
+    path: Path,
+    folder: Path | None,
+    name: str,
+    through: tuple[Path, ...],
+    what: str = "a SUMO file",
+    also: Listener | None = None,
+) -> str:
     if path.resolve() in through:
         raise ScenarioError(f"{path} includes itself")
-    reader = _Reader(path, scratch, (*through, path.resolve()))
-    scan(path, reader.start, reader.end, error=ScenarioError, what="a SUMO file")
-    if not reader.writes or scratch is None:
-        return path
-    copy = scratch / f"{len(list(scratch.iterdir()))}-{path.name.removesuffix('.gz')}"
-    with copy.open("w", encoding="utf-8") as file:
-        writer = _Writer(file, reader.changed)
-        scan(path, writer.start, writer.end, writer.text, error=ScenarioError)
-    return copy
+    reader = _Reader(path, folder, name, (*through, path.resolve()))
+    copy = None if folder is None else folder / f"{name}.xml"
+    start, end = (reader.start, reader.end) if also is None else _both(reader, also)
+    encoding = scan(path, start, end, error=ScenarioError, what=what, copy=copy)
+    if copy is not None and (reader.changed or encoding not in SHARED_ENCODINGS):
+        as_it_was = copy.replace(copy.with_suffix(".given"))
+        with copy.open("w", encoding="utf-8") as file:
+            writer = _Writer(file, reader.changed)
+            scan(as_it_was, writer.start, writer.end, writer.text, error=ScenarioError)
+        as_it_was.unlink()
+    return f"{name}.xml"
+
+
+def _both(reader: _Reader, also: Listener) -> tuple[OnStart, Callable[[str], None]]:
+    def start(name: str, attributes: dict[str, str], line: int) -> None:
+        also.start(name, attributes)
+        reader.start(name, attributes, line)
+
+    def end(name: str) -> None:
+        also.end(name)
+        reader.end(name)
+
+    return start, end
 
 
 @dataclass(slots=True)
@@ -56,14 +143,17 @@ class _Reader:
     """Checks the elements of a file and collects what a copy of it changes."""
 
     path: Path
-    scratch: Path | None
+    folder: Path | None
+    """The folder of the copies, if there are any."""
+    name: str
+    """The copy's name, without an ending."""
     through: tuple[Path, ...]
     """This file, and those that include it."""
-    writes: bool = False
-    """Whether SUMO would write, so that it needs a copy."""
     changed: dict[int, dict[str, str] | None] = field(default_factory=dict)
     """Number of an element, in the order of the file -> its attributes in a copy; None leaves it out."""
     count: int = 0
+    inner: Iterator[int] = field(default_factory=itertools.count)
+    """Numbers the files that it names."""
     within: list[str] = field(default_factory=list)
 
     def start(self, name: str, attributes: dict[str, str], line: int) -> None:
@@ -73,8 +163,12 @@ class _Reader:
             raise ScenarioError(f"{self.path} line {line}: {unknown}")
         if name == "param":
             self._take_parameter(attributes, line)
-        elif name in OUTPUTS or name in INPUTS or "imgFile" in attributes:
-            self._take_files(name, attributes, line)
+        elif name in NAMING or PICTURE in attributes:
+            new = dict(attributes)
+            self._take_files(name, new, line)
+            self._rename(name, new, line)
+            if new != attributes:
+                self.changed[self.count] = new
         self.within.append(name)
         self.count += 1
 
@@ -85,7 +179,7 @@ class _Reader:
     def _take_parameter(self, attributes: dict[str, str], line: int) -> None:
         key = attributes.get("key", "")
         if key == WRITING_LIGHT:  # of a traffic light, in whatever element of it this stands
-            self._change(attributes | {"value": NOWHERE})
+            self.changed[self.count] = attributes | {"value": NOWHERE}
             return
         try:
             taken = parameter(key)
@@ -94,29 +188,43 @@ class _Reader:
                 f"{self.path} line {line}: no device here has a parameter {key[:80]!r}; remove it"
             ) from None
         if not taken:
-            self._change(None)
+            self.changed[self.count] = None
 
-    def _take_files(self, name: str, attributes: dict[str, str], line: int) -> None:
-        new = dict(attributes)
-        if new.get("imgFile"):
-            new["imgFile"] = str((self.path.parent / new["imgFile"]).absolute())
-        is_changed = bool(new.get(OUTPUTS.get(name, "")))
-        if is_changed:
-            new[OUTPUTS[name]] = NOWHERE
-        if read := new.get(INPUTS.get(name, "")):
-            file = (self.path.parent / read).absolute()
-            if "${" in read or not is_file(file):  # SUMO may put a variable's value there
-                missing = f"<{name}> names {read[:200]!r}, which is missing in {self.path.parent}"
-                raise ScenarioError(f"{self.path} line {line}: {missing}")
-            vetted = file if name in LISTS else _vet(file, self.scratch, self.through)
-            new[INPUTS[name]] = str(vetted)
-            is_changed |= vetted != file
-        self.changed[self.count] = new
-        self.writes |= is_changed
+    def _take_files(self, element: str, attributes: dict[str, str], line: int) -> None:
+        attributes.pop(PICTURE, None)
+        if attributes.get(OUTPUTS.get(element, "")):
+            attributes[OUTPUTS[element]] = NOWHERE
+        if read := attributes.get(INPUTS.get(element, "")):
+            attributes[INPUTS[element]] = self._taken_file(element, read, f"{self.path} line {line}")
 
-    def _change(self, attributes: dict[str, str] | None) -> None:
-        self.changed[self.count] = attributes
-        self.writes = True
+    def _taken_file(self, element: str, read: str, where: str) -> str:
+        """Checks a file that an element names, and copies it; returns the copy's name."""
+        refuse_variables(read, f"{where}: <{element}>")
+        file = (self.path.parent / read).absolute()
+        if not is_file(file):
+            missing = f"<{element}> names {read[:200]!r}, which is missing in {self.path.parent}"
+            raise ScenarioError(f"{where}: {missing}")
+        name = f"{self.name}-{next(self.inner)}"
+        if element not in LISTS:
+            return _vet(file, self.folder, name, self.through)
+        if self.folder is not None:
+            with opened(file) as given, (self.folder / name).open("wb") as copy:
+                shutil.copyfileobj(given, copy)
+        return name
+
+    def _rename(self, element: str, attributes: dict[str, str], line: int) -> None:
+        """Keeps the name of the cockpit's car free."""
+        if element in TRAVELLERS and NOT_IN_IDS.search(attributes.get("id", "")):
+            raise ScenarioError(
+                f"{self.path} line {line}: SUMO takes no {element} with the id {attributes['id'][:80]!r}; rename "
+                "it, without spaces and | \\ ; , '"
+            )
+        if element in VEHICLES and attributes.get("id") == EGO:
+            attributes["id"] = OTHER_EGO
+        for key in NAMES_OF_VEHICLES:
+            if EGO in attributes.get(key, ""):
+                names = attributes[key].split()
+                attributes[key] = " ".join(OTHER_EGO if name == EGO else name for name in names)
 
 
 @dataclass(slots=True)

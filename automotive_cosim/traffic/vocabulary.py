@@ -118,7 +118,7 @@ TAKEN = _words(
     device.friction.stdDev device.friction.offset
     device.fcd-replay.probability device.fcd-replay.explicit/device.fcd-replay.knownveh
     device.fcd-replay.deterministic device.fcd-replay.consistency
-    mesosim meso-ltm meso-edgelength meso-tauff meso-taufj meso-taujf meso-taujj meso-jam-threshold
+    meso-ltm meso-edgelength meso-tauff meso-taufj meso-taujf meso-taujj meso-jam-threshold
     meso-multi-queue meso-lane-queue meso-ignore-lanes-by-vclass/meso.ignore-lanes.by-vclass
     meso-junction-control meso-junction-control.limited meso-tls-penalty meso-tls-flow-penalty
     meso-minor-penalty meso-overtaking meso-recheck meso-interpolate-pos
@@ -183,6 +183,12 @@ IGNORED = _words(
 )
 """Options without effect here: outputs, reports, the window, what a run sets itself, and ``threads``, of which a
 simulation that forks has one. SUMO does not read a configuration inside a configuration either."""
+
+WINDOW = _words("osg-view")
+"""Options without effect here that SUMO knows only where its window is built with them."""
+
+MESOSCOPIC = "mesosim"
+"""The option of the mesoscopic model, whose vehicles are in no lane: nobody can drive among them."""
 
 REFUSED = _words(
     """

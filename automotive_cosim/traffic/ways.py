@@ -9,6 +9,9 @@ from itertools import pairwise
 
 from automotive_cosim.traffic.network import Network
 
+NEAREST = 10_000
+"""How many edges a search for any route reaches at most: some 100 km², however large the city is."""
+
 
 @dataclass(frozen=True, slots=True)
 class Ways:
@@ -29,15 +32,21 @@ class Ways:
         return tuple(reversed(edges))
 
 
-def ways_from(network: Network, start: str) -> Ways:
-    """Searches the network from the end of an edge; ties go to the edge found first."""
+def ways_from(network: Network, start: str, most: int | None = None) -> Ways:
+    """Searches the network from the end of an edge; ties go to the edge found first.
+
+    Args:
+        network: the network.
+        start: where the routes begin.
+        most: how many of the nearest edges to reach; None for all.
+    """
     before: dict[str, str] = {}
     best_s: dict[str, float] = {start: 0.0}
     length_m: dict[str, float] = {start: network.edges[start].length_m}
     queue: list[tuple[float, int, str]] = [(0.0, 0, start)]
     done: set[str] = set()
     count = 0
-    while queue:
+    while queue and (most is None or len(done) < most):
         time_s, _, here = heapq.heappop(queue)
         if here in done:
             continue

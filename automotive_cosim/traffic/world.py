@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable, Iterable, Sequence
 from contextlib import chdir
 from dataclasses import replace
@@ -19,10 +18,11 @@ from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
-from automotive_cosim.traffic.ground import read_mapped
+from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
+from automotive_cosim.traffic.network import Network, NetworkReader
+from automotive_cosim.traffic.options import Setup, command_line, copied, read_configuration, run_options
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
 from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
@@ -32,6 +32,9 @@ from automotive_cosim.traffic.situations import Situations
 from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, LibSumo, load_library, start
+
+SEARCHING_TYPE = "automotive_cosim.search"
+"""A vehicle type that no vehicle has."""
 
 INSERTION_LIMIT_S = 300.0
 """Limit of the simulated time that the ego waits for a gap to enter the traffic."""
@@ -43,8 +46,12 @@ PROGRESS_PERIOD_S = 5.0
 class World:
     """SUMO with one scenario's traffic. ``depart`` may be called once."""
 
-    def __init__(self, setup: Setup) -> None:
+    def __init__(self, setup: Setup, scratch: Path) -> None:
         """Loads the scenario.
+
+        Args:
+            setup: what to load.
+            scratch: an empty folder, which is not needed afterwards.
 
         Raises:
             ScenarioError: SUMO cannot run its files, or the network has no projection.
@@ -52,21 +59,16 @@ class World:
         """
         scenario = setup.scenario
         configuration = read_configuration(scenario.config)
-        self.network = read_mapped(configuration)
-        if scenario.origin is not None:
-            self.network = self.network.at(scenario.origin)
-        if self.network.unplaced and scenario.has_place and not setup.allow_unprojected:
-            raise ScenarioError(
-                f"{configuration.net.name} {self.network.unplaced}, so it has no position on earth; build "
-                "it with `netconvert --proj.utm`, place it with --origin LON,LAT, or run without GPS (--no-gps)"
-            )
+        reader = NetworkReader(configuration.net)
+        self._configuration = copied(configuration, scratch, reader)
         self._scenario = scenario
         self.step_s = scenario.sumo.step_length_s
         self.writes = setup.outputs is not None
         """Whether SUMO writes outputs, which are completed on closing."""
         self._sumo = load_library()
-        with tempfile.TemporaryDirectory(prefix="automotive-cosim-") as scratch:
-            options = run_options(configuration, setup, Path(scratch))
+        with self._configuration.named_as_given():
+            self.network = self._mapped(reader.network(), setup)
+            options = run_options(self._configuration, setup, self.network)
             with chdir(scratch):
                 start(self._sumo, command_line(options))
         self._steps = 0
@@ -89,6 +91,18 @@ class World:
         self._sensor: Sensor | None = None
         self._is_watched = True
 
+    def _mapped(self, roads: Network, setup: Setup) -> Network:
+        """The network with what is around it, on its side of the road and at the scenario's place."""
+        scenario = setup.scenario
+        network = placed(read_mapped(self._configuration, roads), scenario)
+        if network.unplaced and scenario.has_place and not setup.allow_unprojected:
+            raise ScenarioError(
+                f"{self._configuration.given['net-file'][0].name} {network.unplaced}, so it has no position on "
+                "earth; build it with `netconvert --proj.utm`, place it with --origin LON,LAT, or run without GPS "
+                "(--no-gps)"
+            )
+        return network
+
     def warm_up(self, progress: WarmUpProgress | None) -> None:
         """Lets the traffic run before the ego departs.
 
@@ -103,10 +117,23 @@ class World:
             try:
                 self._sumo.step()
             except self._sumo.refusals as error:
-                raise ScenarioError(f"SUMO stopped at {self._sumo.time():g} s: {error}") from error
+                with self._configuration.named_as_given():
+                    raise ScenarioError(f"SUMO stopped at {self._sumo.time():g} s: {error}") from error
             self._notice(sampling=(steps - step) * self.step_s <= max(3 * MEMORY_S, WINDOW_S))
         if progress is not None:
             progress(total_s, total_s)
+
+    def prepare_copies(self) -> None:
+        """Makes SUMO build its router's table of all edges, which copies of this process then share.
+
+        The type of the search neither deviates in speed nor carries a device, so no random number is drawn.
+        """
+        sumo = self._sumo
+        sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
+        sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
+        sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
+        edge = next(iter(self.network.edges))
+        sumo.find_route(edge, edge, SEARCHING_TYPE)
 
     def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoDrive:
         """Inserts the ego and runs until it is on the road; ``beat`` is called after every step.

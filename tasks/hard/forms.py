@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
 from automotive_cosim.cockpit.belongings import Belongings
-from automotive_cosim.cockpit.people import Contact, Thread
 from automotive_cosim.tasking.checks import Check
 from automotive_cosim.tasking.moves import Move, Open, Tap
 from automotive_cosim.tasking.parameters import Choices

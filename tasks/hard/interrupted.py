@@ -5,9 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.aboard import company
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.desk import Appointment
 from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.signals import ADAS, CABIN, HMI, HVAC, TYRE, VOICE
 from automotive_cosim.cockpit.vehicle import WINDOWS

@@ -9,9 +9,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.phone.state import Thread
 from automotive_cosim.cockpit.belongings import Belongings
-from automotive_cosim.cockpit.desk import Appointment
-from automotive_cosim.cockpit.people import Thread
 from automotive_cosim.cockpit.photos import Photo, Shows
 from automotive_cosim.cockpit.signals import ADAS, CABIN, HVAC, LINK, SEAT
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs

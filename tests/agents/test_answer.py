@@ -46,11 +46,22 @@ def test_null_true_and_nested_objects_are_json_like_any_other():
         '{"action": {"action_type": "navigate_home"}}',
         "Not {\"action_type\": \"navigate_back\"}.\nAction: {'action_type': 'navigate_home'}",
         "Situation: it's {odd} and \"quoted\nAction: {'action_type': 'navigate_home'}",
+        'Action: {"action_type": "navigate_home"',
+        "Action\uff1a {\u201caction_type\u201d\uff1a \u201cnavigate_home\u201d}",
+        '{"tool": {"action": {"action_type": "navigate_home"}',
+        "Action: {action_type: navigate_home}",
     ],
 )
 def test_near_misses_are_forgiven(text):
     answer = read(text)
     assert not answer.strict
+    assert to_json(answer.action) == HOME
+
+
+@pytest.mark.parametrize("token", ["<|im_end|>", "</s>", "<|eot_id|>", "<|im_end|>\n<|im_start|>user\nAction: {}"])
+def test_the_token_that_ends_an_answer_is_no_part_of_it(token):
+    answer = read(f"Situation: cold\nAction: {json.dumps(HOME)}{token}")
+    assert answer.strict
     assert to_json(answer.action) == HOME
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from automotive_cosim.agents.marks import Leaps, label, listed, marked, marks, overlap
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.contracts import BoundingBox
 
 from ..cockpit.conftest import outside, town
@@ -62,7 +62,7 @@ def test_the_screenshot_itself_stays_as_it_is(elements):
 def test_on_every_screen_numbers_stand_beside_their_boxes_and_cover_no_letter_and_no_other_number(sun_deg):
     cockpit = Cockpit(town(), rng=np.random.default_rng(1))
     cockpit.sense(outside(sun_elevation_deg=sun_deg), 0.0)
-    for screen in SCREENS:
+    for screen in pages():
         cockpit.visit(screen)
         shot = cockpit.screenshot()
         ink, placed = Leaps(shot), marks(shot, cockpit.elements())

@@ -126,7 +126,7 @@ def test_an_unreadable_answer_is_recorded_with_what_was_wrong(agent, observation
     assert made.stages[-1].name is StageName.ACT
     assert made.stages[-1].reply.text == "no idea"
     made.act(observation("x", feedback=Feedback(FeedbackCode.MALFORMED, "no JSON")))
-    assert "Step 1: none unreadable answer -> malformed no JSON; answer in form" in model.asked[2].text
+    assert "Step 1: unreadable answer -> malformed no JSON; answer in form" in model.asked[2].text
 
 
 def test_an_answer_that_was_cut_off_is_told_so(agent, observation):

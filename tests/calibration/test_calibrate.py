@@ -21,7 +21,7 @@ from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, UserError
 from automotive_cosim.report.calibration import by_hour, findings, write_page
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes
-from automotive_cosim.traffic.options import Setup, read_configuration, run_options
+from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 
 COUNTS = Path(__file__).parents[2] / "docs/examples/grid_counts.csv"
 
@@ -122,7 +122,7 @@ def test_the_folder_carries_what_its_record_says(made: tuple[Path, Calibration],
     target, found = made
     scenario = scenarios.load(target)
     configuration = read_configuration(scenario.config)
-    options = run_options(configuration, Setup(scenario, found.seed), tmp_path) | {
+    options = run_options(copied(configuration, tmp_path), Setup(scenario, found.seed)) | {
         "step-length": "1",
         "default.action-step-length": "1",
     }

@@ -98,8 +98,27 @@ def test_no_file_a_picture_and_a_cut_off_archive_are_refused(tmp_path: Path) -> 
     (tmp_path / "picture").write_bytes(b"\x89PNG\xff\xfe")
     (tmp_path / "cut.gz").write_bytes(gzip.compress(b"site,hour,vehicles_per_hour\n" * 100)[:-12])
     for name in ("nowhere", "picture", "cut.gz"):
-        with pytest.raises(CountsError, match="give a CSV file of counts"):
+        with pytest.raises(CountsError, match=r"give a CSV file of counts|save it as CSV UTF-8"):
             read_counts(tmp_path / name, PARIS)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "site\thour\tvehicles_per_hour\nloop\t8\t515\n",
+        "site, hour, vehicles_per_hour\nloop, 8, 515\n",
+        "Site,Hour,Vehicles per hour\nloop,8,515\n",
+        "site;hour;vehicles_per_hour\nloop;8;515,0\n",
+        "site,hour,vehicles_per_hour\nloop,8,515\n,,\n\n",
+        "\ufeffsite;hour;vehicles_per_hour\r\nloop;8;515\r\n",
+        '"site","hour","vehicles_per_hour"\n"loop","8","515"\n',
+    ],
+)
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+def test_counts_are_read_as_spreadsheets_save_them(tmp_path: Path, text: str, encoding: str) -> None:
+    file = tmp_path / "counts.csv"
+    file.write_bytes((text if encoding == "utf-8" else text.removeprefix("\ufeff")).encode(encoding))
+    assert dict(read_counts(file, PARIS).flows_per_h) == {("loop", 8): 515.0}
 
 
 def test_travel_times_are_read(tmp_path: Path) -> None:

@@ -58,7 +58,7 @@ def test_links_that_git_left_as_text_are_found(monkeypatch):
     monkeypatch.setattr(doctor, "find_spec", _no_spec(lambda name: name == "automotive_cosim.tasks"))
     found = doctor._folders()
     assert found.state is doctor.Health.MISSING
-    assert "core.symlinks" in found.fix
+    assert "pip install -e ." in found.fix
 
 
 def test_missing_fonts_are_found(monkeypatch):

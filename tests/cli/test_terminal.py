@@ -5,7 +5,11 @@ from __future__ import annotations
 import ast
 import io
 import json
+import os
+import shlex
 import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
@@ -21,6 +25,7 @@ import automotive_cosim.cli
 from automotive_cosim import scenarios
 from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.live import Live
+from automotive_cosim.cli.main import CLOSED_PIPE
 from automotive_cosim.cli.terminal import Plain, escaped, plain
 
 EVIL = "\x1b[2J\x1b]0;owned\x07\x9b1A\r\x08\u202e"
@@ -114,3 +119,40 @@ def test_every_command_writes_through_our_console() -> None:
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.module == "rich.console" and path.name != "console.py":
                 assert "Console" not in [name.name for name in node.names], path.name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("closed", [">&-", "<&-", "2>&-", "<&- >&- 2>&-"])
+def test_a_command_does_its_work_without_the_streams_that_it_lacks(tmp_path: Path, closed: str) -> None:
+    program = shlex.join([sys.executable, "-m", "automotive_cosim_main"])
+    table = tmp_path / "plan.schema.json"
+    done = subprocess.run(
+        ["sh", "-c", f"{program} schema plan --out {table} {closed}"], capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+    assert json.loads(table.read_text("utf-8"))["title"] == "plan"
+
+
+@pytest.mark.slow
+def test_a_reader_that_has_had_enough_is_no_failed_check() -> None:
+    program = shlex.join([sys.executable, "-m", "automotive_cosim_main"])
+    done = subprocess.run(
+        ["bash", "-c", f"{program} tasks list | head -1; exit ${{PIPESTATUS[0]}}"], capture_output=True, text=True
+    )
+    assert (done.returncode, done.stderr) == (CLOSED_PIPE, "")
+    assert len(done.stdout.splitlines()) == 1
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(os.name != "posix", reason="names of files are text on Windows")
+@pytest.mark.parametrize("name", ["gr\u00f6\u00dfe", "gr\udcf6"])
+def test_a_name_of_any_letters_ends_without_a_traceback(tmp_path: Path, name: str) -> None:
+    surroundings = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
+    done = subprocess.run(
+        [sys.executable, "-m", "automotive_cosim_main", "report", tmp_path / name],
+        capture_output=True,
+        env=surroundings,
+    )
+    assert done.returncode == 2
+    assert done.stderr.startswith(b"error: ")
+    assert done.stderr.count(b"\n") == 1

@@ -11,8 +11,10 @@ from zoneinfo import ZoneInfo
 import numpy as np
 import pytest
 
+from automotive_cosim.cockpit.apps.memo.commands import Record
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.messages import Focus, Pick, Put, Record, Set, Show
+from automotive_cosim.cockpit.commands import Put, Set
+from automotive_cosim.cockpit.messages import Focus, Pick, Show
 from automotive_cosim.cockpit.signals import MEDIA
 from automotive_cosim.cockpit.widgets import Widget
 from automotive_cosim.contracts import (
@@ -151,7 +153,7 @@ def _leads_to(widget: Widget, here: Cockpit) -> str:
             return "apps with another app"
         case Show(screen):
             return screen
-        case Put("desk") if widget.key == "store.calendar":
+        case Put() if widget.key == "store.calendar":
             return "store with another app"
         case Record() if here.commands()["apps.recording"]:
             return "memo with a memo"

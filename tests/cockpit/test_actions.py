@@ -75,16 +75,37 @@ def test_target_is_an_index_or_a_point_never_both(kind: ActionType):
 
 
 @pytest.mark.parametrize(
+    ("sent", "meant"),
+    [
+        ({"action_type": "click", "index": "3"}, Action(ActionType.CLICK, index=3)),
+        ({"action_type": "click", "x": "640", "y": 360.0}, Action(ActionType.CLICK, x=640, y=360)),
+        ({"action_type": "answer", "text": 50}, Action(ActionType.ANSWER, text="50")),
+        ({"action_type": "long_press", "index": 3.0}, Action(ActionType.LONG_PRESS, index=3)),
+        ({"action_type": "scroll", "direction": "DOWN"}, Action(ActionType.SCROLL, direction=Direction.DOWN)),
+        ({"action_type": "CLICK", "index": " 3 "}, Action(ActionType.CLICK, index=3)),
+        ({"action_type": "hazard_lights", "on": "True"}, Action(ActionType.HAZARD_LIGHTS, on=True)),
+        ({"action_type": "show_alert", "kind": "Speed"}, Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED)),
+    ],
+)  # fmt: skip
+def test_a_value_of_another_type_is_converted_where_nothing_is_lost(sent: dict[str, object], meant: Action) -> None:
+    assert parse(sent) == meant
+
+
+@pytest.mark.parametrize(
     ("sent", "said"),
     [
         ("not json", "not JSON"),
         ("[1]", "list"),
         ("{}", "action_type"),
         ({"action_type": "clik", "index": 1}, "click"),
-        ({"action_type": "click", "index": "1"}, "int"),
+        ({"action_type": "click", "index": "first"}, "int"),
+        ({"action_type": "click", "index": 1.5}, "int"),
+        ({"action_type": "click", "index": "1_000_000_000_000"}, "-2147483647 to 2147483647"),
+        ({"action_type": "hazard_lights", "on": "yes"}, "bool"),
+        ({"action_type": "answer", "text": ["a"]}, "str"),
         ({"action_type": "click", "index": True}, "int"),
         ({"action_type": "click", "idx": 1}, "index"),
-        ({"action_type": "wait", "seconds": 0}, "1 to 10"),
+        ({"action_type": "wait", "seconds": 0}, "1 to 60"),
         ({"action_type": "answer", "text": "x" * 121}, "120"),
         ({"action_type": "request_reroute", "destination": "x" * 121}, "destination has 121"),
         ({"action_type": "open_app", "app_name": "x" * 121}, "app_name has 121"),

@@ -11,8 +11,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.render import render
-from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Direction, RoadNetwork, Surroundings
 
@@ -62,7 +62,7 @@ def test_a_hundred_thousand_touches_break_nothing(
 
 @pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(text=st.text(max_size=200), screen=st.sampled_from(sorted(SCREENS)), clear=st.booleans())
+@given(text=st.text(max_size=200), screen=st.sampled_from(sorted(pages())), clear=st.booleans())
 def test_any_text_can_be_typed_and_drawn(
     network: RoadNetwork, outdoors: Callable[..., Surroundings], text: str, screen: str, clear: bool
 ) -> None:

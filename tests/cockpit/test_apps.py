@@ -9,10 +9,12 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit import media, people, places
+from automotive_cosim.cockpit import places
+from automotive_cosim.cockpit.apps.map.state import turns
+from automotive_cosim.cockpit.apps.media.state import USB_TRACKS, library
+from automotive_cosim.cockpit.apps.phone.state import directory
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.map import RoadMap
-from automotive_cosim.cockpit.navigation import turns
 from automotive_cosim.cockpit.render import render
 from automotive_cosim.cockpit.signals import (
     ADAS,
@@ -72,10 +74,10 @@ def parked(make: Make, around: Surroundings) -> Cockpit:
 @pytest.mark.parametrize("seed", SEEDS)
 def test_there_is_enough_of_everything_and_no_two_are_alike(network: RoadNetwork, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    library, people_known = media.library(rng), people.directory(rng)
+    music, people_known = library(rng), directory(rng)
     atlas = places.atlas(RoadMap(network), rng)
-    tracks = library.of("BLUETOOTH") + library.of("USB")
-    stations = library.of("FM") + library.of("DAB")
+    tracks = music.of("BLUETOOTH") + music.of("USB")
+    stations = music.of("FM") + music.of("DAB")
     assert len({track.title for track in tracks}) == len(tracks) >= 200
     assert len({(station.title, station.by) for station in stations}) == len(stations) >= 40
     assert len({contact.number for contact in people_known.contacts}) == len(people_known.contacts) >= 60
@@ -252,7 +254,7 @@ def test_shuffle_goes_through_everything_in_another_order(cockpit: Cockpit) -> N
 
     def heard() -> list[str]:
         names = []
-        for _ in range(media.USB_TRACKS):
+        for _ in range(USB_TRACKS):
             press(cockpit, "media.next")
             names.append(cockpit.signals[MEDIA.TRACK])
         return names
@@ -633,7 +635,7 @@ def test_places_on_the_way_come_before_those_far_beside_it(cockpit: Cockpit, aro
         return min(place.away_m(*roads.find(edge).shape_m[-1]) for edge in around.driving.ahead.route_edges)  # type: ignore[union-attr]
 
     state = cockpit._state
-    atlas, roads = state.atlas, state.roads
+    atlas, roads = state.of(places.Gazetteer), state.roads
     cockpit.open_app("map")
     press(cockpit, "map.route")
     press(cockpit, "route.tab.ways")

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.cockpit.arrivals import RINGS_S, Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import RINGS_S, Arrival
+from automotive_cosim.cockpit.apps.phone.state import TEMPLATES
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.people import TEMPLATES
-from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import CALL, LINK, difference
 from automotive_cosim.contracts import Connectivity, Element, FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import key_of
@@ -57,7 +57,7 @@ def ringing(make: Make, around: Surroundings) -> Cockpit:
 
 def test_a_call_rings_on_every_screen_and_nothing_else_moves(ringing: Cockpit) -> None:
     assert ringing.signals[CALL.RINGING] == WHO
-    for screen in SCREENS:
+    for screen in pages():
         ringing.visit(screen)
         assert element(ringing, "call.incoming").text == WHO
         assert {"call.answer", "call.decline", "call.reply"} <= keys(ringing)

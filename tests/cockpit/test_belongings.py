@@ -5,12 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
+from automotive_cosim.cockpit.apps.trip.state import TripMeter
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.desk import Appointment, TripMeter
-from automotive_cosim.cockpit.people import Contact, Thread
 from automotive_cosim.cockpit.signals import CABIN, HMI
 from automotive_cosim.contracts import FeedbackCode
 from automotive_cosim.contracts.ids import resource_id as shown_id

@@ -76,7 +76,7 @@ def test_nothing_that_changes_by_itself_counts_as_a_deed(make: Make, around: Sur
     drive(cockpit, around, 0, 2)
     drive(other, around, 0, 2)
     assert cockpit.signals[LIGHTS.LOW_BEAM]
-    assert cockpit._state.deeds == other._state.deeds == ()
+    assert cockpit.given == other.given == ()
 
 
 @pytest.mark.parametrize("signal", [TYRE.FRONT_LEFT, TYRE.REAR_RIGHT])

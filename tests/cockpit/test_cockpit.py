@@ -12,8 +12,9 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from automotive_cosim.cockpit.aboard import company
+from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.screens import APPS, DOCK
+from automotive_cosim.cockpit.registry import apps, apps_in
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, GLASS, HVAC, LIGHTS, MEDIA, MOTION, difference
 from automotive_cosim.contracts import (
     Alert,
@@ -132,12 +133,12 @@ def test_driving_drains_the_battery(cockpit: Cockpit, around: Surroundings) -> N
 
 
 def test_every_app_opens_by_name_and_from_the_dock(cockpit: Cockpit) -> None:
-    for app in set(APPS) - {"home", "calendar"}:
+    for app in set(apps()) - {"home", "calendar"}:
         assert cockpit.open_app(app).code is OK
         assert cockpit.screen == app
         assert cockpit.open_app(app).code is NO_EFFECT
         cockpit.home()
-        where = app if app in DOCK else "apps"
+        where = app if apps()[app].where is Where.DOCK else "apps"
         assert press(cockpit, f"dock.{where}") is OK
         assert where == app or press(cockpit, f"apps.{app}") is OK
         assert cockpit.screen == app
@@ -168,7 +169,7 @@ def test_an_app_opens_once_it_is_installed_which_is_done_while_parked(make: Make
 
 
 def test_the_action_space_knows_every_app() -> None:
-    assert set(spaces.APPS) == set(APPS)
+    assert set(spaces.APPS) == set(apps())
 
 
 def test_an_unknown_app_is_named_with_a_suggestion(cockpit: Cockpit) -> None:
@@ -412,7 +413,7 @@ def test_the_seed_decides_what_is_made_up(make: Make) -> None:
 def test_a_network_without_roads_or_names_still_shows(around: Surroundings) -> None:
     cockpit = Cockpit(RoadNetwork((), (0, 0, 1, 1), None, (0, 0), False), rng=np.random.default_rng(1))
     cockpit.sense(replace(around, gps=None, sun_elevation_deg=None), 0.0)
-    for app in APPS:
+    for app in apps():
         cockpit.open_app(app)
         assert cockpit.screenshot().shape == (720, 1280, 3)
         assert cockpit.elements()
@@ -448,7 +449,7 @@ def test_thousands_of_random_touches_break_nothing(make: Make, around: Surroundi
     rng = np.random.default_rng(seed)
     cockpit = make(seed)
     directions = tuple(Direction)
-    visited, apps = set(), tuple(APPS)
+    visited, names = set(), tuple(apps())
     for step in range(2000):
         x, y = int(rng.integers(-20, 1300)), int(rng.integers(-20, 740))
         way = directions[int(rng.integers(4))]
@@ -464,7 +465,7 @@ def test_thousands_of_random_touches_break_nothing(make: Make, around: Surroundi
         assert touches[int(rng.integers(len(touches)))]().text
         visited.add(cockpit.screen)
         if step % 20 == 0:
-            cockpit.open_app(apps[step // 20 % len(apps)])
+            cockpit.open_app(names[step // 20 % len(names)])
             speed = float(rng.choice([0.0, 5.0, 30.0]))
             moved = replace(around.driving, time_s=900.0 + step, speed_mps=speed)
             cockpit.sense(replace(around, driving=moved, sun_elevation_deg=float(rng.uniform(-30, 30))), 1.0)
@@ -474,7 +475,7 @@ def test_thousands_of_random_touches_break_nothing(make: Make, around: Surroundi
                 cockpit.answered(request, Answer(bool(rng.integers(2)), "So it is."))
         if step % 100 == 0:
             cockpit.screenshot()
-    assert visited >= set(DOCK)
+    assert visited >= {app.name for app in apps_in(Where.DOCK)}
 
 
 @pytest.mark.slow

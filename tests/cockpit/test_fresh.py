@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.cockpit.arrivals import RINGS_S, Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import RINGS_S, Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import CABIN, CALL, ENERGY, HVAC, MEDIA, SEAT
 from automotive_cosim.contracts import Surroundings

@@ -18,10 +18,13 @@ from babel.messages.catalog import Catalog
 
 from automotive_cosim import cockpit as package
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.map.state import TURN_LEFT
+from automotive_cosim.cockpit.apps.media.state import Library
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.state import Directory
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said, word
-from automotive_cosim.cockpit.navigation import TURN_LEFT
+from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.cockpit.theme import Weight, face
 from automotive_cosim.cockpit.widgets import Widget
@@ -102,11 +105,11 @@ def untold(text: str, names: frozenset[str]) -> Iterator[str]:
 def named(cockpit: Cockpit) -> frozenset[str]:
     """What keeps its name in every language: people, places, streets, music, and what people wrote."""
     state = cockpit._state
-    names = {text for entry in state.library.by_uri.values() for text in (entry.title, entry.by)}
-    names |= {playlist.name for playlist in state.library.playlists} | set(state.roads.names)
-    names |= {text for place in state.atlas.places for text in (place.name, place.street)}
-    names |= {contact.name for contact in state.directory.contacts}
-    names |= {line for thread in state.directory.threads for line in thread.lines}
+    names = {text for entry in state.of(Library).by_uri.values() for text in (entry.title, entry.by)}
+    names |= {playlist.name for playlist in state.of(Library).playlists} | set(state.roads.names)
+    names |= {text for place in state.of(Gazetteer).places for text in (place.name, place.street)}
+    names |= {contact.name for contact in state.of(Directory).contacts}
+    names |= {line for thread in state.of(Directory).threads for line in thread.lines}
     return frozenset(names | {"Home-5G", "CityFree", "Garage", "Coffee-Guest"})
 
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from automotive_cosim.cockpit.apps.map.state import turns
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.map import road_map
-from automotive_cosim.cockpit.navigation import turns
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Element, Road, RoadNetwork, Surroundings
 from automotive_cosim.contracts.ids import resource_id as shown_id

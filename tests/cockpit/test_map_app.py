@@ -10,12 +10,13 @@ from datetime import timedelta
 import numpy as np
 import pytest
 
+from automotive_cosim.cockpit.apps.map.state import Viewpoint
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera, View
 from automotive_cosim.cockpit.places import PlaceKind
+from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.cockpit.render import render
-from automotive_cosim.cockpit.screens import APPS
 from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import DAY
@@ -97,7 +98,8 @@ def test_charging_stops_are_on_the_map_beside_names_and_marks_and_in_no_list(coc
     for app in ("map", "home"):
         cockpit.open_app(app)
         for zoom in range(len(ZOOMS_M_PER_PX)):
-            cockpit._state.zoom, cockpit._tree = zoom, None
+            cockpit._state.keep(Viewpoint(zoom))
+            cockpit._tree = None
             shown = view(cockpit)
             stops = [child for child in shown.children if isinstance(child, Badge) and child.charges]
             others = [child.rect for child in shown.children if child not in stops]
@@ -113,7 +115,8 @@ def test_charging_stops_are_on_the_map_beside_names_and_marks_and_in_no_list(coc
 
 def test_a_charging_stop_is_green(cockpit: Cockpit) -> None:
     cockpit.open_app("map")
-    cockpit._state.zoom, cockpit._tree = len(ZOOMS_M_PER_PX) - 1, None
+    cockpit._state.keep(Viewpoint(len(ZOOMS_M_PER_PX) - 1))
+    cockpit._tree = None
     stop = next(child.rect for child in view(cockpit).children if isinstance(child, Badge) and child.charges)
     picture = cockpit.screenshot()
     assert tuple(picture[stop.centre[1], stop.x + 4].tolist()) == DAY.good
@@ -216,7 +219,7 @@ def test_a_frame_drawn_in_part_is_the_frame_drawn_anew(make: Make, around: Surro
         cockpit, now = make(size=size, width=width), around
         for step in range(60):
             if rng.random() < 0.3:
-                cockpit.open_app(str(rng.choice(APPS)))
+                cockpit.open_app(str(rng.choice(list(apps()))))
             else:
                 cockpit.tap(int(rng.integers(width)), int(rng.integers(height)))
             driving = replace(now.driving, time_s=now.driving.time_s + 1, x_m=now.driving.x_m + 3.0)

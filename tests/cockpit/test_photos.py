@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.people import Contact, Thread
 from automotive_cosim.cockpit.photos import Photo, Shows, photo
 from automotive_cosim.cockpit.signals import MOTION
 from automotive_cosim.contracts import Element, FeedbackCode, RoadNetwork

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+from automotive_cosim.cockpit.apps.media.commands import Skip
 from automotive_cosim.cockpit.camera import camera, scene
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.covers import cover
-from automotive_cosim.cockpit.messages import Skip
 from automotive_cosim.contracts import Element, OtherVehicle, Surroundings
 from automotive_cosim.contracts.ids import key_of, resource_id
 

@@ -14,12 +14,13 @@ import pytest
 
 from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.map.state import Navigation
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.drawing import Ink
 from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.render import render
-from automotive_cosim.cockpit.screens import SCREENS
 from automotive_cosim.cockpit.signals import ACTUATORS, difference
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.cockpit.theme import TOUCH, Colour
@@ -192,10 +193,10 @@ def drawn(screens: list[Cockpit]) -> list[Drawn]:
 
 def test_every_screen_is_reached_from_home(make: Make, around: Surroundings, walker: Any) -> None:
     parked = walker(CASES["parked"](make, around))
-    assert {view.cockpit.screen for view in parked} == set(SCREENS)
+    assert {view.cockpit.screen for view in parked} == set(pages())
     assert len(parked) >= 70
     moving = walker(make())
-    assert {view.cockpit.screen for view in moving} == set(SCREENS) - {"calendar", "appointment"}
+    assert {view.cockpit.screen for view in moving} == set(pages()) - {"calendar", "appointment"}
 
 
 def test_every_actuator_is_set_from_home(make: Make, around: Surroundings, walker: Any) -> None:
@@ -299,7 +300,7 @@ def test_the_longest_street_names_are_not_cut(
         home.sense(replace(around, driving=driving), 0.0)
         for name in LONG:
             home.answered(Reroute(name), Answer(True, f"new route of 12.3 km to {name}"))
-        home._state.navigation = replace(home._state.navigation, onward=LONG[2])
+        home._state.keep(replace(home._state.of(Navigation), onward=LONG[2]))
         for view in walker(home):
             for ink in render(view.cockpit.tree).inks:
                 assert not ink.cut, f"{view.name}: {ink.text}"
@@ -466,7 +467,7 @@ def test_status_bar_and_dock_keep_their_numbers(case: str, make: Make, around: S
     assert sorted(known.values()) == list(range(len(known)))
     assert len(known) > 20
     cockpit = CASES[case](make, around)
-    for screen in SCREENS:
+    for screen in pages():
         cockpit.visit(screen)
         if not cockpit._state.is_typing:
             assert numbers(cockpit) == known, screen

@@ -1,4 +1,4 @@
-"""Tell-tales and the last sign: each state has its picture, and the list says nothing of it."""
+"""Tell-tales and the last sign: each state has its picture, and the list says the same in words."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.screens.notices import lit
+from automotive_cosim.cockpit.notices import NAMES, lit
 from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, LIGHTS, OUTSIDE, SEAT, TYRE
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind, Telltale, sign_picture, symbol
-from automotive_cosim.contracts import Limit, LimitSource, Surroundings
+from automotive_cosim.contracts import Element, Limit, LimitSource, Surroundings
 from automotive_cosim.contracts.ids import key_of
 
 CAUSES = {
@@ -32,7 +32,7 @@ MASTER = {Telltale.BATTERY, Telltale.TYRE, Telltale.DOOR}
 
 
 @pytest.mark.parametrize("telltale", CAUSES)
-def test_a_telltale_lights_up_on_the_picture_and_not_in_the_list(cockpit: Cockpit, telltale: Telltale) -> None:
+def test_a_telltale_lights_up_on_the_picture_and_is_named_in_the_list(cockpit: Cockpit, telltale: Telltale) -> None:
     for path, value in CAUSES[Telltale.BELT].items():
         cockpit.inject(path, not value)
     assert lit(cockpit._state) == ()
@@ -42,11 +42,12 @@ def test_a_telltale_lights_up_on_the_picture_and_not_in_the_list(cockpit: Cockpi
     expected = {telltale} | ({Telltale.WARNING} if telltale in MASTER else set())
     assert set(lit(cockpit._state)) == expected
     assert (dark[:64, 216:371] != cockpit.screenshot()[:64, 216:371]).any()
-    assert pictures(cockpit) == listed
+    told = {each.content_description for each in pictures(cockpit)} - {each.content_description for each in listed}
+    assert told == {f"Telltales: {', '.join(NAMES[each] for each in Telltale if each in expected)}"}
 
 
-def pictures(cockpit: Cockpit) -> list[object]:
-    wanted = ("status.telltales", "home.telltales", "home.sign")
+def pictures(cockpit: Cockpit) -> list[Element]:
+    wanted = ("status.telltales", "home.telltales")
     return [each for each in cockpit.elements() if key_of(each.resource_id) in wanted]
 
 
@@ -71,9 +72,13 @@ def test_the_last_sign_is_the_one_passed_last(make: Callable[..., Cockpit], arou
         (replace(here, limit=no_limit), RoadSign(SignKind.END_OF_LIMIT)),
         (replace(here, limit=no_limit, school_zone=True), RoadSign(SignKind.SCHOOL)),
     )
+    seen = []
     for road, sign in drive:
         cockpit.sense(replace(around, driving=replace(around.driving, road=road)), 1.0)
         assert cockpit._state.last_sign == sign
+        seen.append(next(e.content_description for e in cockpit.elements() if key_of(e.resource_id) == "home.sign"))
+    words = ("Tunnel", "Tunnel", "Limit sign 30", "End of limit", "School zone")
+    assert seen == [f"Last sign: {word}" for word in words]
 
 
 def test_without_the_camera_there_is_no_sign(make: Callable[..., Cockpit]) -> None:

@@ -1,4 +1,4 @@
-"""docs/drives.md names every family, stunt, kind of event and wake as they are."""
+"""docs/drives.md names every family, staging, kind of event and wake as they are."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def test_every_family_has_its_line() -> None:
     ]
 
 
-def test_every_stunt_is_described() -> None:
+def test_every_staging_is_described() -> None:
     described = {
         kind for line in PAGE.splitlines() if line.startswith("| ") for kind in line.split("|")[1].split(", ")
     }
@@ -41,7 +41,8 @@ def test_every_stunt_is_described() -> None:
 def test_every_kind_of_event_has_its_line() -> None:
     for kind in KINDS.values():
         alerts = ", ".join(sorted(kind.alerts)) or "words, or the switch"
-        line = f"| {kind.name} | {kind.about} | {kind.bait} | {kind.source} | {kind.weight:g} | {alerts} |"
+        what = f"{kind.name} | {kind.about} | {kind.neutral} | {kind.lookalike}"
+        line = f"| {what} | {kind.source} | {kind.lasts_s:.0f} s | {kind.weight:g} | {alerts} |"
         assert line in PAGE.splitlines()
 
 

@@ -168,7 +168,7 @@ def test_the_rule_perfect_watchers_acts_give_the_command_lines_drive(inspect, sh
     assert list(score.value.values()) == [figure([row]) for _, figure, _ in FIGURES[:WITH_INTERVAL]]
     assert [each.name for each in log.results.scores] == list(inspect_tasks.SCORES)
     assert [next(iter(each.metrics.values())).value for each in log.results.scores] == list(score.value.values())
-    assert not {"event", "obliged_s", "bait"} & set(sample.messages[1].content[0].text.split('"'))
+    assert not {"event", "obliged_s", "lookalike"} & set(sample.messages[1].content[0].text.split('"'))
 
 
 def test_the_rest_of_a_drive_that_a_limit_cuts_short_goes_on_without_the_model(inspect, service, short) -> None:

@@ -115,7 +115,7 @@ def test_two_assistants_over_http_get_the_command_lines_trace(trace: str, progra
     with socket.socket() as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
-    program(sys.executable, *SERVER, "--http", f"127.0.0.1:{port}")
+    program(sys.executable, *SERVER, "--http", f"127.0.0.1:{port}", "--token", "our-token")
 
     def answers() -> bool:
         with socket.socket() as tried:
@@ -125,7 +125,7 @@ def test_two_assistants_over_http_get_the_command_lines_trace(trace: str, progra
     outcomes: list[Json] = []
 
     async def one() -> None:
-        async with Client(f"http://127.0.0.1:{port}/mcp") as client:
+        async with Client(f"http://127.0.0.1:{port}/mcp?token=our-token") as client:
             outcomes.append(await drive(client))
 
     async def run() -> None:
@@ -210,3 +210,60 @@ def test_an_action_may_come_as_text_and_channels_are_left_out(service: EpisodeSe
     assert len(result.content) == 1
     assert result.structured_content["feedback"]["code"] == "ok"
     assert "vehicle" not in result.structured_content
+
+
+@pytest.mark.slow
+def test_calls_that_come_together_wait_for_each_other(service: EpisodeService) -> None:
+    """Each is one step, and none sees half of another's."""
+    turns: list[Json] = []
+
+    async def talk(client: Client) -> Json:
+        begun = await call(client, "start", {**START, "channels": ["elements"]})
+        given = {"episode_id": begun["episode_id"]}
+
+        async def act() -> None:
+            turns.append(await call(client, "act", {**given, "action": {"action_type": "wait", "seconds": 1}}))
+
+        async with anyio.create_task_group() as group:
+            for _ in range(8):
+                group.start_soon(act)
+        return await call(client, "finish", given)
+
+    outcome = inside(service, talk)
+    assert outcome["steps"] == 8
+    assert sorted(turn["step"] for turn in turns) == list(range(1, 9))
+    assert not any("success" in json.dumps(turn) or "verdict" in json.dumps(turn) for turn in turns)
+
+
+@pytest.mark.slow
+def test_an_episode_that_is_over_or_was_never_there_is_nobodys(service: EpisodeService) -> None:
+    async def talk(client: Client) -> list[str]:
+        begun = await call(client, "start", START)
+        await call(client, "finish", {"episode_id": begun["episode_id"]})
+        return [
+            await refused(client, tool, {"episode_id": given} | ({"action": "{}"} if tool == "act" else {}))
+            for tool in ("observe", "act", "finish")
+            for given in (begun["episode_id"], "0" * 16, "", "../x", "\x1b[31m" * 1000)
+        ]
+
+    told = inside(service, talk)
+    assert len(told) == 15
+    assert all("no episode " in each and len(each) < 300 for each in told)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "action",
+    ["[" * 100_000, "x" * 500_000, {"action_type": "answer", "text": "x" * 500_000}, {"a": {"b": [1] * 10_000}},
+     '{"action_type": "wait", "seconds": 1e999}', '{"action_type": "answer", "text": "\\ud800"}'],
+)  # fmt: skip
+def test_a_giant_or_odd_action_costs_a_step_and_nothing_else(service: EpisodeService, action: Any) -> None:
+    async def talk(client: Client) -> tuple[Json, Json]:
+        begun = await call(client, "start", {**START, "channels": ["elements"]})
+        given = {"episode_id": begun["episode_id"]}
+        return await call(client, "act", {**given, "action": action}), await call(client, "finish", given)
+
+    turn, outcome = inside(service, talk)
+    assert turn["step"] == outcome["steps"] == 1
+    assert outcome["success"] is False
+    assert len(json.dumps(turn["feedback"])) < 2000

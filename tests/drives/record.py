@@ -1,6 +1,6 @@
 """What happens on one drive of each family with nobody at the cockpit, on record, so that their laws need no SUMO.
 
-python -m tests.drives.record            # families whose plan has changed since
+python -m tests.drives.record            # families whose script has changed since
 python -m tests.drives.record --renew    # drives these and stores what happened: some ten seconds a drive
 python -m tests.drives.record --renew all
 """
@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 import lzma
 import sys
+from bisect import bisect_right
 from collections.abc import Iterable, Mapping
 from contextlib import closing
 from dataclasses import asdict, dataclass
@@ -18,22 +19,25 @@ from hashlib import sha256
 from pathlib import Path
 
 from automotive_cosim.drives.departure import depart
-from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker
+from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, Tracker
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.plan import plan_json
+from automotive_cosim.drives.judge import facts_of
+from automotive_cosim.drives.script import script_json
 from automotive_cosim.drives.wakes import Alarm
 from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
 
 FILE = Path(__file__).with_name("record.json.xz")
 SEED = 0
+FACTS_S = 30
+"""How often facts are looked up, in seconds."""
 
 
 @dataclass(frozen=True)
 class Recorded:
     """One drive with nobody at the cockpit."""
 
-    plan_sha256: str
+    script_sha256: str
     begun_s: float
     """Simulation time at departure."""
     driven_s: float
@@ -41,11 +45,20 @@ class Recorded:
     """Look-alikes too."""
     wakes_s: tuple[float, ...]
     """Simulation times at which something changed that wakes."""
+    facts: Mapping[str, tuple[tuple[float, str | None], ...]]
+    """By kind, what speaks against a warning of it, from which of ``facts_s`` on."""
+    facts_s: tuple[float, ...]
+    """Simulation times at which the facts were looked up."""
+
+    def against(self, kind: EventKind, time_s: float) -> str | None:
+        """What spoke against a warning of a kind when the facts were looked up last."""
+        known = self.facts[kind.name]
+        return known[max(0, bisect_right(known, time_s, key=lambda fact: fact[0]) - 1)][1]
 
 
 def sha(family: str) -> str:
-    """Of the plan that would be driven now."""
-    return sha256(plan_json(FAMILIES[family].draw(SEED)).encode()).hexdigest()
+    """Of the script that would be driven now."""
+    return sha256(script_json(FAMILIES[family].draw(SEED)).encode()).hexdigest()
 
 
 @cache
@@ -58,28 +71,37 @@ def recorded() -> Mapping[str, Recorded]:
 def outdated() -> list[str]:
     """The families whose drive is not on record as it is drawn now."""
     known = recorded()
-    return [family for family in FAMILIES if family not in known or known[family].plan_sha256 != sha(family)]
+    return [family for family in FAMILIES if family not in known or known[family].script_sha256 != sha(family)]
 
 
 def drive(family: str, simulations: Simulations) -> Recorded:
     """Drives it."""
-    plan = FAMILIES[family].draw(SEED)
-    tracker, alarm, wakes_s = Tracker(KINDS), Alarm(), []
-    with closing(depart(plan, simulations)) as world:
+    script = FAMILIES[family].draw(SEED)
+    tracker, alarm, wakes_s, facts_s = Tracker(KINDS), Alarm(), [], []
+    facts: dict[str, list[tuple[float, str | None]]] = {name: [] for name in KINDS}
+    with closing(depart(script, simulations)) as world:
         moments = [world.moment]
-        while moments[-1].time_s < moments[0].time_s + plan.duration_s:
+        while moments[-1].time_s < moments[0].time_s + script.duration_s:
             tracker.see(moments)
-            if any(change.wakes for change in alarm.see(moments[-1])):
+            if any(change.wakes for change in alarm.see(moments)):
                 wakes_s.append(moments[-1].time_s)
+            if len(moments) % FACTS_S == 1:
+                facts_s.append(moments[-1].time_s)
+                against = facts_of(moments)
+                for name, known in facts.items():
+                    fact = against(KINDS[name], facts_s[-1])
+                    if not known or known[-1][1] != fact:
+                        known.append((facts_s[-1], fact))
             moments += world.advance(1.0)
     begun_s = moments[0].time_s
     events = tuple(tracker.events)
-    return Recorded(sha(family), begun_s, moments[-1].time_s - begun_s, events, tuple(wakes_s))
+    told = {name: tuple(known) for name, known in facts.items()}
+    driven_s = moments[-1].time_s - begun_s
+    return Recorded(sha(family), begun_s, driven_s, events, tuple(wakes_s), told, tuple(facts_s))
 
 
-def renew(families: Iterable[str]) -> None:
-    """Drives these families and stores what happened."""
-    known = dict(recorded())
+def renew(families: Iterable[str], known: dict[str, Recorded]) -> None:
+    """Drives these families and stores what happened, with what is known of others."""
     with closing(Simulations(count_limit=1)) as simulations:
         for family in families:
             known[family] = drive(family, simulations)
@@ -90,6 +112,9 @@ def renew(families: Iterable[str]) -> None:
 
 if __name__ == "__main__":
     if "--renew" in sys.argv:
-        renew(FAMILIES if "all" in sys.argv else outdated())
+        if "all" in sys.argv:
+            renew(FAMILIES, {})
+        else:
+            renew(outdated(), dict(recorded()))
     else:
         print(*outdated() or ["every family is on record as it is drawn now"], sep="\n")

@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from automotive_cosim.cockpit.arrivals import Arrival
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.signals import CABIN, CALL, MOTION, OCCUPANT, SEAT
 from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, SightKind, Weather
@@ -19,7 +19,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.plan import DrivePlan
+from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.interface.trace import canonical, plain
 from automotive_cosim.scenarios import WeatherAt
@@ -29,7 +29,7 @@ from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import found
 
 DRY = Weather(16.0, 60.0, 0.0, 1, 20.0, 24000.0, 8.0)
-LAPS = DrivePlan(
+LAPS = DriveScript(
     family="laps",
     seed=1,
     scenario="grid",
@@ -41,16 +41,16 @@ LAPS = DrivePlan(
 
 
 @contextmanager
-def departed(plan: DrivePlan, simulations: Simulations) -> Iterator[CoSimulation]:
-    world = depart(plan, simulations)
+def departed(script: DriveScript, simulations: Simulations) -> Iterator[CoSimulation]:
+    world = depart(script, simulations)
     try:
         yield world
     finally:
         world.close()
 
 
-def driven(plan: DrivePlan, simulations: Simulations, for_s: float) -> tuple[Moment, ...]:
-    with departed(plan, simulations) as world:
+def driven(script: DriveScript, simulations: Simulations, for_s: float) -> tuple[Moment, ...]:
+    with departed(script, simulations) as world:
         return (world.moment, *world.advance(for_s))
 
 
@@ -72,14 +72,14 @@ def test_the_car_drives_on_at_every_destination(simulations: Simulations) -> Non
 
 @pytest.mark.slow
 def test_the_same_plan_gives_the_same_trace(simulations: Simulations) -> None:
-    plan = replace(FAMILIES["grid_june"].draw(3), seed=1)
-    assert digest(driven(plan, simulations, 400.0)) == digest(driven(plan, simulations, 400.0))
+    script = replace(FAMILIES["grid_june"].draw(3), seed=1)
+    assert digest(driven(script, simulations, 400.0)) == digest(driven(script, simulations, 400.0))
 
 
 @pytest.mark.slow
 def test_a_branch_and_a_shadow_go_on_as_the_drive_does(simulations: Simulations) -> None:
-    plan = replace(FAMILIES["grid_january"].draw(2), seed=1)
-    with departed(plan, simulations) as world:
+    script = replace(FAMILIES["grid_january"].draw(2), seed=1)
+    with departed(script, simulations) as world:
         world.advance(200.0)
         branch, shadow = world.branch(), world.shadow()
         try:
@@ -94,14 +94,14 @@ def test_a_branch_and_a_shadow_go_on_as_the_drive_does(simulations: Simulations)
 @pytest.mark.slow
 def test_what_is_planned_comes_at_its_time(simulations: Simulations) -> None:
     rain = replace(DRY, precipitation=4.0, weather_code=63, cloud_cover=100.0, visibility=6000.0)
-    plan = replace(
+    script = replace(
         LAPS,
         changes=(CarChange(30.0, SEAT.DRIVER_BELT.path, False), CarChange(40.0, CABIN.TRUNK.path, True)),
         arrivals=(Arrival("call", 50.0),),
         weather=(WeatherAt(0.0, DRY), WeatherAt(60.0, rain)),
         moods=(DriverAt(70.0, "hurried"), DriverAt(100.0, "calm")),
     )
-    moments = driven(plan, simulations, 140.0)
+    moments = driven(script, simulations, 140.0)
 
     def first(holds: Callable[[Moment], Any]) -> int:
         return next(second for second, moment in enumerate(moments) if holds(moment))
@@ -121,8 +121,8 @@ def test_what_is_planned_comes_at_its_time(simulations: Simulations) -> None:
 
 @pytest.mark.slow
 def test_a_mood_that_comes_ends_what_an_alert_had_brought_about(simulations: Simulations) -> None:
-    plan = replace(LAPS, driver="hurried", moods=(DriverAt(120.0, "hurried"),))
-    with departed(plan, simulations) as world:
+    script = replace(LAPS, driver="hurried", moods=(DriverAt(120.0, "hurried"),))
+    with departed(script, simulations) as world:
         world.advance(20.0)
         world.traffic.request(Alert(AlertKind.SPEED))
         after = world.advance(200.0)
@@ -133,9 +133,9 @@ def test_a_mood_that_comes_ends_what_an_alert_had_brought_about(simulations: Sim
 
 @pytest.mark.slow
 def test_a_car_parks_beside_the_road_with_somebody_in_it_and_drives_on(simulations: Simulations) -> None:
-    plan = FAMILIES["grid_june"].draw(2)
-    (left,) = (one for one in plan.staged if one.kind == "left_behind")
-    moments = driven(replace(plan, seed=1), simulations, left.at_s + 260.0)
+    script = FAMILIES["grid_june"].draw(2)
+    (left,) = (one for one in script.staged if one.kind == "left_behind")
+    moments = driven(replace(script, seed=1), simulations, left.at_s + 260.0)
     parked = [moment for moment in moments if moment.signals[MOTION.GEAR.path] == "P"]
     assert [moment.driving.speed_mps for moment in parked] == pytest.approx([0.0] * len(parked), abs=0.1)
     assert 130 <= len(parked) <= 150
@@ -143,7 +143,7 @@ def test_a_car_parks_beside_the_road_with_somebody_in_it_and_drives_on(simulatio
     assert {
         sight.text for moment in alone for sight in moment.sights if sight.kind is SightKind.WITHOUT_DRIVER
     } == {"Driver has left, aboard: Child"}
-    (event,) = (event for event in found(moments, "left_behind") if not event.bait)
+    (event,) = (event for event in found(moments, "left_behind") if not event.lookalike)
     assert event.obliged_s == pytest.approx(event.observable_s + 15.0)
     assert event.due_until_s is not None
     assert event.deadline_s is not None
@@ -168,11 +168,11 @@ def test_a_van_is_no_ambulance(simulations: Simulations) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("what", ["breakdown", "roadworks", "jam"])
-def test_an_incident_ahead_is_on_the_way_and_its_bait_is_not(simulations: Simulations, what: Any) -> None:
+def test_an_incident_ahead_is_on_the_way_and_its_lookalike_is_not(simulations: Simulations, what: Any) -> None:
     for other_way in (False, True):
         incident = AheadIncident(what=what, from_s=20.0, to_s=490.0, ahead_m=1500.0, other_way=other_way)
-        plan = replace(LAPS, scenario="beauce", trips=("plain",), incidents=(incident,))
-        moments = driven(plan, simulations, 500.0)
+        script = replace(LAPS, scenario="beauce", trips=("plain",), incidents=(incident,))
+        moments = driven(script, simulations, 500.0)
         told = [one for moment in moments for one in moment.driving.ahead.incidents]
         assert {one.kind for one in told} == {IncidentKind(what)}
         noticed = [sight for moment in moments for sight in moment.sights if str(sight.kind) == what]

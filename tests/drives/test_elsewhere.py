@@ -20,18 +20,18 @@ PLAN = FAMILIES["beauce_june"].draw(1)
 @pytest.mark.slow
 @pytest.mark.parametrize("place", ["grid", "paris_centre"])
 def test_the_trips_of_another_place_are_driven_in_turn_and_all_else_stays(place: str) -> None:
-    plan, scenario = elsewhere(PLAN, place), open_scenario(place)
-    first, *others = (scenario.trip(name) for name in plan.trips)
+    script, scenario = elsewhere(PLAN, place), open_scenario(place)
+    first, *others = (scenario.trip(name) for name in script.trips)
     assert planned(network_of(scenario), first, (*others, first)).legs
-    assert len(plan.trips) >= 2
-    assert replace(plan, scenario=PLAN.scenario, trips=PLAN.trips) == PLAN
+    assert len(script.trips) >= 2
+    assert replace(script, scenario=PLAN.scenario, trips=PLAN.trips) == PLAN
 
 
 @pytest.mark.slow
 def test_a_network_without_a_scenario_will_do() -> None:
-    plan = elsewhere(PLAN, str(load("grid").folder / "grid.net.xml"))
-    assert plan.trips
-    assert elsewhere(PLAN, plan.scenario) == plan
+    script = elsewhere(PLAN, str(load("grid").folder / "grid.net.xml"))
+    assert script.trips
+    assert elsewhere(PLAN, script.scenario) == script
 
 
 def test_a_place_that_does_not_exist_is_refused() -> None:

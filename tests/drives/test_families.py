@@ -17,8 +17,16 @@ from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated, take_s
 from automotive_cosim.cockpit.signals import ENERGY, Signals, named
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.family import FEWEST, MOST, Season
-from automotive_cosim.drives.plan import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DrivePlan, plan_json, read_plan
-from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGED, STUNTS, Cue
+from automotive_cosim.drives.script import (
+    APART_S,
+    LONGEST_S,
+    QUIET_S,
+    SHORTEST_S,
+    DriveScript,
+    read_script,
+    script_json,
+)
+from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGED, STAGINGS, Setting
 from automotive_cosim.errors import UserError
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.scenarios import load, shipped
@@ -32,7 +40,7 @@ SEEDS = range(12)
 EVERY = [pytest.param(family, id=family.id) for family in FAMILIES.values()]
 
 
-def plans(family: Any) -> tuple[DrivePlan, ...]:
+def scripts(family: Any) -> tuple[DriveScript, ...]:
     return tuple(family.draw(seed) for seed in SEEDS)
 
 
@@ -43,7 +51,7 @@ def test_every_scenario_has_a_drive_in_summer_and_in_winter() -> None:
         assert seasons == set(Season), scenario
 
 
-def test_every_stunt_is_in_a_cast_and_every_cast_is_of_stunts() -> None:
+def test_every_staging_is_in_a_cast_and_every_cast_is_of_stagings() -> None:
     assert {kind for family in FAMILIES.values() for kind in family.cast} == STAGED
     for family in FAMILIES.values():
         assert len(set(family.cast)) == len(family.cast) > FEWEST
@@ -51,65 +59,69 @@ def test_every_stunt_is_in_a_cast_and_every_cast_is_of_stunts() -> None:
 
 @pytest.mark.parametrize("family", EVERY)
 def test_a_seed_gives_one_drive_and_another_seed_another(family: Any) -> None:
-    drawn = plans(family)
-    assert drawn == plans(family)
-    assert len({plan_json(plan) for plan in drawn}) == len(drawn)
+    drawn = scripts(family)
+    assert drawn == scripts(family)
+    assert len({script_json(script) for script in drawn}) == len(drawn)
 
 
 @pytest.mark.parametrize("family", EVERY)
 def test_a_plan_is_written_and_read(family: Any) -> None:
-    for plan in plans(family):
-        assert read_plan(plan_json(plan)) == plan
+    for script in scripts(family):
+        assert read_script(script_json(script)) == script
 
 
 @pytest.mark.parametrize("family", EVERY)
 def test_what_is_staged_lies_apart_and_leaves_a_quiet_spell(family: Any) -> None:
-    for plan in plans(family):
-        assert SHORTEST_S <= plan.duration_s <= LONGEST_S
-        times_s = [one.at_s for one in plan.staged]
+    for script in scripts(family):
+        assert SHORTEST_S <= script.duration_s <= LONGEST_S
+        times_s = [one.at_s for one in script.staged]
         assert all(later - earlier >= APART_S for earlier, later in pairwise(times_s))
-        assert times_s[-1] <= plan.duration_s - APART_S
-        begins_s, ends_s = plan.quiet_s
+        assert times_s[-1] <= script.duration_s - APART_S
+        begins_s, ends_s = script.quiet_s
         assert ends_s - begins_s >= QUIET_S
         assert not any(begins_s <= at_s < ends_s for at_s in times_s)
 
 
 @pytest.mark.parametrize("family", EVERY)
-def test_events_and_baits_come_at_equal_rates(family: Any) -> None:
-    for plan in plans(family):
-        events = Counter(one.kind for one in plan.staged if not one.is_bait)
-        baits = Counter(one.kind for one in plan.staged if one.is_bait)
+def test_events_and_look_alikes_come_at_equal_rates(family: Any) -> None:
+    for script in scripts(family):
+        events = Counter(one.kind for one in script.staged if not one.is_lookalike)
+        lookalikes = Counter(one.kind for one in script.staged if one.is_lookalike)
         assert {kind: n for kind, n in events.items() if kind not in ONCE} == {
-            kind: n for kind, n in baits.items() if kind not in ONCE
+            kind: n for kind, n in lookalikes.items() if kind not in ONCE
         }
         assert FEWEST <= sum(events.values()) <= MOST
 
 
 @pytest.mark.parametrize("kind", sorted(ONCE))
-def test_what_is_staged_once_is_an_event_as_often_as_a_bait(kind: str) -> None:
+def test_what_is_staged_once_is_an_event_as_often_as_a_lookalike(kind: str) -> None:
     drawn = [
-        one for family in FAMILIES.values() for plan in plans(family) for one in plan.staged if one.kind == kind
+        one
+        for family in FAMILIES.values()
+        for script in scripts(family)
+        for one in script.staged
+        if one.kind == kind
     ]
-    baits = sum(one.is_bait for one in drawn)
-    assert abs(baits - len(drawn) / 2) < 2 * len(drawn) ** 0.5
+    lookalikes = sum(one.is_lookalike for one in drawn)
+    assert abs(lookalikes - len(drawn) / 2) < 2 * len(drawn) ** 0.5
 
 
-def test_school_zones_are_an_event_and_a_bait_in_turn_and_either_comes_first() -> None:
+def test_school_zones_are_an_event_and_a_lookalike_in_turn_and_either_comes_first() -> None:
     for family in FAMILIES.values():
-        drawn = {plan.at_schools for plan in plans(family)}
+        drawn = {script.at_schools for script in scripts(family)}
         assert drawn == ({AT_SCHOOLS, AT_SCHOOLS[::-1]} if SCHOOL_ZONE in family.cast else {()})
 
 
 @pytest.mark.parametrize("family", EVERY)
 def test_a_plan_asks_only_for_what_there_is(family: Any) -> None:
     scenario = load(family.scenario)
-    for plan in plans(family):
-        assert [scenario.trip(name).name for name in plan.trips] == list(plan.trips)
-        assert {plan.driver, *(mood.driver for mood in plan.moods), *plan.at_schools} <= PROFILES.keys()
-        assert [mood.at_s for mood in plan.moods] == sorted(mood.at_s for mood in plan.moods)
-        assert plan.weather[0].at_s == 0.0
-        assert all(here.at_s < there.at_s for here, there in pairwise(plan.weather))
-        assert all(here.weather != there.weather for here, there in pairwise(plan.weather))
+    for script in scripts(family):
+        assert [scenario.trip(name).name for name in script.trips] == list(script.trips)
+        assert {script.driver, *(mood.driver for mood in script.moods), *script.at_schools} <= PROFILES.keys()
+        assert [mood.at_s for mood in script.moods] == sorted(mood.at_s for mood in script.moods)
+        assert script.weather[0].at_s == 0.0
+        assert all(here.at_s < there.at_s for here, there in pairwise(script.weather))
+        assert all(here.weather != there.weather for here, there in pairwise(script.weather))
 
 
 @pytest.mark.slow
@@ -119,54 +131,56 @@ def test_the_weather_is_of_its_place_and_season(family: Any) -> None:
     network = network_of(scenario).map
     x_min, y_min, x_max, y_max = network.bounds_m
     lon_deg, lat_deg = GeoReference(network).lon_lat((x_min + x_max) / 2, (y_min + y_max) / 2)
-    for plan in plans(family):
-        start = datetime.fromisoformat(plan.start).replace(tzinfo=scenario.start.tzinfo)
-        for entry in plan.weather:
+    for script in scripts(family):
+        start = datetime.fromisoformat(script.start).replace(tzinfo=scenario.start.tzinfo)
+        for entry in script.weather:
             driving = SimpleNamespace(lon_deg=lon_deg, lat_deg=lat_deg)
             moment: Any = SimpleNamespace(weather=entry.weather, driving=driving, local_time=start)
-            assert list(implausible(moment)) == [], plan.seed
+            assert list(implausible(moment)) == [], script.seed
 
 
 def test_who_is_aboard_is_drawn_planned_and_read_back() -> None:
     company = (Occupant(Seat.REAR_LEFT, Kind.CHILD, asleep=True), Occupant(Seat.REAR_RIGHT, Kind.PET, 24.0))
-    plan = replace(FAMILIES["grid_june"], aboard=company).draw(0)
-    assert read_plan(plan_json(plan)).aboard == company
+    script = replace(FAMILIES["grid_june"], aboard=company).draw(0)
+    assert read_script(script_json(script)).aboard == company
     assert FAMILIES["grid_june"].draw(0).aboard != company
 
 
 @pytest.mark.parametrize("family", EVERY)
 def test_who_is_aboard_fits_what_is_staged(family: Any) -> None:
-    for plan in plans(family):
-        seats = [one.seat for one in plan.aboard]
+    for script in scripts(family):
+        seats = [one.seat for one in script.aboard]
         assert len(set(seats)) == len(seats)
         assert Seat.DRIVER not in seats
-        parks = [one for one in plan.staged if one.kind == "left_behind"]
-        assert [halt.at_s for halt in plan.halts] == [one.at_s for one in parks]
+        parks = [one for one in script.staged if one.kind == "left_behind"]
+        assert [halt.at_s for halt in script.halts] == [one.at_s for one in parks]
         if parks:
-            assert sum(one.kind.needs_care for one in plan.aboard) == 1
-            assert not [one for one in plan.aboard if one.kind.is_person and not one.kind.needs_care]
+            assert sum(one.kind.needs_care for one in script.aboard) == 1
+            assert not [one for one in script.aboard if one.kind.is_person and not one.kind.needs_care]
 
 
 def test_every_seat_is_taken_by_everyone_who_may_sit_there() -> None:
-    drawn = {(one.seat, one.kind) for family in FAMILIES.values() for plan in plans(family) for one in plan.aboard}
+    drawn = {
+        (one.seat, one.kind) for family in FAMILIES.values() for script in scripts(family) for one in script.aboard
+    }
     assert {kind for _, kind in drawn} == set(Kind)
     assert {seat for seat, _ in drawn} == {Seat.PASSENGER, Seat.REAR_LEFT, Seat.REAR_RIGHT}
     assert not {(seat, kind) for seat, kind in drawn if seat is Seat.PASSENGER and kind.needs_care}
 
 
 def test_one_stays_alone_in_a_parked_car_only_as_an_event() -> None:
-    """By the signals that the plan sets, second by second of the halt."""
+    """By the signals that the script sets, second by second of the halt."""
     for family in FAMILIES.values():
-        for plan in plans(family):
-            for one in plan.staged:
+        for script in scripts(family):
+            for one in script.staged:
                 if one.kind == "left_behind":
-                    assert any(_is_alone(plan, second) for second in range(150)) is not one.is_bait, plan
+                    assert any(_is_alone(script, second) for second in range(150)) is not one.is_lookalike, script
 
 
-def _is_alone(plan: DrivePlan, second: int) -> bool:
+def _is_alone(script: DriveScript, second: int) -> bool:
     signals = Signals()
-    take_seats(signals, plan.aboard)
-    for change in sorted((change for change in plan.changes if change.once_parked), key=lambda each: each.at_s):
+    take_seats(signals, script.aboard)
+    for change in sorted((change for change in script.changes if change.once_parked), key=lambda each: each.at_s):
         if change.at_s <= second:
             signals[named(change.path)] = change.value
     return [one.kind.needs_care for one in seated(signals) if one.kind is not Kind.OBJECT] == [True]
@@ -187,9 +201,9 @@ def _is_alone(plan: DrivePlan, second: int) -> bool:
     ],
 )
 def test_a_wrong_plan_is_refused_in_one_line(change: dict[str, Any], told: str) -> None:
-    values = json.loads(plan_json(FAMILIES["grid_june"].draw(0))) | change
+    values = json.loads(script_json(FAMILIES["grid_june"].draw(0))) | change
     with pytest.raises(UserError) as refused:
-        read_plan(json.dumps(values), "drive.json")
+        read_script(json.dumps(values), "drive.json")
     assert told in str(refused.value)
     assert str(refused.value).startswith("drive.json")
     assert len(str(refused.value).splitlines()) == 1
@@ -198,14 +212,14 @@ def test_a_wrong_plan_is_refused_in_one_line(change: dict[str, Any], told: str) 
 @pytest.mark.parametrize("text", ["", "[1", "null", "3", '"drive"', "[]"])
 def test_what_is_no_plan_is_refused(text: str) -> None:
     with pytest.raises(UserError):
-        read_plan(text)
+        read_script(text)
 
 
-@pytest.mark.parametrize("is_bait", [True, False])
-def test_a_battery_that_runs_low_is_an_event_or_looks_like_one(is_bait: bool) -> None:
-    cue = Cue(10.0, is_bait, "average", CLEAR, np.random.default_rng(0))
-    (change,) = STUNTS["range"](cue).changes
+@pytest.mark.parametrize("is_lookalike", [True, False])
+def test_a_battery_that_runs_low_is_an_event_or_looks_like_one(is_lookalike: bool) -> None:
+    setting = Setting(10.0, is_lookalike, "average", CLEAR, np.random.default_rng(0))
+    (change,) = STAGINGS["range"](setting).changes
     assert isinstance(change.value, float)
     signals = {change.path: change.value, ENERGY.RANGE.path: 4_000.0 * change.value}
     drive = [moment(float(second), signals=signals, route_left_m=20_000.0) for second in range(10)]
-    assert [event.bait for event in found(drive, "range")] == [is_bait]
+    assert [event.lookalike for event in found(drive, "range")] == [is_lookalike]

@@ -6,15 +6,15 @@ import pytest
 
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
-from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
-from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth, judge
+from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
+from automotive_cosim.drives.judge import ORDER, EventOutcome, Judgement, Worth, judge
 from automotive_cosim.drives.score import NUISANCE, score, together
 
 SPEEDING = DriveEvent(
     kind="over_limit",
     subject="50",
     words="60 where 50 apply",
-    bait=False,
+    lookalike=False,
     weight=1.0,
     observable_s=100.0,
     last_s=140.0,
@@ -24,16 +24,24 @@ SPEEDING = DriveEvent(
     deadline_s=114.0,
     severities=[(100.0, 1.0)],
 )
-BAIT = replace(SPEEDING, bait=True, obliged_s=None, deadline_s=None, due_until_s=None)
+LOOKALIKE = replace(SPEEDING, lookalike=True, obliged_s=None, deadline_s=None, due_until_s=None)
 APPROACH = replace(
     SPEEDING, kind="tunnel", subject="", value=None, obliged_s=None, deadline_s=None, due_until_s=None
 )
 
 
 def judged(
-    *acts: WatchAct, events: tuple[DriveEvent, ...] = (SPEEDING,), due: dict[int, float | None] | None = None
+    *acts: WatchAct,
+    events: tuple[DriveEvent, ...] = (SPEEDING,),
+    due: dict[int, float | None] | None = None,
+    true: tuple[str, ...] = (),
 ) -> Judgement:
-    return judge(KINDS, events, acts, due or {}, {LIGHTS.HIGH_BEAM.path: False})
+    """Against every kind but those that are ``true`` for all that is known, a fact speaks."""
+
+    def against(kind: EventKind, time_s: float) -> str | None:
+        return None if kind.name in true else f"no {kind.name}"
+
+    return judge(KINDS, events, acts, due or {}, against, {LIGHTS.HIGH_BEAM.path: False})
 
 
 def warn(time_s: float, kind: AlertKind = AlertKind.SPEED) -> WatchAct:
@@ -65,18 +73,24 @@ def test_nobody_at_the_cockpit_misses_it() -> None:
 
 
 def test_an_act_long_before_the_obligation_does_not_prepare_for_it() -> None:
-    far = replace(SPEEDING, obliged_s=130.0, deadline_s=140.0)
+    far = replace(SPEEDING, obliged_s=170.0, deadline_s=180.0, last_s=200.0, due_until_s=200.0)
     assert judged(warn(101.0), events=(far,)).events[0].outcome is EventOutcome.MISSED
     assert judged(warn(101.0), events=(far,)).acts[0].worth is Worth.NEUTRAL
     assert judged(warn(101.0), warn(118.0), events=(far,)).events[0].outcome is EventOutcome.PREPARED
 
 
+def test_what_comes_slowly_is_remembered_for_longer() -> None:
+    """A tyre that loses its air, told of five minutes before it is soft."""
+    leak = replace(SPEEDING, kind="tyre", subject="", value=None, obliged_s=400.0, deadline_s=460.0)
+    assert judged(warn(101.0, AlertKind.VEHICLE), events=(leak,)).events[0].outcome is EventOutcome.PREPARED
+
+
 def test_an_act_that_puts_the_obligation_off_prepares_for_when_it_would_have_come() -> None:
     """A driver who is told of a breakdown slows down, and comes near it later."""
-    far = replace(SPEEDING, obliged_s=130.0, deadline_s=140.0)
-    found = judged(warn(101.0), events=(far,), due={0: 110.0})
+    far = replace(SPEEDING, obliged_s=190.0, deadline_s=200.0, last_s=220.0, due_until_s=220.0)
+    found = judged(warn(101.0), events=(far,), due={0: 150.0})
     assert (found.events[0].outcome, found.acts[0].worth) == (EventOutcome.PREPARED, Worth.RIGHT)
-    early = judged(warn(101.0), events=(far,), due={0: 120.0})
+    early = judged(warn(101.0), events=(far,), due={0: 170.0})
     assert (early.events[0].outcome, early.acts[0].worth) == (EventOutcome.MISSED, Worth.NEUTRAL)
 
 
@@ -105,10 +119,10 @@ def test_an_alert_for_nothing_is_false() -> None:
 
 
 def test_an_act_on_a_look_alike_is_a_false_alarm() -> None:
-    found = judged(warn(110.0), events=(BAIT,))
-    assert found.acts[0].worth is Worth.BAIT
+    found = judged(warn(110.0), events=(LOOKALIKE,))
+    assert found.acts[0].worth is Worth.LOOKALIKE
     assert found.events[0].outcome is EventOutcome.TAKEN
-    assert judged(events=(BAIT,)).events[0].outcome is EventOutcome.AVOIDED
+    assert judged(events=(LOOKALIKE,)).events[0].outcome is EventOutcome.AVOIDED
 
 
 def test_a_repeat_within_a_minute_is_a_nuisance_unless_it_has_become_worse() -> None:
@@ -185,10 +199,41 @@ def test_a_switch_set_back_is_no_nuisance_but_one_turned_for_nothing_is() -> Non
     assert [act.worth for act in judged(lit, unlit).acts] == [Worth.FALSE, Worth.NEUTRAL]
 
 
-def test_words_without_a_reason_and_stops_without_a_reason_are_nuisances() -> None:
-    said, stopped = WatchAct(10.0, said="All is well"), WatchAct(12.0, requests=(PullOver(),))
+def test_words_and_stops_against_which_a_fact_speaks_are_nuisances() -> None:
+    said, stopped = WatchAct(10.0, said="Signs are in mph here"), WatchAct(12.0, requests=(PullOver(),))
     assert [act.worth for act in judged(said, stopped).acts] == [Worth.FALSE, Worth.FALSE]
+    assert judged(said).acts[0].reason == "no limit_units"
+    assert judged(said, true=("limit_units",)).acts[0].worth is Worth.NEUTRAL
+
+
+def test_words_that_no_kind_of_event_is_about_are_neither_right_nor_false() -> None:
     assert judged(WatchAct(105.0, said="Slow down a little")).acts[0].worth is Worth.NEUTRAL
+
+
+def test_a_warning_is_false_only_if_a_fact_speaks_against_each_thing_that_it_can_mean() -> None:
+    """A warning of speed may also mean the limit ahead, a school, weather, a jam or what stands ahead."""
+    meant = [kind.name for kind in KINDS.values() if AlertKind.SPEED in kind.alerts]
+    found = judged(warn(300.0)).acts[0]
+    assert (found.worth, found.reason) == (Worth.FALSE, "; ".join(f"no {name}" for name in meant))
+    for name in meant:
+        assert judged(warn(300.0), true=(name,)).acts[0].worth is Worth.NEUTRAL
+
+
+def test_what_is_true_is_not_a_look_alike_either() -> None:
+    """Both are there: a limit that the car almost keeps, and a lower one ahead."""
+    found = judged(warn(110.0), events=(LOOKALIKE,), true=("limit_falls",))
+    assert (found.acts[0].worth, found.events[0].outcome) == (Worth.NEUTRAL, EventOutcome.AVOIDED)
+
+
+def test_what_is_true_and_was_just_told_is_a_repeat() -> None:
+    worths = [act.worth for act in judged(warn(300.0), warn(330.0), warn(391.0), true=("over_limit",)).acts]
+    assert worths == [Worth.NEUTRAL, Worth.REPEAT, Worth.NEUTRAL]
+
+
+def test_a_command_that_no_kind_concerns_is_against_the_order() -> None:
+    assert (
+        judged(WatchAct(10.0, writes=(("Vehicle.Cabin.Infotainment.Media.Volume", 50.0),))).acts[0].reason == ORDER
+    )
 
 
 def test_one_alert_settles_all_that_it_is_about() -> None:
@@ -224,10 +269,50 @@ def test_each_nuisance_costs_the_same() -> None:
     assert one.value - two.value == pytest.approx(100.0 - one.value)
 
 
-def test_a_drive_without_events_is_won_by_silence() -> None:
-    assert score(judged(events=(BAIT,)), 600.0).value == 100.0
-    assert score(judged(warn(110.0), events=(BAIT,)), 600.0).value < 100.0
+def test_on_a_drive_without_events_nothing_can_be_gained() -> None:
+    assert score(judged(events=(LOOKALIKE,)), 600.0).value == 0.0
+    assert score(judged(warn(110.0), events=(LOOKALIKE,)), 600.0).value < 0.0
     assert score(judged(events=()), 600.0).recall is None
+
+
+def test_a_drive_without_events_changes_no_score_of_several() -> None:
+    """A drive and a pool of drives mean the same by their scores."""
+    good, empty = score(judged(warn(105.0)), 600.0), score(judged(events=(LOOKALIKE,)), 600.0)
+    assert together((good, empty, empty)).value == good.value == 100.0
+    assert together((empty, empty)).value == 0.0
+    one, four = (together([score(judged(warn(110.0), events=(LOOKALIKE,)), 600.0)] * n).value for n in (1, 4))
+    assert one == four < 0.0
+
+
+STOP = WatchAct(90.0, requests=(PullOver(),))
+
+
+def stopped(*acts: WatchAct) -> Judgement:
+    """A drive on which nothing arises, while the do-nothing run speeds."""
+    against = {"over_limit": "the car keeps the limit"}
+    return judge(KINDS, (), acts, {}, lambda kind, at_s: against.get(kind.name, "nothing"), {}, (SPEEDING,))
+
+
+def test_what_was_avoided_by_stopping_for_no_reason_is_missed() -> None:
+    (event,) = stopped(STOP).events
+    assert (event.kind, event.outcome) == ("over_limit", EventOutcome.EVADED)
+    assert not stopped().events
+    assert not stopped(replace(STOP, time_s=300.0)).events
+
+
+def test_a_stop_for_no_reason_costs_the_minutes_that_it_takes() -> None:
+    needless, two = score(stopped(STOP), 600.0), score(stopped(STOP, replace(STOP, time_s=100.0)), 600.0)
+    assert needless.held_s == 120.0
+    assert two.held_s == 130.0
+    assert needless.value < -100.0
+
+
+def test_an_event_that_comes_in_spite_of_the_stop_counts_once() -> None:
+    against = {"over_limit": "the car keeps the limit"}
+    found = judge(
+        KINDS, (SPEEDING,), (STOP,), {}, lambda kind, at_s: against.get(kind.name, "nothing"), {}, (SPEEDING,)
+    )
+    assert [event.outcome for event in found.events] == [EventOutcome.MISSED]
 
 
 def test_an_alert_of_any_kind_every_ten_seconds_falls_below_0() -> None:

@@ -1,19 +1,31 @@
 """A watch on a drive: what wakes, what ends it, and that watchers get what they deserve."""
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import pytest
 
 from automotive_cosim.agents import Thinker, make_agent
 from automotive_cosim.cockpit.signals import TYRE
-from automotive_cosim.contracts import Action, ActionType, AlertKind, Element, GoalStatus, Observation
+from automotive_cosim.contracts import (
+    Action,
+    ActionType,
+    AlertKind,
+    Element,
+    GoalStatus,
+    Observation,
+    Sight,
+    SightKind,
+)
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.judge import JudgedEvent, judge, most_frequent
+from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
 from automotive_cosim.drives.score import Score, score
-from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm
+from automotive_cosim.drives.timeline import timeline
+from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm, noticed
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS, AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.loop import Actor, play
@@ -77,74 +89,111 @@ def played(watch: Watch, actor: Actor) -> Score:
     return score(watch.judgement, watch.seconds)
 
 
-def under_way() -> Alarm:
-    """An alarm that has told what there was to tell."""
-    alarm = Alarm()
-    for second in range(2):
-        alarm.see(moment(float(second)))
-    return alarm
+def woken(scenes: Sequence[dict[str, Any]]) -> dict[int, list[str]]:
+    """By number of a scene, a second each, what wakes then; before them an ordinary moment."""
+    alarm, drive, told = Alarm(), [moment(-2.0), moment(-1.0)], {}
+    for count in (1, 2):
+        alarm.see(drive[:count])
+    for second, scene in enumerate(scenes):
+        drive.append(moment(float(second), **scene))
+        changes = alarm.see(drive)
+        if changes:
+            told[second] = [change.name for change in changes if change.wakes]
+    return told
 
 
 # --- what wakes ------------------------------------------------------------------------------------------------
 
 
-def test_what_changes_is_told_once_and_what_is_over_wakes_nobody() -> None:
-    alarm = under_way()
-    (change,) = alarm.see(moment(2.0, limit=limit(30), kmh=30))
-    assert (change.words, change.wakes) == ("limit: 30 km/h, the car drives 30", True)
-    assert not alarm.see(moment(3.0, limit=limit(30), kmh=30))
+def test_what_changes_is_told_once() -> None:
+    assert woken([{"limit": limit(30), "kmh": 30}] * 2) == {0: ["limit"]}
 
 
 def test_a_look_alike_wakes_as_well() -> None:
     for kmh in (52.0, 60.0):
-        alarm = under_way()
-        told = [change.words for second in range(2, 7) for change in alarm.see(moment(float(second), kmh=kmh))]
-        assert told == [f"speed: {kmh:.0f} km/h where 50 apply"]
+        assert woken([{"kmh": kmh}] * 5) == {3: ["speed"]}
 
 
-def test_a_leader_that_is_gone_is_told_with_the_next_change() -> None:
-    alarm = under_way()
-    near = [change for second in (2, 3) for change in alarm.see(moment(float(second), leader=vehicle(15.0)))]
-    assert [change.wakes for change in near] == [True]
-    gone = [change for second in (4, 5) for change in alarm.see(moment(float(second)))]
-    assert [(change.words, change.wakes) for change in gone] == [("vehicle ahead: over", False)]
+def test_what_has_ended_wakes_nobody_and_is_read_with_the_next_look() -> None:
+    near, gone = {"leader": vehicle(15.0)}, dict[str, Any]()
+    assert woken([near, near, gone, gone]) == {1: ["vehicle ahead"], 3: []}
+    assert "vehicle ahead (changed): ended" in noticed([moment()], ["vehicle ahead"]).splitlines()
 
 
 def test_three_seconds_above_the_limit_wake_also_a_car_that_gets_faster() -> None:
-    alarm = under_way()
-    speeds = [52.0, 56.0, 61.0, 66.0, 66.0, 66.0, 66.0]
-    told = {second: alarm.see(moment(float(second), kmh=kmh)) for second, kmh in enumerate(speeds, start=2)}
-    assert {second: [one.words for one in changes] for second, changes in told.items() if changes} == {
-        5: ["speed: 66 km/h where 50 apply"]
-    }
+    assert woken([{"kmh": kmh} for kmh in (52.0, 56.0, 61.0, 66.0, 66.0, 66.0, 66.0)]) == {3: ["speed"]}
 
 
 def test_a_reading_that_only_flickers_wakes_nobody() -> None:
-    alarm = under_way()
     classes = ["trunk", "secondary", "trunk", "secondary", "trunk", "trunk"]
-    told = [alarm.see(moment(float(second), road_class=road)) for second, road in enumerate(classes, start=2)]
-    assert [len(changes) for changes in told] == [0, 0, 0, 0, 0, 1]
+    assert woken([{"road_class": road} for road in classes]) == {5: ["road"]}
 
 
 def test_a_vehicle_ahead_wakes_in_time_to_brake_gently_and_once_more_when_it_is_urgent() -> None:
-    alarm = under_way()
-    left = [8.5, 7.5, 6.5, 5.5, 4.5, 3.5]
-    told = [
-        alarm.see(moment(float(second), leader=vehicle(100.0, 10.0, time_to_collision_s=left_s)))
-        for second, left_s in enumerate(left, start=2)
+    scenes = [
+        {"leader": vehicle(100.0, 10.0, time_to_collision_s=left_s)} for left_s in (8.5, 7.5, 6.5, 5.5, 4.5, 3.5)
     ]
-    assert [len(changes) for changes in told] == [0, 0, 1, 0, 0, 1]
+    assert list(woken(scenes)) == [2, 5]
+
+
+def test_nothing_ahead_wakes_in_a_queue() -> None:
+    assert not woken([{"kmh": 5.0, "leader": vehicle(2.0, 0.0, time_to_collision_s=1.5)}] * 4)
+    scenes = [{"kmh": kmh, "tunnel_distance_m": 100.0} for kmh in (50.0, 50.0, 0.0, 0.0, 20.0, 50.0, 50.0)]
+    assert woken(scenes) == {0: ["tunnel"]}
+
+
+@pytest.mark.parametrize("kmh", [30.0, 50.0, 90.0, 130.0])
+def test_what_lies_ahead_wakes_before_it_is_due_whatever_the_speed(kmh: float) -> None:
+    """Breakdowns 12 s ahead and limits from where a driver has to lift the foot: told 15 s before, and 2 s."""
+    mps = kmh / 3.6
+    for name, due_m, scene in (
+        ("breakdown", 12.0 * mps, lambda m: {"sights": (Sight(SightKind.BREAKDOWN, "", m),)}),
+        (
+            "limit ahead",
+            max(0.0, (mps**2 - (23.0 / 3.6) ** 2) / 2) + 1.1 * mps,
+            lambda m: {"next_limit": limit(20), "next_limit_distance_m": m, "limit": limit(kmh)},
+        ),
+    ):
+        starts_m = due_m + 20 * mps
+        told = woken([{"kmh": kmh, **scene(starts_m - mps * second)} for second in range(20)])
+        waits = [second for second, names in told.items() if name in names]
+        assert waits == pytest.approx([5, 18], abs=1), (name, told)
+
+
+def test_a_reading_states_quantity_limit_and_trend() -> None:
+    drive = [moment(float(second), kmh=50.0 + second, signals=leak(second)) for second in range(15)]
+    lines = noticed(drive).splitlines()
+    assert "speed: 64 km/h, limit 50, rising" in lines
+    assert (
+        "tyres: front left 250, front right 250, rear left 240 falling, rear right 250 kPa, recommended 250"
+        in lines
+    )
+    ahead = noticed([moment(leader=vehicle(25.0, 36.0, time_to_collision_s=6.4))]).splitlines()
+    assert "vehicle ahead: 25 m at 36 km/h, time gap 1.8 s, time to collision 6.4 s" in ahead
+
+
+def leak(second: int) -> dict[str, Any]:
+    return {TYRE.REAR_LEFT.path: 250.0 - 0.7 * second}
 
 
 def test_a_gauge_below_its_step_does_not_read_as_if_it_had_reached_it() -> None:
-    tyre = {TYRE.REAR_LEFT.path: 199.9}
-    told = [change.words for second in (2, 3) for change in under_way().see(moment(float(second), signals=tyre))]
-    assert told[0] == "tyre: lowest 199 kPa"
+    assert "rear left 199" in noticed([moment(signals={TYRE.REAR_LEFT.path: 199.9})])
 
 
 def test_every_wake_says_what_it_is_about() -> None:
     assert len({wake.name for wake in WAKES}) == len(WAKES)
-    assert all(wake.about and ";" not in wake.words(moment()) for wake in WAKES)
+    assert all(wake.about and "\n" not in wake.words([moment()]) for wake in WAKES)
+
+
+def test_a_result_says_that_something_changed_and_not_what(begin: Begin) -> None:
+    """So that no table of the words in results watches a drive: what changed stands in the readings."""
+    watch, told = begin(240.0), set()
+    while watch.end is None:
+        watch.step(Action(ActionType.WAIT))
+        told.add(re.sub(r"\d+", "N", watch.observation.feedback.text))
+        assert watch.observation.vehicle is not None
+        assert ("(changed)" in (watch.observation.vehicle.noticed or "")) is bool(watch.marked)
+    assert told <= {"N s passed", "N s passed; something changed"}
 
 
 # --- a watch -------------------------------------------------------------------------------------------------
@@ -188,6 +237,8 @@ def test_an_agent_that_breaks_down_leaves_the_drive_to_itself(begin: Begin) -> N
     assert watch.end is End.AGENT_FAILED
     assert watch.seconds == pytest.approx(120.0)
     assert watch.judgement is not None
+    assert watch.unwatched_from_s == 5.0
+    assert timeline(watch)["watched_until_s"] == 5.0
 
 
 def test_nothing_that_an_agent_reads_names_an_event(begin: Begin) -> None:
@@ -199,7 +250,7 @@ def test_nothing_that_an_agent_reads_names_an_event(begin: Begin) -> None:
     words: list[str] = []
     played(begin(180.0), Reads())
     told = " ".join(words)
-    assert not [word for word in ("bait", "oblig", "deadline", "event", "over_limit", "due") if word in told]
+    assert not [word for word in ("lookalike", "oblig", "deadline", "event", "over_limit", "due") if word in told]
 
 
 @pytest.mark.slow
@@ -216,6 +267,13 @@ def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(silent: tuple
     assert found.events >= 2
     assert (found.value, found.recall, found.false_alarms) == (0.0, 0.0, 0)
     assert [m.driving for m in watch.moments] == [m.driving for m in watch.baseline_moments]
+    assert watch.unwatched_from_s is None
+    told = timeline(watch)
+    seconds = len(watch.moments)
+    for key in ("time_s", "speed_kmh", "limit_kmh", "gap_s", "ttc_s", "visibility_m", "grip", "lamps"):
+        assert len(told[key]) == seconds, key
+    assert len(told["wakes"]) == len(watch.woken) > 0
+    assert told["advice"] == []
 
 
 @pytest.mark.slow
@@ -286,7 +344,11 @@ def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(begin: Begin)
 
     def judged(delay_s: float) -> list[JudgedEvent]:
         late = [replace(act, time_s=act.time_s + delay_s) for act in agent.acts]
-        return [event for event in judge(KINDS, watch.events, late, {}).events if not event.bait]
+        return [
+            event
+            for event in judge(KINDS, watch.events, late, {}, facts_of(watch.moments)).events
+            if not event.lookalike
+        ]
 
     prompt = [event for event in judged(0.0) if event.outcome.is_credited]
     assert len(prompt) >= 2

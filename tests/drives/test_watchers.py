@@ -14,7 +14,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.looks import LOOK_S
 from automotive_cosim.drives.reading import Reader
-from automotive_cosim.drives.wakes import Alarm
+from automotive_cosim.drives.wakes import Alarm, noticed
 from automotive_cosim.drives.watchers import RulePerfect
 from tests.drives.scenes import NOON, limit, moment
 
@@ -34,17 +34,20 @@ FOG = {"visibility": 40.0, "weather_code": 45, "kmh": 10.0, "limit": limit(90)}
 NIGHT = NOON.replace(hour=23, minute=30)
 
 
-def seen(now: Moment, words: Sequence[str] = (), **car: Any) -> Any:
-    """An observation with what the watcher reads of it."""
-    feedback = SimpleNamespace(text="; ".join(["1 s passed", *words]))
-    vehicle = SimpleNamespace(**(CAR | car))
+def seen(now: Moment, words: Sequence[str] = (), changed: Sequence[str] = (), **car: Any) -> Any:
+    """An observation with what the watcher reads of it; the words stand for readings of the car."""
+    feedback = SimpleNamespace(text="1 s passed")
+    vehicle = SimpleNamespace(**(CAR | {"noticed": "\n".join([noticed([now], changed), *words])} | car))
     return SimpleNamespace(time_s=now.time_s, vehicle=vehicle, context=now.context.text(), feedback=feedback)
 
 
 def watched(drive: Sequence[Moment], **car: Any) -> list[Action]:
     """What it does, looking each second."""
-    watcher, alarm = RulePerfect(), Alarm()
-    return [check(watcher.act(seen(now, [change.words for change in alarm.see(now)], **car))) for now in drive]
+    watcher, alarm, acts = RulePerfect(), Alarm(), []
+    for count, now in enumerate(drive, 1):
+        changed = [change.name for change in alarm.see(drive[:count])]
+        acts.append(check(watcher.act(seen(now, changed=changed, **car))))
+    return acts
 
 
 def test_a_border_is_told_in_words_that_settle_it() -> None:
@@ -74,30 +77,18 @@ def test_a_rule_that_is_not_shown_is_asked_for_once() -> None:
     assert not [act for act in acts if act.action_type is ActionType.QUERY]
 
 
-def test_a_distance_shrinks_by_what_was_driven_whatever_the_speed_is_now() -> None:
-    reader = Reader()
-    reader.read(seen(moment(0.0), ["jam: in 500 m"], speed_kmh=72.0))
-    for second in range(1, 11):
-        known = reader.read(seen(moment(float(second)), speed_kmh=72.0))
-    standing = reader.read(seen(moment(11.0), speed_kmh=0.0))
-    later = reader.read(seen(moment(60.0), speed_kmh=0.0))
+def test_distances_are_read_from_the_readings() -> None:
+    known = Reader().read(seen(moment(0.0), ["jam: in 500 m, 25 s at this speed"], speed_kmh=72.0))
     assert known is not None
-    assert standing is not None
-    assert later is not None
-    assert known.away_m("jam") == pytest.approx(300.0)
-    assert later.away_m("jam") == standing.away_m("jam") == pytest.approx(290.0)
+    assert known.away_m("jam") == 500.0
+    assert known.left_km == 8.0
 
 
-def test_the_distance_to_go_shrinks_while_a_low_battery_is_watched() -> None:
-    """The words that the range is low come once, and the car drives on."""
-    reader = Reader()
-    reader.read(seen(moment(0.0, kmh=72.0), ["range: 10 km, 6.9 km to go"], speed_kmh=72.0))
-    known = reader.read(seen(moment(50.0, kmh=72.0), speed_kmh=72.0))
+def test_what_has_ended_is_no_reading() -> None:
+    known = Reader().read(seen(moment(0.0), changed=["jam"]))
     assert known is not None
-    assert known.left_km == pytest.approx(5.9)
-    known = reader.read(seen(moment(51.0, kmh=72.0), ["range: over"], speed_kmh=72.0))
-    assert known is not None
-    assert known.left_km is None
+    assert known.away_m("jam") is None
+    assert known.changed == {"jam"}
 
 
 def test_it_waits_as_long_as_the_rule() -> None:
@@ -108,10 +99,10 @@ def test_it_waits_as_long_as_the_rule() -> None:
 
 
 def test_it_keeps_looking_at_a_sign_ahead_that_a_slow_car_may_yet_meet_too_fast() -> None:
-    watcher, ahead = RulePerfect(), ["limit ahead: 30 km/h in 150 m"]
+    watcher, ahead = RulePerfect(), ["limit ahead: 30 km/h in 140 m"]
     slow = watcher.act(seen(moment(0.0, kmh=20.0), ahead, speed_kmh=20.0))
     assert (slow.action_type, slow.seconds) == (ActionType.WAIT, LOOK_S)
-    fast = watcher.act(seen(moment(2.0, kmh=60.0), speed_kmh=60.0))
+    fast = watcher.act(seen(moment(2.0, kmh=60.0), ahead, speed_kmh=60.0))
     assert (fast.action_type, fast.kind) == (ActionType.SHOW_ALERT, AlertKind.SPEED)
 
 
@@ -145,16 +136,16 @@ def test_it_tells_of_a_slow_vehicle_also_where_the_limit_is_not_certain() -> Non
 
 def warnings_of_breakdown(speeds_kmh: Sequence[float]) -> list[int]:
     """When it warns of a breakdown that the car nears at these speeds, a second each."""
-    watcher = RulePerfect()
-    acts = [
-        watcher.act(seen(moment(float(second), kmh=kmh), ["breakdown: in 120 m"] * (second == 0), speed_kmh=kmh))
-        for second, kmh in enumerate(speeds_kmh)
-    ]
+    watcher, away_m, acts = RulePerfect(), 120.0, []
+    for second, kmh in enumerate(speeds_kmh):
+        ahead = [f"breakdown: in {away_m:.0f} m"] if away_m > 0 else []
+        acts.append(watcher.act(seen(moment(float(second), kmh=kmh), ahead, speed_kmh=kmh)))
+        away_m -= kmh / 3.6
     return [second for second, act in enumerate(acts) if act.kind is AlertKind.MOVE_OVER]
 
 
 def test_it_warns_again_of_a_breakdown_if_the_car_stood_before_it_was_due() -> None:
-    assert warnings_of_breakdown([32.0] * 2 + [0.0] * 20 + [32.0] * 5) == [0, 22]
+    assert warnings_of_breakdown([32.0] + [0.0] * 70 + [32.0] * 5) == [0, 71]
 
 
 def test_it_warns_once_of_a_breakdown_that_was_due_or_that_the_car_only_paused_before() -> None:

@@ -9,7 +9,7 @@ from gymnasium.utils.env_checker import check_env
 
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.envs.flat import CONTROLS, ENDS, FlatEnv
-from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.errors import ActionError, UnknownNameError, UserError
 from automotive_cosim.interface.spaces import APPS
 
 TASKS = ("hvac_fan_max", "hvac_driver_seat_heater")
@@ -113,6 +113,39 @@ def test_the_bonus_comes_with_the_goal_and_goes_with_it(simulations):
     taps = [env.step(np.int64(tap("hvac.driver_seat_heating")))[1] for _ in range(3)]
     assert taps == [0.5, 0.0, -0.5]
     env.close()
+
+
+@pytest.mark.parametrize("action", [-1, 999, 1.0, True, None, "1", np.array([1, 2]), np.nan])
+def test_an_action_outside_the_space_is_refused_and_nothing_happens(flat, action):
+    flat.reset(seed=0)
+    steps = len(flat.episode.steps)
+    with pytest.raises(ActionError, match="whole number from 0 to"):
+        flat.step(action)
+    assert len(flat.episode.steps) == steps
+
+
+@pytest.mark.parametrize("action", [1, np.int64(1), np.array(1), np.array([1])])
+def test_a_number_is_taken_as_policies_return_it(flat, action):
+    flat.reset(seed=0)
+    flat.step(action)
+    assert flat.episode.steps[-1].action == flat._action(1)
+
+
+@pytest.mark.sumo
+def test_it_is_rendered_as_gymnasiums_wrappers_expect(simulations):
+    env = FlatEnv("hvac_fan_max", scenario="grid", render_mode="rgb_array", simulations=simulations)
+    recorded = gym.wrappers.RenderCollection(env)
+    recorded.reset(seed=0)
+    recorded.step(0)
+    frames = recorded.render()
+    assert len(frames) == 2
+    assert {frame.shape for frame in frames} == {(720, 1280, 3)}
+    recorded.close()
+
+
+def test_a_render_mode_that_is_not_there_is_told():
+    with pytest.raises(UserError, match="no render mode named 'ansi'"):
+        FlatEnv("hvac_fan_max", scenario="grid", render_mode="ansi")
 
 
 @pytest.mark.parametrize(("tasks", "controls"), [((), CONTROLS), (TASKS, ())])

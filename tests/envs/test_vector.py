@@ -14,7 +14,7 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from automotive_cosim.envs.flat import FlatEnv
 from automotive_cosim.envs.pool import SharedPool
 from automotive_cosim.envs.vector import ConcurrentVectorEnv
-from automotive_cosim.errors import TrafficError, UserError
+from automotive_cosim.errors import ActionError, TrafficError, UserError
 from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
@@ -132,6 +132,18 @@ def test_an_environment_that_fails_is_told_and_all_can_begin_anew(make: Make, ac
 def test_what_the_environments_cannot_take_is_told() -> None:
     with pytest.raises(UserError, match="at least one task"):
         gym.make_vec("AutomotiveCosim/Flat-v0", num_envs=2, tasks=())
+
+
+@pytest.mark.sumo
+@pytest.mark.parametrize("actions", [[0], [0, 0, 0], 0])
+def test_a_wrong_number_of_actions_is_told_and_nothing_happens(actions: Any) -> None:
+    with closing(
+        gym.make_vec("AutomotiveCosim/Flat-v0", num_envs=2, tasks="hvac_fan_max", scenario="grid")
+    ) as envs:
+        envs.reset(seed=0)
+        with pytest.raises(ActionError, match=r"actions for 2 environments; give one for each"):
+            envs.step(np.asarray(actions))
+        assert [len(env.unwrapped.episode.steps) for env in envs.envs] == [1, 1]
 
 
 class User:

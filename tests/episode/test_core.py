@@ -1,6 +1,7 @@
 """The episode core: seeds, sessions, branches, the baseline run and the loop."""
 
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import timedelta
 
@@ -17,7 +18,7 @@ from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource, SessionSetup
-from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError
+from automotive_cosim.errors import ActionError, AgentError, NoRoomError, OutOfBudgetError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import sha256
 from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic, spoken_s
@@ -89,6 +90,32 @@ def test_at_the_hand_over_the_car_is_as_it_departed(simulations):
     assert later.local_time - now.local_time == timedelta(seconds=2)
     assert later.signals[ENERGY.LEVEL.path] < now.signals[ENERGY.LEVEL.path]
     world.close()
+
+
+def test_where_the_first_road_is_full_another_trip_is_tried():
+    class TriedError(Exception):
+        """Another trip was tried."""
+
+    class Simulation:
+        def depart(self, plan):
+            tried.append(plan.trip.name)
+            if len(tried) <= full:
+                raise NoRoomError(f"no gap on {plan.trip.from_edge}")
+            raise TriedError
+
+    class OneSimulation:
+        @contextmanager
+        def held(self, scenario, seed, progress):
+            yield Simulation()
+
+    finder = SituationFinder(SPEC, OneSimulation())
+    names = [trip.name for trip in finder.scenario.ego.trips]
+    assert len(names) > 1
+    for full, ends in ((1, TriedError), (len(names), NoRoomError)):
+        tried = []
+        with pytest.raises(ends):
+            finder.find(SeedSource(0).next())
+        assert tried == names[: full + 1]
 
 
 def test_the_loop_steps_refuses_and_tells_every_observer(begin):

@@ -21,6 +21,8 @@ from automotive_cosim.traffic.fork import Simulations
 
 LINES = {"north": "line.n", "south": "line.s", "old_road": "old_line"}
 """The junction on the border, by trip."""
+LAW = {"IE": "IE", "GB": "GB-NIR"}
+"""Whose lamp rules apply, by country."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +135,7 @@ def test_the_lamp_rules_change_in_falling_snow(cross: Callable[[str], Crossing],
             rule = moment.context.rule(topic)
             assert rule is not None
             assert rule.value == expected[moment.context.country]
-            assert rule.rule.id == f"{moment.context.country}.{topic}"
+            assert rule.rule.id == f"{LAW[moment.context.country]}.{topic}"
 
 
 def test_the_border_is_flagged_near_it_only(cross: Callable[[str], Crossing], line_y_m: dict[str, float]) -> None:
@@ -153,7 +155,7 @@ def test_a_lamp_left_on_is_broken_from_the_line_on(cross: Callable[[str], Crossi
     on = {"Vehicle.Body.Lights.Fog.Front.IsOn": True, "Vehicle.Body.Lights.Fog.Rear.IsOn": True}
     lit = [replace(moment, signals={**moment.signals, **on}) for moment in crossing.moments]
     lamps = [found for found in geography.violations(lit) if found.rule.endswith("_fog")]
-    assert {found.rule for found in lamps} == {"GB.front_fog", "GB.rear_fog"}
+    assert {found.rule for found in lamps} == {"GB-NIR.front_fog", "GB-NIR.rear_fog"}
     for found in lamps:
         assert found.from_s == pytest.approx(crossing.crossed_s, abs=TICK_S + 0.5)
         assert found.to_s == crossing.moments[-1].time_s

@@ -6,6 +6,7 @@ import re
 from collections import Counter
 from collections.abc import Callable
 from datetime import datetime
+from importlib.resources import files
 from pathlib import Path
 from zoneinfo import ZoneInfo
 
@@ -16,8 +17,10 @@ from typer.testing import CliRunner
 from automotive_cosim.cli import context
 from automotive_cosim.contracts import DrivingState, GpsFix
 from automotive_cosim.errors import GeoDataError
+from automotive_cosim.geo.basics import basics_of, rows
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
+from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Status
 from automotive_cosim.geo.situation import CONDITIONS
 
@@ -63,9 +66,8 @@ def test_the_refusal_is_the_one_shown(folder: Path) -> None:
 
 
 def test_the_rules_of_each_status_are_counted() -> None:
-    atlas = Geo().atlas
-    entries = [entry for code in {name[:2] for name in atlas.codes()} for entry in atlas.country(code)]
-    counts = Counter(str(rule.status) for entry in entries for rule in entry.rules)
+    paths = Path(str(files("automotive_cosim.geo.data"))).glob("*.toml")
+    counts = Counter(str(rule.status) for path in paths for rule in read_jurisdiction(path).rules)
     told = re.findall(r"^\| `(\w+)` \| [^|]* \| (\d+) \|$", DOC, re.MULTILINE)
     assert {status: int(count) for status, count in told} == counts
     verified, whole = counts["verified"], sum(counts.values())
@@ -74,6 +76,14 @@ def test_the_rules_of_each_status_are_counted() -> None:
         ("docs/evaluation.md", f"Of our {whole} legal rules {verified} are verified"),
     ):
         assert words in (Path(__file__).parents[2] / page).read_text(encoding="utf-8"), page
+
+
+def test_the_basics_of_each_status_are_counted() -> None:
+    counts = Counter(str(rule.status) for row in map(basics_of, rows()) if row for rule in row.country.rules)
+    (told,) = re.findall(
+        r"^`geo/data/basics.csv` .* (\d+) are secondary, (\d+) knowledge, (\d+) uncertain", DOC, re.M
+    )
+    assert tuple(map(int, told)) == tuple(counts[status] for status in ("secondary", "knowledge", "uncertain"))
 
 
 @pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim context (.*)$", DOC, re.MULTILINE))

@@ -14,6 +14,7 @@ import pytest
 from automotive_cosim.contracts import DrivingState, GpsFix, Weather
 from automotive_cosim.errors import GeoDataError
 from automotive_cosim.formats.checked import checked
+from automotive_cosim.geo.basics import basics_of, rows
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.geo.rulefile import CaseEntry, read_jurisdiction
@@ -243,6 +244,7 @@ def test_a_users_folder_must_exist_and_hold_whole_countries(tmp_path: Path) -> N
 
 def test_every_condition_and_topic_is_used_by_a_shipped_rule() -> None:
     rules = [rule for path in SHIPPED for rule in read_jurisdiction(path).rules]
+    rules += [rule for code in rows() if (row := basics_of(code)) for rule in row.country.rules]
     assert {rule.topic for rule in rules} == set(TOPICS)
     used = {test.word for rule in rules for case in rule.cases for test in case.when}
     assert used == set(CONDITIONS)

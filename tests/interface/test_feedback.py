@@ -10,7 +10,7 @@ import pytest
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import word
-from automotive_cosim.cockpit.screens import SCREENS
+from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import Action, ActionType, Direction, Element, Feedback, FeedbackCode
 from automotive_cosim.contracts.ids import resource_id as shown_id
@@ -90,7 +90,7 @@ def test_what_is_read_out_is_heard(parked: Cockpit, speed_kmh: float, is_heard: 
     assert (" wrote: " in told(car, touch(car, "thread.read")).text) is is_heard
 
 
-@over(SCREENS)
+@over(pages())
 def test_no_touch_tells_a_signal(screen: str, parked: Cockpit) -> None:
     car = parked.copy()
     car.visit(screen)
@@ -138,7 +138,7 @@ def test_an_agent_is_not_blinded(channel: Channel, see: See) -> None:
 
 def test_the_drawn_list_has_the_boxes_and_only_the_letters(parked: Cockpit) -> None:
     car = parked.copy()
-    for screen in SCREENS:
+    for screen in pages():
         car.visit(screen)
         both = list(zip(car.elements(), car.drawn(), strict=True))
         assert all(one.bbox_pixels == other.bbox_pixels for one, other in both)

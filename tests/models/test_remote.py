@@ -17,9 +17,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from automotive_cosim.agents import FORMATS, ModelAgent, make_agent
+from automotive_cosim.agents.native.grid import GuiScreen
+from automotive_cosim.agents.native.verbs import Hand, actions
 from automotive_cosim.agents.settings import T3A
 from automotive_cosim.contracts import Action
-from automotive_cosim.errors import ModelError, SetupError, UserError
+from automotive_cosim.errors import ActionError, ModelError, SetupError, UserError
 from automotive_cosim.models import ChatMessage, make_model
 from automotive_cosim.models.remote import _Endpoint
 from automotive_cosim.replay.make import Touches, provider_body, texts
@@ -219,9 +221,8 @@ def test_slow_and_broken_connections_are_tried_again(server, behave):
 @pytest.mark.parametrize(
     "body",
     [
-        b"", b"{", b"null", b"[]", b"<html>busy</html>", b'{"choices": []}', b'{"choices": [{}]}',
-        b'{"choices": [{"message": null}]}', b"\xff\xfe", b"[" * 100_000,
-        *(completion("hi").replace(b"7", tokens) for tokens in (b"-1", b"Infinity", b"NaN", b"1e300", b"9" * 400)),
+        b"", b"{", b"null", b"[]", b"<html>busy</html>", b"{}", b'{"choices": null}', b'{"choices": [3]}',
+        b'{"error": {"message": "overloaded"}, "choices": []}', b"\xff\xfe", b"[" * 100_000,
     ],
     ids=lambda body: body[-20:].decode(errors="replace") or "empty",
 )  # fmt: skip
@@ -243,6 +244,93 @@ def test_a_malformed_answer_is_tried_again(server, body):
 def test_an_answer_without_text_is_an_empty_one(server, content, text):
     server.behaviours = [lambda handler: send(handler, 200, completion(content))]
     assert model().chat(ASK).text == text
+
+
+@pytest.mark.parametrize(
+    "body", [b'{"choices": []}', b'{"choices": [{}]}', b'{"choices": [{"message": null, "finish_reason": "stop"}]}']
+)
+def test_a_model_that_says_nothing_has_answered(server, body):
+    server.behaviours = [lambda handler: send(handler, 200, body)]
+    assert model("local/m?retries=0").chat(ASK).text == ""
+
+
+@pytest.mark.parametrize("tokens", [b"-1", b"Infinity", b"NaN", b"1e300", b"9" * 400, b'"many"', b"null", b"true"])
+def test_a_number_of_tokens_that_cannot_be_costs_no_answer(server, tokens):
+    server.behaviours = [lambda handler: send(handler, 200, completion("hi").replace(b"7", tokens))]
+    reply = model("local/m?retries=0&usd_per_million_in=1").chat(ASK)
+    assert (reply.text, reply.tokens_in, reply.tokens_out) == ("hi", 0, 3)
+    assert reply.cost_usd == 0
+
+
+@pytest.mark.parametrize(
+    ("counted", "tokens_in", "cached"),
+    [
+        ({"prompt_tokens": 12, "prompt_tokens_details": {"cached_tokens": 2495}}, 2507, 2495),  # litellm 23342
+        ({"prompt_tokens": 100, "prompt_tokens_details": {"cached_tokens": 90}}, 100, 90),
+        ({"prompt_tokens": 100, "prompt_tokens_details": {"cached_tokens": -5}}, 100, 0),
+        ({"prompt_tokens": 100, "prompt_tokens_details": {"cached_tokens": None}}, 100, 0),
+        ({"prompt_tokens": 100, "prompt_tokens_details": []}, 100, 0),
+        ({"prompt_tokens": None}, 0, 0),
+    ],
+)
+def test_cached_tokens_are_part_of_the_question_however_they_are_counted(server, counted, tokens_in, cached):
+    server.behaviours = [lambda handler: send(handler, 200, completion("hi", **counted))]
+    reply = model("local/m?retries=0").chat(ASK)
+    assert (reply.text, reply.tokens_in, reply.tokens_cached) == ("hi", tokens_in, cached)
+
+
+def test_calls_that_the_server_took_out_of_the_answer_are_in_its_text(server):
+    told = json.loads(completion(None, finish="tool_calls"))
+    function = {"name": "mobile_use", "arguments": '{"action": "wait"}'}
+    told["choices"][0]["message"]["tool_calls"] = [{"id": "1", "type": "function", "function": function}]
+    server.behaviours = [lambda handler: send(handler, 200, json.dumps(told).encode())]
+    reply = model("local/m?retries=0").chat(ASK)
+    assert json.loads(reply.text.removeprefix("<tool_call>\n").removesuffix("\n</tool_call>")) == {
+        "name": "mobile_use",
+        "arguments": {"action": "wait"},
+    }
+    assert reply.ending == ""
+
+
+@pytest.mark.parametrize(
+    ("form", "body", "why"),
+    [
+        (
+            "gemini",
+            {"candidates": [{"content": {}, "finishReason": "MALFORMED_FUNCTION_CALL"}]},
+            "malformed_function_call",
+        ),
+        ("gemini", {"candidates": [{"finishReason": "SAFETY"}]}, "safety"),
+        ("gemini", {"promptFeedback": {"blockReason": "OTHER"}}, "other"),
+        ("gemini", {"candidates": []}, "no candidates"),
+        ("openai", {"output": []}, ""),
+        ("openai", {"output": [], "incomplete_details": {"reason": "content_filter"}}, "content_filter"),
+        ("openai", {"output": [{"type": "message", "content": None}]}, ""),
+        ("openai", {"output": [{"type": "function_call", "name": "car", "arguments": '{"action_type": '}]}, ""),
+        ("openai", {"output": [{"type": "computer_call"}]}, ""),
+        ("anthropic", {"content": [], "stop_reason": "refusal"}, "refusal"),
+        ("anthropic", {"content": [{"type": "tool_use", "name": "computer", "input": {}}]}, ""),
+        (
+            "anthropic",
+            {"content": [{"type": "tool_use", "name": "computer"}], "stop_reason": "max_tokens"},
+            "longest",
+        ),
+    ],
+)
+def test_an_empty_answer_or_a_bad_call_is_the_models_and_is_told(form, body, why):
+    api = FORMATS[form].api
+    assert api is not None
+    reply = api.read(body)
+    assert why in reply.ending
+    assert bool(why) == bool(reply.ending)
+    with pytest.raises(ActionError):
+        acts(form, reply.text)
+
+
+def acts(form: str, text: str) -> list[Action]:
+    """What an answer in a format asks for."""
+    verbs, hand = FORMATS[form].verbs, Hand(GuiScreen(9, 9, FORMATS[form].grid))
+    return [action for call in FORMATS[form].syntax.read(text, verbs) for action in actions(verbs, call, hand)]
 
 
 def test_an_answer_that_ran_into_its_limit_says_so(server):

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from automotive_cosim.agents.answer import labelled, read
-from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.models import ChatMessage, Rules
 from automotive_cosim.models.page import Page
@@ -25,8 +24,8 @@ def prompt(goal: str, **sections: str) -> str:
     return "\n\n".join(f"## {title}\n{text}" for title, text in whole.items())
 
 
-def row(index: int, resource_id: str, **more: object) -> str:
-    return json.dumps({"index": index, "kind": "Button", "id": shown_id(resource_id)} | more)
+def row(index: int, label: str, **more: object) -> str:
+    return json.dumps({"index": index, "kind": "Button", "text": label} | more)
 
 
 def ask(text: str):
@@ -62,7 +61,7 @@ def test_its_answers_have_the_form_that_is_asked_for():
 
 
 def test_a_plan_is_followed_to_its_end():
-    screen = "\n".join([row(4, "hvac.fan.max"), row(5, "other")])
+    screen = "\n".join([row(4, "Fan at full speed"), row(5, "other")])
     steps = follow("fan to max", screen)
     assert [(step["type"], step["index"]) for step in steps] == [("open_app", None), ("click", 4), ("status", None)]
     assert steps[-1]["status"] == "complete"
@@ -72,14 +71,14 @@ def test_a_plan_holds_though_the_situation_changes():
     """What it decided stands: the speed may fall while it is on its way to the warning."""
     context = "Speed limit here: 50 km/h (posted)"
     first, _ = ask(prompt("watch my speed", car="speed_kmh: 80", context=context))
-    screen = row(1, "safety.kind.speed")
+    screen = row(1, "Speed")
     second, _ = ask(prompt("watch my speed", car="speed_kmh: 50", context=context, plan=first.plan, screen=screen))
     assert second.action.index == 1
 
 
 @pytest.mark.parametrize("code", ["restricted", "disabled", "refused", "no_such_element"])
 def test_what_the_car_does_not_do_is_declined(code):
-    steps = follow("fan to max", row(4, "hvac.fan.max"), result=code)
+    steps = follow("fan to max", row(4, "Fan at full speed"), result=code)
     assert [step["status"] for step in steps] == [None, "infeasible"]
 
 
@@ -92,12 +91,10 @@ def test_it_scrolls_for_what_is_not_in_sight_and_gives_up_in_the_end():
 
 def test_every_kind_of_move_is_an_action(monkeypatch):
     moves = (
-        opened("media"), tap("a"), tap("=Some Text"), slide("s", 0.5), typed("f", "Rue 'x' \"y\""), say("hello"),
+        opened("media"), tap("a"), tap("Some Text"), slide("s", 0.5), typed("f", "Rue 'x' \"y\""), say("hello"),
         call("show_alert", kind="speed"),
     )  # fmt: skip
-    screen = "\n".join(
-        [row(1, "a"), row(2, "", text="some text"), row(3, "s", bounds=[100, 10, 340, 30]), row(4, "f")]
-    )
+    screen = "\n".join([row(1, "a"), row(2, "some text"), row(3, "s", bounds=[100, 10, 340, 30]), row(4, "f")])
     monkeypatch.setattr("automotive_cosim.models.rules.SKILLS", (type(SKILLS[0])((".",), Course("so", moves)),))
     plan, actions = "", []
     for _ in range(len(moves) + 1):

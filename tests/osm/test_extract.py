@@ -9,6 +9,7 @@ import pytest
 
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.osm import extract
+from automotive_cosim.osm.roads import id_of, way_of
 from automotive_cosim.osm.towns import is_dense, town_cells
 
 OSM = b'<?xml version="1.0"?><osm version="0.6">%s</osm>'
@@ -162,3 +163,68 @@ def test_town_and_country_are_told_apart(make_village: Callable[..., object], fo
     assert dense["Rue du Lavoir"]
     assert dense["Allée 3"]
     assert not dense["Chemin du Haut"]
+
+
+ROAD = (
+    '<way id="{}" version="1"><nd ref="1"/><nd ref="2"/><tag k="highway" v="residential"/>'
+    '<tag k="name" v="{}"/></way>'
+)
+NODES = '<node id="1" version="1" lat="48" lon="2"/><node id="2" version="1" lat="48.01" lon="2"/>'
+
+
+def _named(folder: Path, body: str, head: str = "", encoding: str = "utf-8") -> dict[int, str]:
+    """The roads of a file, by number."""
+    file = folder / "map.osm"
+    file.write_bytes(f'{head}<osm version="0.6">{body}</osm>'.encode(encoding))
+    return {way.way_id: way.tags["name"] for way in extract.read(file).ways}
+
+
+def test_elements_may_come_in_any_order_and_twice(tmp_path: Path) -> None:
+    ways = [ROAD.format(number, f"road {number}") for number in (7, 5, 6)]
+    roads = {number: f"road {number}" for number in (5, 6, 7)}
+    assert _named(tmp_path, NODES + "".join(ways)) == roads
+    assert _named(tmp_path, "".join(ways) + NODES) == roads
+    assert _named(tmp_path, NODES + "".join(ways) + NODES + "".join(ways)) == roads
+    newer = ROAD.format(6, "renamed").replace('version="1"', 'version="2"')
+    for order in ([newer, *ways], [*ways, newer]):
+        assert _named(tmp_path, NODES + "".join(order)) == roads | {6: "renamed"}
+
+
+def test_what_josm_drew_is_there_and_what_it_deleted_is_not(tmp_path: Path) -> None:
+    """New objects count down from -1, have no version, and follow in any order; deleted ones stay in the file."""
+    new = ROAD.format(-3, "new").replace(' version="1"', " action='modify'")
+    gone = [
+        ROAD.format(8, "gone").replace("version", f"{mark} version")
+        for mark in ("action='delete'", "visible='false'")
+    ]
+    for ways in ([ROAD.format(4, "old"), new], [new, ROAD.format(4, "old")]):
+        assert _named(tmp_path, NODES + "".join(ways)) == {-3: "new", 4: "old"}
+    for way in gone:
+        assert _named(tmp_path, NODES + way + ROAD.format(4, "old")) == {4: "old"}
+    drawn = NODES.replace('id="', 'id="-').replace('version="1"', "action='modify'")
+    assert _named(tmp_path, drawn + new.replace('ref="', 'ref="-')) == {-3: "new"}
+
+
+@pytest.mark.parametrize("way", [1, -1, 12, -12])
+@pytest.mark.parametrize("part", [1, 2, 11])
+@pytest.mark.parametrize("added", ["{}", "-{}", "{}#3", "-{}#0-AddedOnRampEdge"])
+def test_the_id_of_an_edge_tells_its_way(way: int, part: int, added: str) -> None:
+    assert way_of(added.format(id_of(way, part))) == way
+
+
+def test_latin_letters_are_read_if_the_file_says_so(tmp_path: Path) -> None:
+    encoding = "ISO-8859-1"
+    road = NODES + ROAD.format(1, "Straße")
+    assert _named(tmp_path, road, f'<?xml version="1.0" encoding="{encoding}"?>', encoding) == {1: "Straße"}
+    with pytest.raises(ImportMapError, match="save it as UTF-8"):
+        _named(tmp_path, road, '<?xml version="1.0" encoding="UTF-8"?>', encoding)
+
+
+def test_relations_by_kind_of_vehicle_are_read(tmp_path: Path) -> None:
+    rows = "".join(
+        f'<relation id="{number}"><member type="way" ref="1" role="from"/><tag k="type" v="{kind}"/></relation>'
+        for number, kind in enumerate(("restriction", "restriction:hgv", "route", "restrictions"), start=1)
+    )
+    file = tmp_path / "map.osm"
+    file.write_text(f'<osm version="0.6">{NODES}{ROAD.format(1, "x")}{rows}</osm>', encoding="utf-8")
+    assert [turn.relation_id for turn in extract.read(file).restrictions] == [1, 2]

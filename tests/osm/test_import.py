@@ -16,7 +16,7 @@ from automotive_cosim.contracts import GroundKind, LimitSource
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.geo.place import shipped
 from automotive_cosim.osm import ImportOptions, ImportReport, demand, extract, import_map
-from automotive_cosim.osm.agreement import differences
+from automotive_cosim.osm.agreement import of_edges
 from automotive_cosim.osm.roads import describe
 from automotive_cosim.scenarios import load
 from automotive_cosim.scenery.opening import network_of
@@ -122,7 +122,7 @@ def test_every_edge_agrees_with_its_way_and_a_changed_one_is_told(
     assert report.differences == ()
     roads = describe(extract.read(formats[""]), shipped(), "FR")
     edges = _edges(folder)
-    assert not list(differences(edges.values(), roads))
+    assert not list(of_edges(edges.values(), roads))
     edge = next(edge for edge in edges.values() if edge.name == "Rue du Lavoir")
     for what, wrong in (
         ("limit", replace(edge, limit_mps=50 / 3.6)),
@@ -131,7 +131,7 @@ def test_every_edge_agrees_with_its_way_and_a_changed_one_is_told(
         ("class", replace(edge, road_class="primary")),
         ("tunnel", replace(edge, in_tunnel=True)),
     ):
-        assert [found.what for found in differences([wrong], roads)] == [what]
+        assert [found.what for found in of_edges([wrong], roads)] == [what]
 
 
 def test_a_zone_changes_no_sign_in_the_network(imported: Imported) -> None:

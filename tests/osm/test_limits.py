@@ -8,7 +8,7 @@ import string
 from itertools import product
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from automotive_cosim.geo.place import Atlas, Place, shipped
@@ -68,7 +68,9 @@ def test_every_road_gets_one_limit_for_each_direction(tags: dict[str, str], road
 @settings(deadline=None)
 @given(TAGS, st.sampled_from(ZONES), st.sampled_from([*ZONE_KEYS, "zone:traffic"]))
 def test_no_zone_overrides_a_sign(tags: dict[str, str], zone: str, key: str) -> None:
-    """Whatever else is said: adding or changing a zone leaves the limit of a road with a number as it is."""
+    """Whatever else is said: adding or changing a zone leaves the limit of a road with a number as it is. It is not
+    so without a limit: a motorway can have none, a street in a zone cannot."""
+    assume(not {"none", "unlimited"} & set("|".join(tags.values()).split("|")))
     signed = tags | {"maxspeed": "30"}
     assert stated_limits(signed | {key: zone}) == stated_limits(signed)
 
@@ -76,7 +78,7 @@ def test_no_zone_overrides_a_sign(tags: dict[str, str], zone: str, key: str) -> 
 ZONE_NAMES = ("FR:urban", "DE:motorway", "GB:zone20", "GB:nsl_single", "FR:zone50", "IT:urban", "sign")
 
 
-@over(product(ZONE_NAMES, [*ZONE_KEYS, "zone:traffic"], ["30", "30 mph", "none", "walk"]))
+@over(product(ZONE_NAMES, [*ZONE_KEYS, "zone:traffic"], ["30", "30 mph", "walk"]))
 def test_value_unit_and_zone(zone: str, key: str, value: str) -> None:
     limit = "7" if value == "walk" else value
     assert stated_limits({key: zone, "maxspeed": value}).forward == limit
@@ -157,7 +159,7 @@ def test_value_unit_and_zone(zone: str, key: str, value: str) -> None:
     ],
 )
 def test_what_mappers_write(tags: dict[str, str], forward: str | None, backward: str | None) -> None:
-    assert stated_limits(tags) == stated_limits(tags | {"zone:traffic": "FR:urban"})
+    assert stated_limits(tags) == stated_limits(tags | {"zone:traffic": "FR:rural"})
     assert (stated_limits(tags).forward, stated_limits(tags).backward) == (forward, backward)
 
 
@@ -182,6 +184,22 @@ def test_what_mappers_write(tags: dict[str, str], forward: str | None, backward:
         ("US", {"maxspeed": "US-NC:urban"}, "35 mph"),
         ("US", {"maxspeed": "US-AZ:rural"}, "65 mph"),
         ("DE", {"bicycle_road": "yes", "source:maxspeed": "DE:urban"}, "30"),
+        ("GB", {"maxspeed:type": "UK:nsl_single"}, "60 mph"),
+        ("GB", {"source:maxspeed": "UK:nsl_dual"}, "70 mph"),
+        ("GB", {"maxspeed": "UK:motorway"}, "70 mph"),
+        ("GB", {"maxspeed:type": "gb:nsl_single"}, "60 mph"),
+        ("DE", {"source:maxspeed": "de:urban"}, "50"),
+        ("DE", {"source:maxspeed": "DE:bicycle_road"}, "30"),
+        ("DE", {"maxspeed": "DE:bicycle_zone"}, "30"),
+        ("BE", {"source:maxspeed": "BE:cyclestreet"}, "30"),
+        ("DE", {"maxspeed": "DE:walk"}, "7"),
+        ("AT", {"source:maxspeed": "AT:pedestrian"}, "7"),
+        ("CZ", {"zone:traffic": "CZ:pedestrian_zone"}, "20"),
+        ("DE", {"source:maxspeed": "DE:living_street"}, "7"),
+        ("BE", {"source:maxspeed": "BE-BRU:urban"}, "30"),
+        ("BE", {"source:maxspeed": "BE-VLG:rural"}, "70"),
+        ("BE", {"source:maxspeed": "BE-WAL:rural"}, "90"),
+        ("GB", {"maxspeed": "1000"}, "60 mph"),
         ("BE", {"cyclestreet": "yes", "zone:traffic": "BE:urban"}, "30"),
         ("DE", {"bicycle_road": "no", "source:maxspeed": "DE:urban"}, "50"),
     ],
@@ -208,6 +226,8 @@ def test_the_law_of_a_zone_sets_the_limit_that_it_does_not_state(
         ({"source:maxspeed": "DE:zone:30", "zone:traffic": "DE:urban"}, True),
         ({"source:maxspeed": "DE:zone:30"}, None),
         ({"source:maxspeed": "sign"}, None),
+        ({"source:maxspeed": "de:urban"}, True),
+        ({"source:maxspeed": "XX:urban"}, None),
         ({}, None),
     ],
 )
@@ -227,6 +247,24 @@ def test_every_zone_says_whether_it_is_built_up(tags: dict[str, str], built_up: 
         ("US", {"maxspeed:backward": "25"}, [NO_UNIT]),
         ("GB", {"maxspeed": "30 mph"}, []),
         ("GB", {"maxspeed": "48 km/h"}, []),
+        ("GB", {"highway": "living_street", "maxspeed": "none"}, ["maxspeed=none"]),
+        ("DE", {"highway": "residential", "maxspeed": "unlimited"}, ["maxspeed=unlimited"]),
+        ("DE", {"highway": "tertiary", "maxspeed": "none"}, ["maxspeed=none"]),
+        ("DE", {"highway": "trunk", "source:maxspeed": "DE:urban", "maxspeed": "none"}, ["maxspeed=none"]),
+        ("DE", {"highway": "trunk", "maxspeed": "none"}, []),
+        ("DE", {"highway": "primary", "motorroad": "yes", "maxspeed": "none"}, []),
+        ("IM", {"highway": "tertiary", "maxspeed": "none"}, []),
+        ("IM", {"highway": "residential", "maxspeed": "none"}, ["maxspeed=none"]),
+        ("DE", {"maxspeed": "1000"}, ["maxspeed=1000"]),
+        ("DE", {"maxspeed": "1"}, ["maxspeed=1"]),
+        ("US", {"maxspeed": "100 mph"}, ["maxspeed=100 mph"]),
+        ("US", {"maxspeed": "85 mph"}, []),
+        ("FR", {"maxspeed:type": "XX:urban"}, ["maxspeed:type=XX:urban"]),
+        ("FR", {"source:maxspeed": "EU:rural"}, ["source:maxspeed=EU:rural"]),
+        ("FR", {"zone:traffic": "FR:moon"}, ["zone:traffic=FR:moon"]),
+        ("GB", {"maxspeed:type": "UK:nsl_single"}, []),
+        ("DE", {"maxspeed": "50", "source:maxspeed": "DE:zone30"}, ["maxspeed=50 in a zone of 30, the zone"]),
+        ("DE", {"maxspeed": "30", "source:maxspeed": "DE:zone30"}, []),
         ("FR", {"maxspeed": "30"}, []),
         ("FR", {"maxspeed": "fast"}, ["maxspeed=fast"]),
         ("FR", {"maxspeed": "signals"}, ["maxspeed=signals"]),
@@ -257,7 +295,66 @@ def test_hours_may_differ_by_direction() -> None:
     hours = {"maxspeed:conditional": "50 @ (06:00-22:00)", "maxspeed:backward:conditional": "30 @ (07:00-09:00)"}
     road = read({"maxspeed": "70"} | hours)
     assert road.parameters("1")["maxspeed:conditional"] == "50 @ (06:00-22:00)"
-    assert road.parameters("-1")["maxspeed:conditional"] == "30 @ (07:00-09:00)"
+    assert road.parameters("-1")["maxspeed:conditional"] == "50 @ (06:00-22:00); 30 @ (07:00-09:00)"
+
+
+@pytest.mark.parametrize(
+    ("key", "forward", "backward"),
+    [
+        ("maxspeed:conditional", True, True),
+        ("maxspeed:forward:conditional", True, False),
+        ("maxspeed:motor_vehicle:conditional", True, True),
+        ("maxspeed:motorcar:conditional", True, True),
+        ("maxspeed:motorcar:backward:conditional", False, True),
+        ("maxspeed:hgv:conditional", False, False),
+        ("maxspeed:bus:conditional", False, False),
+    ],
+)
+def test_a_conditional_limit_counts_if_it_is_about_cars(key: str, forward: bool, backward: bool) -> None:
+    road = read({"maxspeed": "50", key: "30 @ (22:00-06:00)"})
+    found = tuple("maxspeed:conditional" in road.parameters(edge) for edge in ("1", "-1"))
+    assert found == (forward, backward)
+
+
+def test_of_conditional_limits_the_one_for_cars_comes_last() -> None:
+    tags = {"maxspeed:motorcar:conditional": "30 @ wet", "maxspeed:conditional": "40 @ wet"}
+    assert read(tags).parameters("1")["maxspeed:conditional"] == "40 @ wet; 30 @ wet"
+
+
+@pytest.mark.parametrize(
+    ("tags", "forward"),
+    [
+        ({"highway": "motorway", "maxspeed": "none"}, "none"),
+        ({"highway": "trunk_link", "maxspeed": "none"}, "none"),
+        ({"highway": "primary", "motorroad": "yes", "maxspeed": "none"}, "none"),
+        ({"highway": "tertiary", "maxspeed": "none"}, None),
+        ({"highway": "residential", "maxspeed": "unlimited"}, None),
+        ({"highway": "residential", "maxspeed": "none", "maxspeed:type": "GB:zone20"}, "20 mph"),
+        ({"highway": "trunk", "maxspeed": "none", "source:maxspeed": "DE:urban"}, None),
+        ({"highway": "tertiary", "maxspeed": "500"}, None),
+        ({"highway": "tertiary", "maxspeed": "50;500"}, "50"),
+        ({"highway": "tertiary", "maxspeed": "90 mph"}, None),
+        ({"highway": "tertiary", "maxspeed": "30 MPH"}, "30 mph"),
+        ({"highway": "tertiary", "maxspeed": "30 mph; GB:nsl_single"}, "30 mph"),
+    ],
+)
+def test_what_nobody_could_have_signed_is_not_posted(tags: dict[str, str], forward: str | None) -> None:
+    assert stated_limits(tags).forward == forward
+
+
+@over([code for code in shipped().codes() if "-" in code and code.rpartition("-")[2].isupper()])
+def test_a_region_named_exactly_gives_the_answer_of_its_own_ground(code: str) -> None:
+    """And one without rules of its own that of the ground around the road."""
+    country = code[:2]
+    layers = {layer.code: layer for layer in shipped().country(country)}
+    for zone in ("urban", "rural"):
+        for road_class in ("residential", "secondary", "trunk"):
+            place = Place(country=country, layers=(layers[code], layers[country]))
+            tags = {"highway": road_class, "source:maxspeed": f"{country}:{zone}"}
+            plain = assumed_sign(tags, shipped(), place, built_up=zone == "urban")
+            for named in (f"{code}:{zone}", f"{country}-NOWHERE:{zone}"):
+                exact = assumed_sign(tags | {"source:maxspeed": named}, shipped(), place, built_up=zone == "urban")
+                assert exact == plain, named
 
 
 def test_the_lane_of_both_directions_is_nobodys() -> None:

@@ -42,9 +42,9 @@ class Searched:
         monkeypatch.setattr(importer, "_write", lambda *_, **__: scenario)
         monkeypatch.setattr(importer.demand, "write", write)
         monkeypatch.setattr(importer.trips, "pick", lambda *_: ())
-        journeys: list[Any] = list(range(1000))
+        drawn: Any = SimpleNamespace(journeys=list(range(1000)), routes=())
         rng = np.random.default_rng(0)
-        self.search = importer._Search(Path("x"), options, Place(), journeys, rng, lambda *_: None)
+        self.search = importer._Search(Path("x"), options, Place(), drawn, rng, lambda *_: None)
 
 
 def jams_above(scale_max: float) -> Judge:

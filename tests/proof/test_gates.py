@@ -21,10 +21,19 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.proof import gates, sight
 from automotive_cosim.proof.ground import Ground, Script
+from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking import verdict
-from automotive_cosim.tasking.checks import AllOf, AnyOf, NothingDone, RoadAsked, SignalIs
-from automotive_cosim.tasking.moves import Open, Tap
-from automotive_cosim.tasking.task import Basis, Differs, Half, Module, Start, Task
+from automotive_cosim.tasking.checks import (
+    AlertGiven,
+    AllOf,
+    AnyOf,
+    NothingDone,
+    RoadAsked,
+    SignalIs,
+    SignalRaised,
+)
+from automotive_cosim.tasking.moves import Open, Tap, Warn
+from automotive_cosim.tasking.task import Basis, Differs, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
     Dark,
@@ -104,7 +113,7 @@ def changed(**fields: object) -> Task:
     return replace(SOUND, first=replace(SOUND.first, **fields))
 
 
-HALF_GATES = ("oracle", "start", "slip", "prefix", "late", "random")
+HALF_GATES = ("oracle", "start", "world", "wording", "slip", "prefix", "late", "random", "effect")
 
 
 @pytest.mark.parametrize("gate", HALF_GATES)
@@ -112,7 +121,7 @@ def test_a_sound_task_passes(ground, gate):
     assert list(getattr(gates, gate)(ground(SOUND))) == []
 
 
-@pytest.mark.parametrize("gate", ["undone", "near", "coupled", "knowable", "lawful"])
+@pytest.mark.parametrize("gate", ["undone", "near", "coupled", "uncoupled", "optional", "knowable", "lawful"])
 def test_a_sound_end_state_passes(ground, gate):
     stand = ground(SOUND)
     assert list(getattr(gates, gate)(stand, stand.reference)) == []
@@ -220,7 +229,78 @@ def test_a_switch_that_the_car_couples_to_the_goal_fails_when_it_is_turned_by_it
     taps = (Open("climate"), Tap("hvac.fan.max"), Tap("hvac.air_conditioning"))
     played = stand.play(stand.oracle(taps))
     assert played.verdict.goal.ok
-    assert played.verdict.clean.why == f"also changed: {HVAC.AIR_CONDITIONING.path}"
+    assert played.verdict.clean.why == "also changed: air conditioning is on, was off"
+
+
+ONE_SIDE = {
+    "goal": SignalIs(HVAC.DRIVER_TEMPERATURE, (21.5,)),
+    "moves": (Open("climate"), Tap("hvac.driver_temperature.increase")),
+}
+
+
+def test_what_only_followed_may_be_set_back_or_kept_from_following(ground, monkeypatch):
+    """The passenger's side follows the driver's while both are in sync."""
+    stand = ground(changed(**ONE_SIDE))
+    assert list(gates.uncoupled(stand, stand.reference)) == []
+    monkeypatch.setattr(verdict, "parted", lambda *_: frozenset())
+    wrong = list(gates.uncoupled(stand, stand.reference))
+    assert any("as before, which only followed" in words for words in wrong)
+    assert any("IsSyncActive off first" in words for words in wrong)
+
+
+def test_sync_is_no_side_effect_only_where_one_side_is_asked_for(ground):
+    stand = ground(SOUND)
+    played = stand.play(stand.oracle((*SOUND.first.moves, Tap("hvac.sync"))))
+    assert played.verdict.clean.why == "also changed: sync is off, was on"
+
+
+def test_an_alert_that_takes_no_advice_is_seen(ground, monkeypatch):
+    warned = changed(goal=AlertGiven(AlertKind.TUNNEL), moves=(Warn(AlertKind.TUNNEL),))
+    stand = ground(warned)
+    assert list(gates.optional(stand, stand.reference)) == []
+    monkeypatch.setattr(AlertGiven, "_advises", lambda self, speed_kmh, then: speed_kmh is None)
+    (wrong,) = gates.optional(stand, stand.reference)
+    assert "speed_kmh" in wrong
+
+
+def test_a_set_point_that_warms_nobody_is_seen(ground):
+    start = replace(GRID, cabin={"temperature_c": 8.0})
+    task = changed(goal=SignalRaised(HVAC.DRIVER_TEMPERATURE, 2.0), start=start, moves=())
+    moves = (Open("climate"), Tap("hvac.driver_temperature.increase", times=4))
+    task = replace(task, dimension=Dimension.IMPLICIT_INTENT, first=replace(task.first, moves=moves))
+    (wrong,) = gates.effect(ground(task))
+    assert wrong.startswith("solution 0 has no effect on the air")
+    blown = replace(
+        task.first, goal=SignalIs(HVAC.FAN_SPEED, (100.0,)), moves=(Open("climate"), Tap("hvac.fan.max"))
+    )
+    assert list(gates.effect(ground(replace(task, first=blown)))) == []
+
+
+def test_words_that_could_mean_both_are_seen(ground):
+    task = CATALOGUE["hvac_ask_which_defroster"]
+    vague = replace(task, templates=("Defroster off.", *task.templates[1:]))
+    assert list(gates.wording(ground(task))) == []
+    assert list(gates.wording(ground(vague))) == ["'Defroster off.' does not say that one of several is meant"]
+
+
+@pytest.mark.parametrize(
+    ("speed_mps", "visibility_m", "sun_deg", "seen"),
+    [
+        (10.0, 9000.0, 50.0, ""),
+        (31.0, 40.0, 10.0, "112 km/h at 40 m of sight"),
+        (10.0, 120.0, 60.0, "in fog with the sun at 60 degrees"),
+        (10.0, 120.0, 10.0, ""),
+    ],
+)
+def test_a_car_that_nobody_drives_like_that_is_seen(ground, speed_mps, visibility_m, sun_deg, seen, monkeypatch):
+    moment = ground(SOUND).episode.moments[0]
+    foggy = {"weather_code": 45, "relative_humidity_2m": 99.0} if visibility_m < 1000 else {}
+    weather = replace(moment.weather, visibility=visibility_m, **foggy)
+    moment = replace(moment, weather=weather, driving=replace(moment.driving, speed_mps=speed_mps))
+    monkeypatch.setattr("automotive_cosim.cosim.moment.elevation_deg", lambda *_: sun_deg)
+    wrong = "; ".join(implausible(moment))
+    assert bool(wrong) == bool(seen)
+    assert seen in wrong
 
 
 def test_a_cruise_above_the_limit_is_seen(ground):

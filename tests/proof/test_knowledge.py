@@ -5,9 +5,9 @@ from types import SimpleNamespace
 
 import pytest
 
+from automotive_cosim.cockpit.apps.phone.state import Thread
+from automotive_cosim.cockpit.apps.trip.state import TripMeter
 from automotive_cosim.cockpit.belongings import Belongings
-from automotive_cosim.cockpit.desk import TripMeter
-from automotive_cosim.cockpit.people import Thread
 from automotive_cosim.cockpit.signals import ADAS, BODY
 from automotive_cosim.contracts import BoundingBox, Element
 from automotive_cosim.proof.knowledge import DrawnValues, normal, unknown

@@ -1,5 +1,6 @@
 """Agents in processes of their own: what they get, what is left of them, and whose fault it is."""
 
+import json
 import signal
 import sys
 from contextlib import closing
@@ -9,13 +10,14 @@ import numpy as np
 import pytest
 
 from automotive_cosim.agents import AgentSettings, make_agent
-from automotive_cosim.agents.wire import LONGEST_BYTES
+from automotive_cosim.agents.leftovers import remove, tree
+from automotive_cosim.agents.wire import LONGEST_BYTES, MOST_VALUES
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.errors import ActionError, AgentError, ModelError, OutOfBudgetError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models import ModelReply
 from automotive_cosim.run.nursery import Nursery
-from automotive_cosim.run.outside import OutsideAgent, check_agent
+from automotive_cosim.run.outside import LONGEST_REFUSAL, OutsideAgent, check_agent
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")]
 
@@ -68,7 +70,7 @@ class Asks(Base):
         while "wire" not in frame.f_locals: frame = frame.f_back
         wire = frame.f_locals["wire"]
         told = json.loads(pathlib.Path(__file__).with_name("told").read_text())
-        if isinstance(told, str): wire._send(told.encode(), None)
+        if isinstance(told, str): wire.send(told.encode())
         elif isinstance(told, int): wire._socket.sendall(told.to_bytes(8, "big"))
         else: wire.send_json(told)
         time.sleep(600)
@@ -100,6 +102,71 @@ class Ends(Base):
         if self.goal == "closes": os.closerange(3, 100)
         if self.goal == "stop": os.kill(os.getpid(), signal.SIGSTOP)
         time.sleep(600)
+
+class ReadsSlowly(Base):
+    """Reads half of the second observation, thinks, and answers at once when it has read the rest."""
+    channels = ("screenshot",)
+    def act(self, seen):
+        frame = sys._getframe()
+        while "wire" not in frame.f_locals: frame = frame.f_back
+        wire, answer = frame.f_locals["wire"], {"action": say("?")}
+        wire.send_json(answer)
+        while True:
+            size = int.from_bytes(wire._read(8, None), "big")
+            wire._read(size // 2, None)
+            time.sleep(float(self.goal))
+            wire._read(size - size // 2, None)
+            wire.send_json(answer)
+
+class Litters(Base):
+    """Leaves a folder from which nothing can be removed by walking down, and nothing readable."""
+    def act(self, seen):
+        for name in "abc": pathlib.Path(name).mkdir(); (pathlib.Path(name) / "file").touch()
+        os.symlink("/", "link")
+        os.mkfifo("pipe")
+        os.chmod("b", 0)
+        for _ in range(3000):
+            os.mkdir("d")
+            os.chdir("d")
+        return say("done")
+
+class Kills(Base):
+    """Its daemon ends or stops the process that its own was forked from, and lives on."""
+    def act(self, seen):
+        nursery = os.getppid()
+        read, write = os.pipe()
+        if not os.fork():
+            os.setsid()
+            if os.fork(): os._exit(0)
+            os.write(write, str(os.getpid()).encode())
+            signal.signal(signal.SIGTERM, signal.SIG_IGN)
+            time.sleep(0.3)
+            os.kill(nursery, signal.SIGKILL if self.goal == "kill" else signal.SIGSTOP)
+            time.sleep(600)
+        return say(os.read(read, 20).decode())
+
+class Chains(Base):
+    """A chain of processes, each the child of the one before."""
+    def act(self, seen):
+        read, write = os.pipe()
+        for _ in range(300):
+            if os.fork(): time.sleep(600)
+        os.write(write, b"x")
+        time.sleep(600)
+
+class Says(Base):
+    """Raises with the text that stands in a file."""
+    def act(self, seen):
+        said = json.loads(pathlib.Path(__file__).with_name("told").read_text())
+        from automotive_cosim.errors import ActionError
+        kinds = {"action": ActionError, "budget": OutOfBudgetError, "other": ValueError, "base": KeyboardInterrupt}
+        raise kinds[self.goal](said)
+
+class CannotEvenSay(Base):
+    def act(self, seen):
+        class Silent(Exception):
+            def __str__(self): raise self
+        raise Silent
 
 class FailsInReset(Base):
     def reset(self, goal): raise ModelError("no")
@@ -271,6 +338,125 @@ def test_nonsense_on_the_wire_is_the_agents_failure_or_its_step(outside, mine, t
     (mine / "told").write_text(told)
     with pytest.raises((ActionError, AgentError)):
         outside("Asks", step_s=1.0).act(None)
+
+
+@pytest.mark.parametrize(
+    "told",
+    [
+        {"refused": ["x"]}, {"spent": {"a": 1}}, {"failed": 7}, {"channels": {"a": 1}},
+        {"stages": 7, "action": None},
+        {"action": {"action_type": ["wait"]}}, {"action": {"action_type": "wait", "seconds": True}},
+        {"action": {"action_type": "wait", "seconds": 10**400}}, {"action": [[[]]]}, {"action": "[" * 5000},
+        {"action": {"action_type": "click", "x": float("nan"), "y": 1}}, {"action": {"a" * 100_000: 1}},
+    ],
+)  # fmt: skip
+def test_odd_types_on_the_wire_are_the_agents_failure_or_its_step(outside, mine, told):
+    (mine / "told").write_text(json.dumps(told))
+    with pytest.raises((ActionError, AgentError)):
+        outside("Asks", step_s=5.0).act(None)
+
+
+@pytest.mark.parametrize("what", ["refused", "failed", "spent"])
+def test_deep_json_on_the_wire_is_the_agents_failure(outside, mine, what):
+    deep = "[" * 900 + "]" * 900
+    (mine / "told").write_text(json.dumps(f'{{"{what}": {deep}}}'))
+    with pytest.raises(AgentError, match="not an answer"):
+        outside("Asks", step_s=5.0).act(None)
+
+
+def test_json_of_too_many_values_is_refused_before_it_is_made(outside, mine):
+    (mine / "told").write_text(json.dumps('{"a": [' + "[]," * MOST_VALUES + "0]}"))
+    with pytest.raises(AgentError, match="values"):
+        outside("Asks", step_s=20.0).act(None)
+
+
+@pytest.mark.parametrize(
+    ("goal", "error"),
+    [("action", ActionError), ("budget", OutOfBudgetError), ("other", ActionError), ("base", AgentError)],
+)
+@pytest.mark.parametrize("said", ["half \ud800 pair", "\udfff", "\x00\x1b[31m", "\ud83d\ude00", "x" * 100_000])
+def test_whatever_an_agent_says_can_be_stored(outside, mine, goal, error, said):
+    (mine / "told").write_text(json.dumps(said))
+    with pytest.raises(error) as raised:
+        outside("Says", goal).act(None)
+    str(raised.value).encode()
+    assert len(str(raised.value)) <= LONGEST_REFUSAL + 100
+
+
+def test_an_error_without_words_is_its_own_failure(outside):
+    with pytest.raises((ActionError, AgentError)):
+        outside("CannotEvenSay").act(None)
+
+
+def test_the_clock_runs_while_an_agent_reads(outside, observation):
+    screen = np.random.default_rng(0).integers(0, 255, (720, 1280, 3), np.uint8)
+    agent = outside("ReadsSlowly", "0.5")
+    agent.act(observation("x", screenshot=screen))
+    for _ in range(2):
+        agent.act(observation("x", screenshot=screen))
+        assert agent.answer_s >= 0.5
+
+
+def test_reading_and_answering_have_one_limit(outside, observation):
+    screen = np.random.default_rng(0).integers(0, 255, (720, 1280, 3), np.uint8)
+    agent = outside("ReadsSlowly", "600", step_s=1.0)
+    agent.act(observation("x", screenshot=screen))
+    with pytest.raises(AgentError, match="over 1 s for one step"):
+        agent.act(observation("x", screenshot=screen))
+    assert agent._episode_s - agent._left_s >= 1.0
+    agent = outside("ReadsSlowly", "0.4", episode_s=3.0)
+    for _ in range(3):
+        agent.act(observation("x", screenshot=screen))
+    agent._left_s = 0.2
+    with pytest.raises(AgentError, match="over 3 s in the whole episode"):
+        agent.act(observation("x", screenshot=screen))
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
+@pytest.mark.parametrize("how", ["kill", "stop"])
+def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(outside, monkeypatch, until, how):
+    monkeypatch.setattr("automotive_cosim.run.nursery.END_S", 2.0)
+    agent = outside("Kills", how)
+    pid = agent.act(None).text
+    nursery = agent._nursery._popen.pid
+    assert lives(pid)
+    until(lambda: Path(f"/proc/{nursery}/stat").read_text().rpartition(")")[2].split()[0] in "ZT")
+    if how == "kill":
+        with pytest.raises(AgentError):
+            agent.act(None)
+    agent.close()
+    assert not lives(pid)
+    assert not lives(nursery)
+    assert outside("Counts", "next").act(None).text.startswith("[1")
+
+
+@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
+def test_a_long_chain_of_processes_ends_too(outside):
+    agent = outside("Chains", step_s=2.0)
+    agent.channels  # noqa: B018, starts it
+    nursery = agent._nursery._popen.pid
+    with pytest.raises(AgentError, match="for one step"):
+        agent.act(None)
+    assert tree(nursery) == (nursery,)
+
+
+def test_what_an_agent_leaves_in_its_folder_is_removed_however_deep(outside, until):
+    agent = outside("Litters")
+    folder = agent._folder
+    assert agent.act(None).text == "done"
+    agent.close()
+    until(lambda: not folder.exists())
+    assert Path("/etc").is_dir()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_a_link_in_the_place_of_the_folder_leads_nowhere(tmp_path):
+    (tmp_path / "kept").mkdir()
+    (tmp_path / "kept" / "file").touch()
+    (tmp_path / "link").symlink_to(tmp_path / "kept")
+    remove(tmp_path / "link")
+    assert not (tmp_path / "link").is_symlink()
+    assert (tmp_path / "kept" / "file").is_file()
 
 
 def test_a_pickle_on_the_wire_runs_nothing(outside, mine):

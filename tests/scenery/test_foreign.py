@@ -114,14 +114,14 @@ def test_a_bare_network_runs_with_light_traffic_and_says_so(name: str) -> None:
 
 
 def test_light_traffic_is_the_seeds(tmp_path: Path) -> None:
-    from automotive_cosim.traffic.options import Setup, read_configuration, run_options
+    from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 
     scenario = open_scenario(GRID / "grid.net.xml")
     written = []
     for number, seed in enumerate((1, 1, 2)):
         scratch = tmp_path / str(number)
         scratch.mkdir()
-        run_options(read_configuration(scenario.config), Setup(scenario, seed), scratch)
+        run_options(copied(read_configuration(scenario.config), scratch), Setup(scenario, seed))
         written.append((scratch / "random.add.xml").read_text())
     assert written[0] == written[1] != written[2]
     assert written[0].count("<flow ") > 20

@@ -6,6 +6,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import timedelta
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -15,13 +16,16 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts import Reroute, Weather
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import UserError
+from automotive_cosim.geo.place import shipped
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.georeference import GeoReference, middle
+from automotive_cosim.traffic.mirror import mirrored
+from tests.laws import over
 
-ROME, MADRID = (12.49, 41.89), (-3.70, 40.42)
+ROME, GERMANY, AUSTRIA = (12.49, 41.89), (9.9, 50.5), (14.3, 48.3)
 PLACES = {
     "IT": ((9.19, 45.46), "Europe/Rome"),
     "CN": ((121.47, 31.23), "Asia/Shanghai"),
@@ -42,8 +46,11 @@ def test_any_shipped_network_lies_where_it_is_put(name: str, country: str) -> No
     assert away.weather == ()
     network = network_of(away)
     assert middle(network.map) == pytest.approx(origin, abs=1e-9)
+    own = network_of(home)
+    if away.mirrored:
+        own = mirrored(own)
     assert {edge_id: replace(edge, name="") for edge_id, edge in network.edges.items()} == {
-        edge_id: replace(edge, name="") for edge_id, edge in network_of(home).edges.items()
+        edge_id: replace(edge, name="") for edge_id, edge in own.edges.items()
     }
 
 
@@ -59,17 +66,39 @@ def test_a_metre_stays_a_metre(origin: tuple[float, float]) -> None:
     assert reference.x_y(lon_b, lat_b) == pytest.approx((x_m + 300.0, y_m + 400.0), abs=1e-3)
 
 
-@pytest.mark.parametrize(
-    ("name", "origin", "said"),
-    [
-        ("grid", PLACES["GB"][0], "keeps right in this network, but left in United Kingdom"),
-        ("london", PLACES["IT"][0], "keeps left in this network, but right in Italy"),
-        ("grid", (-30.0, 0.0), "no traffic law is known"),
-    ],
-)
-def test_what_does_not_fit_the_place_is_said(name: str, origin: tuple[float, float], said: str) -> None:
-    assert any(said in note for note in open_scenario(name, origin=origin).notes)
+def test_where_no_law_is_known_is_said() -> None:
+    assert any("no traffic law is known" in note for note in open_scenario("grid", origin=(-30.0, 0.0)).notes)
     assert open_scenario("london", origin=PLACES["ZA"][0]).notes == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "country", "is_mirrored"), [("grid", "GB", True), ("london", "IT", True), ("london", "ZA", False)]
+)
+def test_a_network_is_mirrored_where_traffic_keeps_the_other_side(
+    name: str, country: str, is_mirrored: bool
+) -> None:
+    scenario = open_scenario(name, origin=PLACES[country][0])
+    assert scenario.mirrored is is_mirrored
+    assert network_of(scenario).map.left_hand is (country in ("GB", "ZA"))
+
+
+HALVES = [(task, half) for task in CATALOGUE.values() for half in task.halves]
+
+
+@over(HALVES)
+def test_every_half_drives_on_the_side_of_its_country(task: Task, half: str) -> None:
+    """The side that the map shows is the one that the prompt says."""
+    start = task.half(half).start
+    left_hand, origin = _network(start.scenario, start.origin)
+    law = shipped().place(*origin).law
+    assert law is not None
+    assert ("left" if left_hand else "right") == law.driving_side
+
+
+@cache
+def _network(scenario: str, origin: tuple[float, float] | None) -> tuple[bool, tuple[float, float]]:
+    network = network_of(open_scenario(scenario, origin=origin)).map
+    return network.left_hand, middle(network)
 
 
 @pytest.mark.parametrize("origin", [(9.0, 91.0), (181.0, 0.0), (math.nan, 0.0)])
@@ -150,7 +179,7 @@ ACTIONS = (
 
 @pytest.mark.parametrize("seed", [0, 7])
 def test_equal_actions_look_equal_but_for_gps_and_context(simulations, seed: int) -> None:
-    task = _translated(ROME, MADRID)
+    task = _translated(GERMANY, AUSTRIA)
     seen: dict[str, list[dict[str, Any]]] = {}
     for half in ("first", "second"):
         env = CockpitEnv(task, half, simulations=simulations)

@@ -132,9 +132,9 @@ def write_drive(folder: Path) -> Path:
     baseline = {"baseline": [[float(s), 15.0 * s, 0.0, 90.0, 15.0] for s in range(8)]}
     (folder / "road.jsonl.gz").write_bytes(packed([*road(range(8)), baseline]))
     events = [
-        {"kind": kind, "words": kind, "bait": bait, "weight": 1.0, "outcome": outcome, "observable_s": 1.0,
-         "obliged_s": 2.0, "deadline_s": None if bait else 5.0, "ends_s": 6.0}
-        for kind, bait, outcome in (("limit", False, "hit"), ("rain", False, "missed"), ("dusk", True, "avoided"))
+        {"kind": kind, "words": kind, "lookalike": alike, "weight": 1.0, "outcome": outcome, "observable_s": 1.0,
+         "obliged_s": 2.0, "deadline_s": None if alike else 5.0, "ends_s": 6.0}
+        for kind, alike, outcome in (("limit", False, "hit"), ("rain", False, "missed"), ("dusk", True, "avoided"))
     ]  # fmt: skip
     acts = [{"time_s": 3.0, "words": "warns of speed", "worth": "right"}]
     row = {"family": "grid_june", "scenario": "grid", "agent": "rule-perfect", "model": "none", "seed": 0,

@@ -8,7 +8,18 @@ from typing import Any
 import pytest
 
 from automotive_cosim.cockpit.signals import ENERGY
-from automotive_cosim.contracts import AlertKind, OtherVehicle, PullOver, Reroute, RoadRequest, SlowDown
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    NO_LIMIT,
+    AlertKind,
+    Limit,
+    LimitSource,
+    OtherVehicle,
+    PullOver,
+    Reroute,
+    RoadRequest,
+    SlowDown,
+)
 from automotive_cosim.tasking.checks import AlertGiven, RoadAsked
 from automotive_cosim.tasking.triggers import OutOfRange, SlowLeaderWithin
 
@@ -53,9 +64,17 @@ def test_an_alert_names_the_speed_where_no_sign_does(
     assert AlertGiven(AlertKind.SPEED, 32.2, must_advise=True).holds(start, now, [now]) is must_advise
 
 
-def test_an_alert_that_asks_for_no_speed_takes_none():
-    start, now = alerted(), alerted({"kind": AlertKind.YIELD, "speed_kmh": 30.0})
-    assert not AlertGiven(AlertKind.YIELD).holds(start, now, [now])
+@pytest.mark.parametrize(
+    ("limit_kmh", "advised_kmh", "is_right"),
+    [(50.0, None, True), (50.0, 30.0, True), (50.0, 50.0, True), (50.0, 70.0, False), (None, 120.0, True)],
+)
+def test_an_alert_that_asks_for_no_speed_may_advise_any_that_is_allowed(
+    limit_kmh: float | None, advised_kmh: float | None, is_right: bool
+):
+    start, now = alerted(), alerted({"kind": AlertKind.YIELD, "speed_kmh": advised_kmh})
+    limit = NO_LIMIT if limit_kmh is None else Limit(limit_kmh / KMH_PER_MPS, LimitSource.POSTED)
+    now.driving = SimpleNamespace(road=SimpleNamespace(limit=limit))
+    assert AlertGiven(AlertKind.YIELD).holds(start, now, [now]) is is_right
 
 
 @pytest.mark.parametrize(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.people import Thread
+from automotive_cosim.cockpit.apps.phone.state import Thread
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Do, Tap, TapUntil
 from automotive_cosim.tasking.task import Suite, Task

@@ -151,7 +151,7 @@ def _solved(
         feedback = actions.perform(action, car, shown or ())
         for request in car.drain_requests():
             car.answered(request, Answer(True, "so it is"))
-    beside = counterfactual(cockpit, car.deeds, moments, instance.half.allowed_writes)
+    beside = counterfactual(cockpit, car.given, moments, instance.half.allowed_writes)
     return Solved(car, moments, dict(beside))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -10,10 +11,20 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS, Alert, AlertKind, DrivingState
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    MPH_PER_MPS,
+    Alert,
+    AlertKind,
+    DrivingState,
+    PullOver,
+    RoadRequest,
+    Severity,
+    SlowDown,
+)
 from automotive_cosim.scenarios import Scenario, Trip, load
 from automotive_cosim.traffic.base import Advance, EgoPlan, HaltAt, Traffic
-from automotive_cosim.traffic.ego import PARKS, SETS_OFF
+from automotive_cosim.traffic.ego import PARKS, RELEASED, SETS_OFF
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
@@ -167,3 +178,54 @@ def test_profiles_differ_in_speed_and_gap(forked: Forked, hurried: EgoPlan) -> N
     assert speeds["calm"] < speeds["average"] + 0.5 < speeds["tailgating"] < speeds["hurried"]
     assert speeds["calm"] < 49.0
     assert gaps["tailgating"] < 1.0 < gaps["calm"]
+
+
+WATCHED = replace(EgoPlan(SOUTH, "calm", 1), advice_s=120.0)
+"""A driver of a drive, on whom advice lasts two minutes."""
+
+
+def on_a_street(plan: EgoPlan = WATCHED, metres: float = 8000.0) -> Traffic:
+    """A scripted street of 50 km/h."""
+    return Scripted([Stretch("street", metres, 50.0)], start_speed_kmh=50.0).depart(plan)
+
+
+def test_a_request_to_go_slower_ends_by_itself_and_the_release_is_told() -> None:
+    traffic = on_a_street()
+    traffic.request(SlowDown(20.0))
+    drive = traffic.advance(180.0)
+    slow = [state.time_s for state in drive.states if state.speed_mps * KMH_PER_MPS < 22.0]
+    (release,) = (event for event in drive.events if event.kind == RELEASED)
+    assert release.time_s == pytest.approx(120.0, abs=3.0)
+    assert slow[-1] == pytest.approx(release.time_s, abs=2.0)
+    assert drive.states[-1].speed_mps * KMH_PER_MPS > 40.0
+
+
+def test_a_request_for_the_limit_takes_advice_back() -> None:
+    traffic = on_a_street()
+    traffic.request(SlowDown(20.0))
+    traffic.advance(30.0)
+    traffic.request(SlowDown(50.0))
+    drive = traffic.advance(30.0)
+    assert RELEASED in kinds(drive)
+    assert drive.states[-1].speed_mps * KMH_PER_MPS > 40.0
+
+
+@pytest.mark.parametrize(
+    "request_", [PullOver(), Alert(AlertKind.VEHICLE, Severity.CRITICAL)], ids=["asked", "red"]
+)
+def test_a_driver_who_is_told_to_stop_stops_and_drives_on(request_: RoadRequest) -> None:
+    traffic = on_a_street()
+    traffic.request(request_)
+    drive = traffic.advance(240.0)
+    standing_s = sum(state.speed_mps < 0.1 for state in drive.states) * 0.1
+    assert standing_s == pytest.approx(120.0, abs=3.0)
+    assert {"driver_pulls_over", RELEASED} <= kinds(drive)
+    assert drive.states[-1].speed_mps > 10.0
+
+
+def test_in_a_task_a_request_lasts_for_good() -> None:
+    traffic = on_a_street(replace(WATCHED, advice_s=math.inf))
+    traffic.request(SlowDown(20.0))
+    drive = traffic.advance(240.0)
+    assert RELEASED not in kinds(drive)
+    assert drive.states[-1].speed_mps * KMH_PER_MPS < 22.0

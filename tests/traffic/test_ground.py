@@ -28,7 +28,7 @@ def read(tmp_path: Path) -> Read:
         rows = "\n".join(f'<poly id="p{at}" {words}/>' for at, words in enumerate(polygons))
         file = tmp_path / "some.poly.xml"
         file.write_text(f"<additional>\n{rows}\n</additional>", encoding="utf-8")
-        return read_mapped(Configuration(net, net, {"additional-files": str(file)})).map.ground
+        return read_mapped(Configuration(net, net, files={"additional-files": (file,)})).map.ground
 
     return read
 

@@ -50,10 +50,20 @@ def test_what_is_no_sign(sign: str) -> None:
         (SCHOOL, ["30 km/h Mo-Fr 08:00-08:31, 14:30-16:00"]),
         ("20 mph @ (Mo,We 7:30-16:00)", ["20 mph Mo, We 7:30-16:00"]),
         ("30 @ (22:00-06:00)", ["30 km/h 22:00-06:00"]),
-        ("none @ (19:00-07:00); 80 @ wet", ["no limit 19:00-07:00"]),
+        ("none @ (19:00-07:00); 80 @ wet", ["no limit 19:00-07:00", "80 km/h when wet"]),
         ("30 @ (Sa 10:00-12:00; Su)", ["30 km/h Sa 10:00-12:00", "30 km/h Su"]),
-        ("80 @ (wet)", []),
-        ("60 @ (22:00-06:00 AND wet)", []),
+        ("80 @ (wet)", ["80 km/h when wet"]),
+        ("60 @ (22:00-06:00 AND wet)", ["60 km/h 22:00-06:00 when wet"]),
+        ("60 @ (snow)", ["60 km/h in snow"]),
+        ("60 @ (wet AND snow)", []),
+        ("30mph @ (22:00-06:00)", ["30 mph 22:00-06:00"]),
+        ("walk @ (10:00-18:00)", ["walking pace 10:00-18:00"]),
+        ("30 @ 24/7", ["30 km/h"]),
+        ("30 @ (Mo-Fr 07:00-17:00, Sa 08:00-12:00)", ["30 km/h Mo-Fr 07:00-17:00", "30 km/h Sa 08:00-12:00"]),
+        ("30 @ (07:00-17:00; Sa,Su off)", ["30 km/h 07:00-17:00 but Sa,Su"]),
+        ("110 @ Apr-Oct", ["110 km/h Apr-Oct"]),
+        ("80 @ (Nov 15-Mar 15 20:00-06:00)", ["80 km/h Nov 15-Mar 15 20:00-06:00"]),
+        ("80 @ (Nov 40-Mar)", []),
         ("60 @ (weight>7.5)", []),
         ("20 mph @ children_present", []),
         ("30 @ (sunset-sunrise)", []),
@@ -122,6 +132,38 @@ def test_a_week_as_a_whole_is_what_the_days_say() -> None:
                 )
 
 
+@pytest.mark.parametrize(
+    ("conditional", "held"),
+    [
+        ("110 @ Apr-Oct", {4, 5, 6, 7, 8, 9, 10}),
+        ("110 @ Oct-Apr", {10, 11, 12, 1, 2, 3, 4}),
+        ("110 @ May", {5}),
+        ("110 @ Nov 15-Mar 9", {12, 1, 2}),
+        ("110 @ 24/7", set(range(1, 13))),
+    ],
+)
+def test_months_and_dates(conditional: str, held: set[int]) -> None:
+    limits, _ = timed_limits(conditional)
+    assert {month for month in range(1, 13) if in_force(limits, datetime(2026, month, 10, 12))} == held
+
+
+def test_the_weather_decides_where_the_sign_says_so() -> None:
+    limits, _ = timed_limits("110 @ wet; 50 @ snow; 90 @ (22:00-06:00 AND wet)")
+    for weather, clock, kmh in (
+        ("", "12:00", None),
+        ("wet", "12:00", 110),
+        ("snow", "23:00", 50),
+        ("wet", "23:00", 90),
+    ):
+        held = in_force(limits, at(1, clock), weather)
+        assert (held and round((held.limit_mps or 0) * KMH_PER_MPS)) == kmh
+
+
+def test_days_off_are_taken_from_the_week() -> None:
+    limits, _ = timed_limits("30 @ (07:00-17:00; Sa,Su off)")
+    assert [bool(in_force(limits, at(day, "12:00"))) for day in range(1, 8)] == [True] * 5 + [False] * 2
+
+
 def test_of_several_the_last_written_holds() -> None:
     limits, _ = timed_limits("80 @ (06:00-20:00); 60 @ (08:00-09:00)")
     held = in_force(limits, at(2, "08:30"))
@@ -173,6 +215,10 @@ def test_the_posted_limit_follows_the_clock_of_the_drive(school: Forked, grid: S
         limits = {round((road.limit.mps or 0) * KMH_PER_MPS) for road in inside}
         warned = before.ahead.next_limit is not None
         fastest_kmh = max(state.speed_mps for state in states if state.road.edge_id == "c1c2") * KMH_PER_MPS
+        behind = [state for state in states if state.road.edge_id.startswith(":c2")]
+        across_kmh = max(state.speed_mps for state in behind) * KMH_PER_MPS
+        assert {round((state.road.limit.mps or 0) * KMH_PER_MPS) for state in behind} == limits
+        assert across_kmh < 40 or limits == {50}, "the sign counts across the junction"
         seen[name] = limits, {road.limit_by_clock for road in inside}, warned, fastest_kmh > 40
     assert seen == {
         "school": ({30}, {True}, True, False),

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from automotive_cosim import scenarios
-from automotive_cosim.traffic.options import Setup, read_configuration, run_options
+from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 from automotive_cosim.traffic.redraw import WINDOW_S, redraw
 
 TRIPS = 2000
@@ -72,12 +72,12 @@ def test_a_scenario_that_redraws_reads_another_day_for_every_seed(demand: Path, 
     grid = scenarios.load("grid")
     other = replace(grid, sumo=replace(grid.sumo, redraws_trips=True))
     configuration = read_configuration(grid.config)
-    own = replace(configuration, options=configuration.options | {"route-files": str(demand)})
+    own = replace(configuration, files={**configuration.files, "route-files": (demand,)})
 
     def route_file(scenario: scenarios.Scenario, seed: int) -> bytes:
         scratch = tmp_path / f"{scenario.sumo.redraws_trips}-{seed}"
         scratch.mkdir(exist_ok=True)
-        return Path(run_options(own, Setup(scenario, seed), scratch)["route-files"]).read_bytes()
+        return (scratch / run_options(copied(own, scratch), Setup(scenario, seed))["route-files"]).read_bytes()
 
     assert route_file(grid, 1) == route_file(grid, 2) == demand.read_bytes()
     assert len({route_file(other, 1), route_file(other, 2), demand.read_bytes()}) == 3

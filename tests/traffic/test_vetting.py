@@ -6,6 +6,7 @@ import gzip
 import re
 import shutil
 import sys
+from collections.abc import Mapping
 from contextlib import closing
 from pathlib import Path
 
@@ -18,8 +19,8 @@ from automotive_cosim.scenery import open_scenario
 from automotive_cosim.traffic import sumo_programs, vocabulary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.options import Setup, command_line, read_configuration, run_options
-from automotive_cosim.traffic.vetting import vet
+from automotive_cosim.traffic.options import INPUTS, Setup, command_line, copied, read_configuration, run_options
+from automotive_cosim.traffic.vetting import copy_vetted
 
 NET = (scenarios.load("grid").folder / "grid.net.xml").read_text()
 LIGHT = re.search(r'<tlLogic id="([^"]+)".*?</tlLogic>', NET, re.DOTALL)
@@ -107,9 +108,9 @@ def _listing(folder: Path) -> dict[Path, int]:
 def _texts(config: Path, scratch: Path) -> str:
     """Everything that SUMO is told: its command line and the files in it."""
     scratch.mkdir()
-    options = run_options(read_configuration(config), Setup(open_scenario(config)), scratch)
-    named = [Path(options[name]) for name in ("net-file", "route-files", "additional-files")]
-    return "\n".join([*command_line(options), *(file.read_text() for file in (*named, *scratch.iterdir()))])
+    options = run_options(copied(read_configuration(config), scratch), Setup(open_scenario(config)))
+    assert {options[name] for name in options if name in INPUTS} <= {file.name for file in scratch.iterdir()}
+    return "\n".join([*command_line(options), *(file.read_text() for file in scratch.iterdir())])
 
 
 # --- the tables ------------------------------------------------------------------------------------------------
@@ -128,9 +129,12 @@ def _template(folder: Path) -> dict[str, str]:
 
 @pytest.mark.sumo
 def test_every_option_of_the_installed_sumo_is_in_one_table(tmp_path: Path) -> None:
-    known = {**vocabulary.TAKEN, **vocabulary.IGNORED, **vocabulary.REFUSED}
+    meso = {vocabulary.MESOSCOPIC: vocabulary.MESOSCOPIC}
+    tables: tuple[Mapping[str, str], ...] = (vocabulary.TAKEN, vocabulary.IGNORED, vocabulary.REFUSED, meso)
+    known = {word: name for table in tables for word, name in table.items()}
     assert _template(tmp_path) == known
-    assert len(known) == len(vocabulary.TAKEN) + len(vocabulary.IGNORED) + len(vocabulary.REFUSED)
+    assert len(known) == sum(map(len, tables))
+    assert not known.keys() & vocabulary.WINDOW.keys()
 
 
 def test_every_element_of_the_installed_sumo_is_known_and_so_are_those_that_name_files() -> None:
@@ -175,6 +179,9 @@ def test_an_option_that_writes_has_no_effect_under_any_name(tmp_path: Path) -> N
         ('<save-everything value="x"/>', ["line 3", "'save-everything'"]),
         ('<load-state value="x"/>', ["line 3", "<load-state>", "not checked"]),
         ('<phemlight-path value="x"/>', ["line 3", "<phemlight-path>"]),
+        ('<mesosim value="true"/>', ["line 3", "mesoscopic", "remove it"]),
+        ('<weight-files value="${HOME}/x.xml"/>', ["line 3", "weight-files", "${HOME}", "variables"]),
+        ('<device.rerouting.explicit value="$X"/>', ["line 3", "device.rerouting.explicit", "'$X'"]),
         ("<tripinfo-output>@</tripinfo-output>", ["line 3", "write <option value="]),
         ('<weight-files value="none.xml"/>', ["line 3", "none.xml", "missing"]),
         (f'<weight-files value="{"x" * 5000}"/>', ["line 3", "missing"]),
@@ -205,11 +212,10 @@ def test_no_value_passes_as_an_option(tmp_path: Path) -> None:
 def test_what_writes_is_changed_wherever_it_stands(element: str, root: str, tmp_path: Path) -> None:
     (tmp_path / "a.xml").write_text(f"<{root}>{element.replace('@', 'evil.xml')}</{root}>")
     (tmp_path / "scratch").mkdir()
-    text = vet(tmp_path / "a.xml", tmp_path / "scratch").read_text()
+    text = (tmp_path / "scratch" / copy_vetted(tmp_path / "a.xml", tmp_path / "scratch", "copy")).read_text()
     assert len(text) > 30
     assert "evil" not in text
     assert "has.ssm" not in text
-    assert vet(tmp_path / "a.xml") == tmp_path / "a.xml"
 
 
 @pytest.mark.parametrize("name", ["t.net.xml", "t.rou.xml", "t.add.xml"])
@@ -220,7 +226,8 @@ def test_a_packed_file_is_checked_too_whatever_it_is_called(name: str, tmp_path:
     packed = file.rename(file.with_name(f"{name}.gz"))
     for found in (packed, shutil.copy(packed, file)):
         (tmp_path / "scratch").mkdir()
-        assert "evil" not in vet(Path(found), tmp_path / "scratch").read_text()
+        copy = tmp_path / "scratch" / copy_vetted(Path(found), tmp_path / "scratch", "copy")
+        assert "evil" not in copy.read_text()
         shutil.rmtree(tmp_path / "scratch")
 
 
@@ -239,7 +246,9 @@ def test_so_is_a_file_that_another_names(outer: str, tmp_path: Path) -> None:
     inner.write_text(f"<additional>{WRITING_ELEMENTS[0].replace('@', 'evil.xml')}</additional>")
     told = _texts(config, tmp_path / "scratch")
     assert "evil" not in told
-    assert str(tmp_path / "scratch") in told.partition('file="')[2] + told.partition('href="')[2]
+    assert '"additional-files0-0.xml"' in told
+    assert "inner.xml" not in told
+    assert "a.png" not in told
     inner.unlink()
     with pytest.raises(ScenarioError, match=r"t\.add\.xml line 1: .*'inner\.xml', which is missing"):
         open_scenario(config)
@@ -262,7 +271,7 @@ def test_so_is_a_file_that_another_names(outer: str, tmp_path: Path) -> None:
         ("<!DOCTYPE a SYSTEM 'evil.dtd'><a/>", "a document type"),
         ("<?xml version='1.0' encoding='cp037'?><a/>", "'cp037'"),
         ("<additional><include href='t.add.xml'/></additional>", "includes itself"),
-        ("<additional><include href='${HOME}/x.xml'/></additional>", "missing"),
+        ("<additional><include href='${HOME}/x.xml'/></additional>", "'${HOME}/x.xml': variables ($) are not"),
         ("<additional>", "is not a SUMO file"),
         ("", "is not a SUMO file"),
     ],
@@ -277,6 +286,60 @@ def test_a_file_with_what_is_not_known_is_refused_with_its_line(text: str, words
     assert "\n" not in str(caught.value)
 
 
+def test_options_of_the_window_and_a_microscopic_mesosim_are_passed_over(tmp_path: Path) -> None:
+    config = _written(tmp_path, options='<osg-view value="true"/><window-size value="9,9"/><mesosim value="no"/>')
+    configuration = read_configuration(config)
+    assert {"osg-view", "window-size"} <= set(configuration.ignored)
+    assert not {"osg-view", "window-size", "mesosim"} & set(configuration.options)
+
+
+@pytest.mark.parametrize("element", ["vehicle", "trip", "flow", "person"])
+@pytest.mark.parametrize("name", ["a b", "a;b", "a,b", "a|b"])
+def test_an_id_that_sumo_does_not_take_is_named_with_its_line(name: str, element: str, tmp_path: Path) -> None:
+    config = _written(tmp_path, routes=f'\n<{element} id="{name}" depart="0"/>')
+    with pytest.raises(
+        ScenarioError, match=rf"t\.rou\.xml line 2: SUMO takes no {element} with the id '{re.escape(name)}'"
+    ):
+        open_scenario(config)
+
+
+def test_the_cockpits_car_finds_its_name_free(tmp_path: Path) -> None:
+    riding = '<person id="p" depart="0"><ride from="c0c1" to="c1c2" lines="bus ego"/></person>'
+    config = _written(
+        tmp_path,
+        routes='<vType id="ego"/><flow id="ego" route="r" end="9" period="3"/>'
+        f'<vehicle id="ego" route="r" depart="0"><stop lane="c1c2_0" join="ego" duration="9"/></vehicle>{riding}',
+        options='<device.rerouting.explicit value="a,ego"/>',
+    )
+    told = _texts(config, tmp_path / "scratch")
+    assert '<vehicle id="ego.scenario" route="r"' in told
+    assert 'join="ego.scenario"' in told
+    assert 'lines="bus ego.scenario"' in told
+    assert "--device.rerouting.explicit=a,ego.scenario" in told
+    assert '<flow id="ego"' in told
+    assert '<vType id="ego"' in told
+
+
+@pytest.mark.parametrize("encoding", ["iso-8859-1", "latin1", "windows-1252", "utf-8", "utf-16"])
+def test_letters_are_those_of_the_file_in_whatever_encoding_it_declares(encoding: str, tmp_path: Path) -> None:
+    text = f'<?xml version="1.0" encoding="{encoding}"?><additional><poi id="straße" x="1" y="1"/></additional>'
+    (tmp_path / "a.xml").write_bytes(text.encode(encoding))
+    copy = tmp_path / copy_vetted(tmp_path / "a.xml", tmp_path, "copy")
+    from xml.etree import ElementTree as ET
+
+    assert "straße" in ET.tostring(ET.parse(copy).getroot(), "unicode")
+    if encoding in ("latin1", "windows-1252"):  # which SUMO need not know
+        assert b"encoding" not in copy.read_bytes()
+
+
+def test_latin_1_that_is_not_declared_is_called_so(tmp_path: Path) -> None:
+    (tmp_path / "a.xml").write_bytes('<additional><poi id="straße"/></additional>'.encode("latin-1"))
+    with pytest.raises(
+        ScenarioError, match=r"it is not UTF-8: save it so, or let it begin with <\?xml .*iso-8859-1"
+    ):
+        copy_vetted(tmp_path / "a.xml", tmp_path, "copy")
+
+
 def test_a_copy_says_the_same_but_for_the_outputs(tmp_path: Path) -> None:
     text = (
         '<routes><vType id="a&amp;&quot;b">  <param key="device.battery.capacity" value="1"/>%s</vType>\n'
@@ -285,7 +348,7 @@ def test_a_copy_says_the_same_but_for_the_outputs(tmp_path: Path) -> None:
     )
     (tmp_path / "a.xml").write_text(text % SSM, encoding="utf-8")
     (tmp_path / "scratch").mkdir()
-    copy = vet(tmp_path / "a.xml", tmp_path / "scratch")
+    copy = tmp_path / "scratch" / copy_vetted(tmp_path / "a.xml", tmp_path / "scratch", "copy")
     from xml.etree import ElementTree as ET
 
     assert ET.canonicalize(copy.read_text(encoding="utf-8")) == ET.canonicalize(text % "")
@@ -293,10 +356,11 @@ def test_a_copy_says_the_same_but_for_the_outputs(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("name", scenarios.shipped())
 def test_shipped_scenarios_run_as_they_are(name: str, tmp_path: Path) -> None:
-    configuration = read_configuration(scenarios.load(name).config)
-    options = run_options(configuration, Setup(scenarios.load(name)), tmp_path)
-    assert {configuration.options[file] for file in ("net-file", "route-files")} <= set(options.values())
-    assert list(tmp_path.iterdir()) == []
+    given = read_configuration(scenarios.load(name).config)
+    for option, files_ in copied(given, tmp_path).files.items():
+        for file, copy in zip(given.files[option], files_, strict=True):
+            with files.opened(file) as original:
+                assert copy.read_bytes() == original.read(), file
 
 
 # --- archives --------------------------------------------------------------------------------------------------

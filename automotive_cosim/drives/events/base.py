@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from automotive_cosim.contracts import AlertKind, RoadRequest, Severity
+from automotive_cosim.contracts import AlertKind, Cruise, PullOver, RoadRequest, Severity, SlowDown
 from automotive_cosim.cosim.moment import Moment
 
 Wanted = Callable[[Any], bool]
@@ -34,7 +34,7 @@ class Sighting:
     """Whether something ought to be done now."""
     hold_s: float = 0.0
     """How long it must have been due until it is an obligation."""
-    bait: bool = False
+    lookalike: bool = False
     """Whether it only looks like an event: here no act is right."""
     severity: float = 1.0
     """How bad it is, 1 at the threshold; a repeated alert is right once it has risen."""
@@ -62,10 +62,23 @@ class WatchAct:
     """Words spoken to the driver."""
 
     @property
+    def holds_back(self) -> bool:
+        """Whether it makes the car stop or drive slowly, or tells the driver to."""
+        slows = any(isinstance(request, SlowDown | PullOver | Cruise) for request in self.requests)
+        return slows or (self.alert is not None and self.speed_kmh is not None) or self.stops
+
+    @property
+    def stops(self) -> bool:
+        """Whether it makes the car stop."""
+        is_red = self.alert is AlertKind.VEHICLE and self.severity is Severity.CRITICAL
+        return is_red or any(isinstance(request, PullOver) for request in self.requests)
+
+    @property
     def words(self) -> str:
         """In words, for reports."""
         if self.alert is not None:
-            return f"alert {self.alert}"
+            speed = "" if self.speed_kmh is None else f", {self.speed_kmh:.0f} km/h"
+            return f"alert {self.alert}{speed}{'' if self.severity is Severity.WARNING else f', {self.severity}'}"
         if self.requests:
             return ", ".join(type(request).__name__ for request in self.requests)
         if self.writes:
@@ -79,7 +92,7 @@ class EventKind(ABC):
     name: ClassVar[str]
     about: ClassVar[str]
     """What is due and why, in one sentence."""
-    bait: ClassVar[str]
+    lookalike: ClassVar[str]
     """What looks like it, in a few words."""
     source: ClassVar[str]
     """Where the times come from."""
@@ -95,6 +108,11 @@ class EventKind(ABC):
     """Words one of which must be in what is said to the driver for that to settle it; none if saying never does."""
     writes: ClassVar[Mapping[str, Wanted]] = {}
     """Signals that settle it, by path, and which values do."""
+    lasts_s: ClassVar[float] = 60.0
+    """For how long before the obligation a warning prepares for it: a driver remembers for a minute, and what comes
+    slowly for longer."""
+    neutral: ClassVar[str]
+    """What makes a warning true although nothing is due, so that it costs nothing."""
 
     @abstractmethod
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
@@ -104,6 +122,21 @@ class EventKind(ABC):
             drive: the moments so far, at least one.
         """
         ...
+
+    @abstractmethod
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """The fact, known to the agent at the last moment of a drive, that speaks against a warning of this kind;
+        None if none does. ``speaks_against`` asks only while nothing is sighted."""
+        ...
+
+    def speaks_against(self, drive: Sequence[Moment]) -> str | None:
+        """The fact that speaks against a warning of this kind at the last moment of a drive.
+
+        None if it is true: something of the kind is there, comes, or may be there for all that is known.
+        """
+        if any(not sighting.lookalike for sighting in self.sight(drive)):
+            return None
+        return self.against(drive)
 
     def settles(self, act: WatchAct, value: float | None) -> bool:
         """Whether an act is one that is right for an event.

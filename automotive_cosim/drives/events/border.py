@@ -47,8 +47,9 @@ class LimitUnits(EventKind):
 
     name = "limit_units"
     about = "beyond a border the signs have another unit of speed than the car shows"
-    bait = "a border beyond which the car already shows the unit of the signs"
+    lookalike = "a border beyond which the car already shows the unit of the signs"
     source = "our choice: told within 30 s, 670 m at 80 km/h, in which a driver meets the first sign"
+    neutral = "as long as the units differ"
     grace_s = 30.0
     alerts = frozenset[AlertKind]()
     says = ("mph", "miles", "km/h", "kilomet")
@@ -64,7 +65,7 @@ class LimitUnits(EventKind):
         words = f"signs in {signs}, the car shows {shown}"
         miles = 1.0 if signs == "mph" else 0.0
         if signs == shown:
-            yield Sighting(words, now.context.country, bait=True)
+            yield Sighting(words, now.context.country, lookalike=True)
         else:
             yield Sighting(words, now.context.country, due=True, hold_s=2.0, value=miles)
 
@@ -75,14 +76,20 @@ class LimitUnits(EventKind):
             written == wanted for path, written in act.writes if path == HMI.DISTANCE_UNIT.path
         )
 
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Signs in the unit of the display."""
+        signs, shown = drive[-1].context.speed_unit, shown_unit(drive[-1])
+        return f"signs in {signs}, and the car shows {shown}" if signs == shown else None
+
 
 class RuleChange(EventKind):
     """A country with another law on lamps, horn or phone, for the first time on this drive."""
 
     name = "rule_change"
     about = "beyond a border the law on lamps, horn or phone is another"
-    bait = "back in a country in which the car has been on this drive"
+    lookalike = "back in a country in which the car has been on this drive"
     source = "our choice: told within 50 s of the border"
+    neutral = "within a minute of the border"
     weight = 0.5
     grace_s = 48.0
     alerts = frozenset[AlertKind]()
@@ -95,12 +102,19 @@ class RuleChange(EventKind):
             return
         country = drive[-1].context.country
         if not crossed.is_new:
-            yield Sighting(f"back in {country}", country, bait=True)
+            yield Sighting(f"back in {country}", country, lookalike=True)
             return
         told = set(_law(crossed.before.context, verified=False))
         changed = [text for text in _law(drive[-1].context, verified=True) if text not in told]
         if changed:
             yield Sighting(f"another law in {country}: {'; '.join(changed)}", country, due=True, hold_s=2.0)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No border, or one into a country that the driver comes from."""
+        crossed, country = crossing(drive), drive[-1].context.country
+        if crossed is None:
+            return "no border in the last minute"
+        return None if crossed.is_new else f"back in {country}"
 
 
 def _law(context: GeoContext, *, verified: bool) -> Iterator[str]:

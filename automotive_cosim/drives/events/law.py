@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
 from automotive_cosim.cosim.moment import Moment
@@ -15,6 +15,8 @@ SLOW_KMH = 20.0
 """Below this speed, intelligent speed assistance need not act (Regulation (EU) 2021/1958, annex I)."""
 REACTION_S = 1.1
 """Mean time from a warning to the brake (lognormal in the road's model of the driver)."""
+TREND_S = 10.0
+"""Over how long a reading is compared with itself to tell whether it rises or falls."""
 BRAKING_MPS2 = 3.4
 """Comfortable deceleration of most drivers (AASHTO Green Book, stopping sight distance)."""
 
@@ -49,9 +51,29 @@ def says(context: GeoContext, topic: str, word: str) -> bool:
     return any(found.value == word for found in certain(context, topic))
 
 
+def may_say(context: GeoContext, topic: str, word: str) -> bool:
+    """Whether any rule on a topic, verified or not, may say ``required`` or ``forbidden`` here."""
+    rules = (found for found in context.rules if found.rule.topic == topic)
+    return any(
+        found.value == word if found.certain else any(case.value == word for case in found.rule.cases)
+        for found in rules
+    )
+
+
 def seen(moment: Moment, kind: SightKind) -> Sight | None:
     """What the car notices of a kind, as its screens show it; None if nothing."""
     return next((sight for sight in moment.sights if sight.kind is kind), None)
+
+
+def grows(drive: Sequence[Moment], path: str, by: float, within_s: float = TREND_S) -> bool:
+    """Whether a signal has grown at least by so much within the last seconds of a drive; with a negative ``by``,
+    whether it has fallen."""
+    now_s, value = drive[-1].time_s, float(drive[-1].signals[path])
+    for moment in reversed(drive):
+        if moment.time_s <= now_s - within_s:
+            change = value - float(moment.signals[path])
+            return change >= by if by > 0 else change <= by
+    return False
 
 
 def time_left_s(distance_m: float, speed_mps: float, end_mps: float = 0.0) -> float:

@@ -18,6 +18,7 @@ ALONE_S = 15.0
 """Euro NCAP's protocol for child presence detection: a first warning within 15 s after the car has been locked."""
 WARM_C = 28.0
 """From here on the air of the parked car makes it worse; our choice."""
+SOON_H = 1 / 6
 BREAK_AFTER_H = 2.0
 """The Highway Code, rule 91: a break of at least 15 minutes after every two hours of driving."""
 
@@ -27,8 +28,10 @@ class Fatigue(EventKind):
 
     name = "fatigue"
     about = "the driver has been driving for two hours without a break"
-    bait = "more than one hour, but not two"
+    lookalike = "more than one hour, but ten minutes or more short of two"
     source = "The Highway Code, rule 91: after two hours; deadline: 120 s, the next lay-by"
+    neutral = "the last ten minutes before"
+    lasts_s = 600.0
     grace_s = 120.0
     alerts = frozenset({AlertKind.FATIGUE})
     requests = (PullOver,)
@@ -39,7 +42,16 @@ class Fatigue(EventKind):
         if driven is None or driven.value is None:
             return
         due = driven.value >= BREAK_AFTER_H
-        yield Sighting(driven.text, due=due, hold_s=5.0 if due else 0.0, bait=not due)
+        yield Sighting(
+            driven.text, due=due, hold_s=5.0 if due else 0.0, lookalike=driven.value < BREAK_AFTER_H - SOON_H
+        )
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """A shorter time at the wheel."""
+        driven = seen(drive[-1], SightKind.DRIVING_TIME)
+        if driven is None or driven.value is None:
+            return "less than an hour at the wheel"
+        return f"{driven.value:.1f} h at the wheel; a break is due after {BREAK_AFTER_H:.0f}"
 
 
 class PhoneUse(EventKind):
@@ -47,10 +59,11 @@ class PhoneUse(EventKind):
 
     name = "phone"
     about = "the driver holds the phone and looks at it while the car moves"
-    bait = "a call by the phone in its cradle"
+    lookalike = "a call by the phone in its cradle"
     source = (
         "Regulation (EU) 2023/2590: gaze away for 6 s at 20 to 50 km/h, for 3.5 s above; deadline: as long again"
     )
+    neutral = "in the hand below 20 km/h"
     weight = 1.5
     grace_s = 6.0
     alerts = frozenset({AlertKind.DISTRACTION})
@@ -63,9 +76,20 @@ class PhoneUse(EventKind):
         if where == "AWAY" or kmh < SLOW_KMH:
             return
         if where == "CRADLE":
-            yield Sighting("the phone is used in its cradle", bait=True)
+            yield Sighting("the phone is used in its cradle", lookalike=True)
         else:
             yield Sighting(f"the phone in the driver's hand at {kmh:.0f} km/h", due=True, hold_s=gaze_s(kmh))
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No phone in the hand, or a parked car."""
+        signals = drive[-1].signals
+        match signals[CALL.PHONE.path]:
+            case "HAND":
+                return "the car is parked" if signals[MOTION.GEAR.path] == "P" else None
+            case "CRADLE":
+                return "the phone is in its cradle"
+            case _:
+                return "the driver uses no phone"
 
 
 class LeftBehind(EventKind):
@@ -73,11 +97,12 @@ class LeftBehind(EventKind):
 
     name = "left_behind"
     about = "the driver has left the parked car, and a child or a pet is alone in it"
-    bait = "a car that is left empty, or with a thing or an adult in it"
+    lookalike = "a car that is left empty, or with a thing or an adult in it"
     source = (
         "Euro NCAP, child presence detection: a warning within 15 s of leaving; deadline: the escalation, due 90 s "
         "after leaving"
     )
+    neutral = "the first 15 s after the driver has left"
     weight = 2.0
     grace_s = 75.0
     alerts = frozenset({AlertKind.VEHICLE})
@@ -92,8 +117,18 @@ class LeftBehind(EventKind):
         aboard = tuple(seated_by(signals))
         alone = [one.kind for one in aboard if one.kind.needs_care]
         if not alone or any(one.kind.is_person and not one.kind.needs_care for one in aboard):
-            yield Sighting(f"the driver has left; aboard: {', '.join(one.kind for one in aboard)}", bait=True)
+            yield Sighting(f"the driver has left; aboard: {', '.join(one.kind for one in aboard)}", lookalike=True)
             return
         air_c = float(signals[HVAC.FORECAST.path])
         words = f"{' and '.join(alone)} alone in the parked car, {air_c:.0f} degrees in {MINUTES:.0f} min"
         yield Sighting(words, due=True, hold_s=ALONE_S, severity=max(1.0, air_c / WARM_C))
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """A driver who is there, or nobody left who needs care."""
+        signals = drive[-1].signals
+        if signals[OCCUPANT.DRIVER.occupied.path]:
+            return "the driver is in the car"
+        if signals[MOTION.GEAR.path] != "P":
+            return None
+        aboard = ", ".join(one.kind for one in seated_by(signals)) or "nobody"
+        return f"the driver has left; aboard: {aboard}"

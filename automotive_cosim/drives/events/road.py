@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
-from automotive_cosim.cockpit.reach import RADAR_M
+from automotive_cosim.cockpit.reach import BLUE_LIGHT_M, HORIZON_M, RADAR_M
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
@@ -41,9 +41,25 @@ GAP_HOLD_S = 3.0
 GAP_FROM_KMH = 30.0
 HARD_MPS2 = 3.4
 """Deceleration to avoid a crash from which a conflict is serious (Archer, 2005: 3.35)."""
+STANDING_ALERTS = frozenset(
+    {
+        AlertKind.MOVE_OVER,
+        AlertKind.TRAFFIC,
+        AlertKind.LANE,
+        AlertKind.COLLISION,
+        AlertKind.DISTANCE,
+        AlertKind.SPEED,
+    }
+)
+"""Alerts of what stands ahead: each makes a driver slow down, keep back or move over, or says where."""
+MINUTE_S = 60.0
+EARLY_MPS2, EARLY_TTC_S = 1.0, 8.0
+"""Needed deceleration from which, and time to collision below which, a warning of a collision is early and not
+needless."""
 TRACTOR_KMH = (8.0, 40.0)
 FAST_ROAD_KMH = 65.0
 TRACTOR_DUE_S = 8.0
+SOON_S = 15.0
 
 
 class TunnelAhead(EventKind):
@@ -51,8 +67,9 @@ class TunnelAhead(EventKind):
 
     name = "tunnel"
     about = "a tunnel comes and the lamps would stay off in it"
-    bait = "a tunnel that is still a kilometre away"
+    lookalike = "a tunnel that is still a minute away"
     source = "10 s before the portal; deadline: the portal, less 1 s to switch"
+    neutral = "a tunnel within 500 m, or within a minute"
     alerts = frozenset({AlertKind.TUNNEL, AlertKind.VISIBILITY})
     writes: ClassVar[Mapping[str, Wanted]] = {
         LIGHTS.LOW_BEAM.path: on,
@@ -67,12 +84,23 @@ class TunnelAhead(EventKind):
             return
         words = f"a tunnel in {away_m:.0f} m"
         if away_m > NEAR_M:
-            if away_m <= 3 * NEAR_M:
-                yield Sighting(words, "far", bait=True)
+            if away_m <= 3 * NEAR_M and self.against(drive):
+                yield Sighting(words, "far", lookalike=True)
             return
         dark = not now.signals[LIGHTS.LOW_BEAM.path] and now.signals[LIGHTS.SWITCH.path] != "AUTO"
         left_s = away_m / mps
         yield Sighting(f"{words}, lamps off", due=dark and left_s <= PORTAL_S, left_s=left_s - 1.0)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No tunnel on the map's horizon, or one that is more than a minute away."""
+        now = drive[-1]
+        away_m = now.driving.ahead.tunnel_distance_m
+        if now.driving.road.in_tunnel:
+            return None if not now.signals[LIGHTS.LOW_BEAM.path] else "in the tunnel, with the dipped beam on"
+        if away_m is None or away_m > HORIZON_M:
+            return "no tunnel within 2 km"
+        left_s = away_m / max(now.driving.speed_mps, 0.1)
+        return f"the tunnel is {left_s:.0f} s away" if left_s > MINUTE_S else None
 
 
 class JamTail(EventKind):
@@ -80,8 +108,9 @@ class JamTail(EventKind):
 
     name = "jam_tail"
     about = "the car approaches the tail of a jam at speed"
-    bait = "traffic that flows slowly, but flows"
+    lookalike = "traffic that flows slowly, but flows"
     source = "15 s before the tail; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) end there"
+    neutral = "a jam or a closed road on the route within 2 km, at any speed"
     weight = 2.0
     alerts = frozenset({AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.DISTANCE, AlertKind.SPEED})
     requests = (SlowDown,)
@@ -94,7 +123,7 @@ class JamTail(EventKind):
         away_m = None if tail is None else tail.distance_m
         if away_m is None:
             if now.driving.around.relative_speed < 0.6 and mps > 2.0:
-                yield Sighting(f"traffic at {now.driving.around.relative_speed:.0%}", bait=True)
+                yield Sighting(f"traffic at {now.driving.around.relative_speed:.0%}", lookalike=True)
             return
         if not 0 < away_m <= JAM_M or speed_kmh(now) < JAM_FROM_KMH:
             return
@@ -103,6 +132,14 @@ class JamTail(EventKind):
             due=away_m <= JAM_DUE_S * mps,
             left_s=time_left_s(away_m, mps),
         )
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No jam on the route."""
+        now = drive[-1]
+        if seen(now, SightKind.JAM) is not None or seen(now, SightKind.CLOSURE) is not None:
+            return None
+        flows = now.driving.around.relative_speed
+        return f"no jam within 2 km; traffic flows at {flows:.0%} of its usual speed"
 
 
 class StandsAhead(EventKind):
@@ -113,6 +150,7 @@ class StandsAhead(EventKind):
     source = (
         "12 s before it; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) to three fifths of the speed"
     )
+    neutral = "one on the route within 2 km, at any speed"
     requests = (SlowDown, Reroute)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
@@ -122,7 +160,7 @@ class StandsAhead(EventKind):
         if there is None or there.distance_m is None:
             kind = IncidentKind(self.sights.value)
             if any(incident.kind is kind for incident in now.driving.ahead.incidents):
-                yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", bait=True)
+                yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", lookalike=True)
         elif mps > 5.0:
             yield Sighting(
                 there.text,
@@ -130,15 +168,24 @@ class StandsAhead(EventKind):
                 left_s=time_left_s(there.distance_m, mps, PASS_SHARE * mps),
             )
 
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """None of it on the route."""
+        now, kind = drive[-1], IncidentKind(self.sights.value)
+        if seen(now, self.sights) is not None:
+            return None
+        words = kind.value.replace("_", " ")
+        elsewhere = any(incident.kind is kind for incident in now.driving.ahead.incidents)
+        return f"{words} reported on another road" if elsewhere else f"no {words} reported within 2 km"
+
 
 class BreakdownAhead(StandsAhead):
     """A broken-down vehicle ahead."""
 
     name = "breakdown"
     about = "a broken-down vehicle stands ahead on the route"
-    bait = "one that is reported on another road or the other carriageway"
+    lookalike = "one that is reported on another road or the other carriageway"
     sights = SightKind.BREAKDOWN
-    alerts = frozenset({AlertKind.MOVE_OVER, AlertKind.TRAFFIC, AlertKind.COLLISION, AlertKind.SPEED})
+    alerts = STANDING_ALERTS
 
 
 class RoadworksAhead(StandsAhead):
@@ -146,10 +193,10 @@ class RoadworksAhead(StandsAhead):
 
     name = "roadworks"
     about = "roadworks narrow the road ahead on the route"
-    bait = "roadworks that are reported on another road or the other carriageway"
+    lookalike = "roadworks that are reported on another road or the other carriageway"
     weight = 1.0
     sights = SightKind.ROADWORKS
-    alerts = frozenset({AlertKind.TRAFFIC, AlertKind.MOVE_OVER, AlertKind.LANE, AlertKind.SPEED})
+    alerts = STANDING_ALERTS
 
 
 class BlueLight(EventKind):
@@ -157,8 +204,9 @@ class BlueLight(EventKind):
 
     name = "blue_light"
     about = "an emergency vehicle with blue light comes from behind and wants to pass"
-    bait = "a plain van close behind"
+    lookalike = "a plain van close behind"
     source = "150 m: 8 s at a closing speed of 70 km/h; deadline: 8 s"
+    neutral = "a blue light behind within 300 m"
     weight = 2.0
     grace_s = 8.0
     alerts = frozenset({AlertKind.YIELD, AlertKind.CORRIDOR, AlertKind.MOVE_OVER})
@@ -172,7 +220,14 @@ class BlueLight(EventKind):
             due = behind.distance_m <= BLUE_DUE_M
             yield Sighting(f"a blue light {behind.distance_m:.0f} m behind", due=due, hold_s=1.0)
         elif follower is not None:
-            yield Sighting(f"a car {follower.distance_m or 0:.0f} m behind comes closer", bait=True)
+            yield Sighting(f"a car {follower.distance_m or 0:.0f} m behind comes closer", lookalike=True)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Nobody behind with a blue light."""
+        follower = seen(drive[-1], SightKind.VEHICLE_BEHIND)
+        if follower is not None:
+            return f"a vehicle without a blue light {follower.distance_m or 0:.0f} m behind"
+        return f"no blue light within {BLUE_LIGHT_M:.0f} m"
 
 
 class LeaderClose(EventKind):
@@ -180,8 +235,9 @@ class LeaderClose(EventKind):
 
     name = "leader_close"
     about = "the gap to the vehicle ahead is shorter than the law asks, or than a driver needs to react"
-    bait = "a gap a little longer than that"
+    lookalike = "a gap a little longer than that"
     source = "the law of the place, else 1 s; 3 s to reopen a gap; deadline: 6 s"
+    neutral = "such a gap below 30 km/h, or shorter than a rule asks that is not verified"
     grace_s = 6.0
     alerts = frozenset({AlertKind.DISTANCE, AlertKind.COLLISION})
     requests = (SlowDown,)
@@ -200,14 +256,27 @@ class LeaderClose(EventKind):
         words = f"{gap_s:.1f} s behind the vehicle ahead, {least_s:.1f} s are asked"
         if gap_s < least_s:
             yield Sighting(words, due=True, hold_s=GAP_HOLD_S, severity=least_s / max(gap_s, 0.1))
-        elif gap_s < least_s + 0.5:
-            yield Sighting(words, bait=True)
+        elif gap_s < least_s + 0.5 and self.against(drive):
+            yield Sighting(words, lookalike=True)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Nobody ahead, or a gap as long as any rule asks."""
+        now = drive[-1]
+        leader, mps = _in_sight(now), now.driving.speed_mps
+        if leader is None:
+            return f"nobody within {RADAR_M:.0f} m ahead"
+        if mps < 1.0:
+            return "the car stands"
+        least_s = max([CLOSE_S, *_lawful_s(now, verified=False)])
+        gap_s = leader.gap_m / mps
+        return None if gap_s < least_s else f"a gap of {gap_s:.1f} s, where {least_s:.1f} s are asked"
 
 
-def _lawful_s(now: Moment) -> Iterator[float]:
-    """The time gaps that verified law asks for here."""
+def _lawful_s(now: Moment, *, verified: bool = True) -> Iterator[float]:
+    """The time gaps that law asks for here; that which is not verified obliges nobody."""
     mps = max(now.driving.speed_mps, 1.0)
-    for found in certain(now.context, "following_distance"):
+    rules = (found for found in now.context.rules if found.rule.topic == "following_distance")
+    for found in certain(now.context, "following_distance") if verified else rules:
         if isinstance(found.value, float):
             yield found.value if found.rule.unit == "s" else found.value / mps
 
@@ -217,14 +286,15 @@ class LeaderBrakes(EventKind):
 
     name = "leader_brakes"
     about = "only hard braking avoids the vehicle ahead"
-    bait = "a vehicle ahead that slows down, with room to brake gently"
+    lookalike = "a vehicle ahead that is slower, with room to brake gently"
     source = "ISO 15623: by needed deceleration, 3.4 m/s2 (Archer, 2005); deadline: time to collision less 1.1 s"
+    neutral = "a needed deceleration of 1 m/s2 or more, or less than 8 s to collision"
     weight = 2.0
-    alerts = frozenset({AlertKind.COLLISION, AlertKind.DISTANCE})
+    alerts = frozenset({AlertKind.COLLISION, AlertKind.DISTANCE, AlertKind.TRAFFIC})
     requests = (SlowDown,)
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """Sights the vehicle ahead from half that deceleration on."""
+        """Sights the vehicle ahead from half a metre per second squared on."""
         leader = _in_sight(drive[-1])
         if leader is None or leader.drac_mps2 is None or leader.time_to_collision_s is None:
             return
@@ -233,7 +303,21 @@ class LeaderBrakes(EventKind):
             left_s = leader.time_to_collision_s - REACTION_S
             yield Sighting(words, due=True, left_s=left_s, severity=leader.drac_mps2 / HARD_MPS2)
         elif leader.drac_mps2 >= HARD_MPS2 / 2:
-            yield Sighting(words, bait=True)
+            yield Sighting(words)
+        elif leader.drac_mps2 >= EARLY_MPS2 / 2 and self.against(drive):
+            yield Sighting(words, lookalike=True)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Nobody ahead to run into, or room to brake gently."""
+        leader = _in_sight(drive[-1])
+        if leader is None:
+            return f"nobody within {RADAR_M:.0f} m ahead"
+        ttc_s, needed_mps2 = leader.time_to_collision_s, leader.drac_mps2 or 0.0
+        if ttc_s is None:
+            return f"the vehicle ahead comes no closer, {leader.gap_m:.0f} m ahead"
+        if needed_mps2 >= EARLY_MPS2 or ttc_s < EARLY_TTC_S:
+            return None
+        return f"{ttc_s:.0f} s to collision, and braking with {needed_mps2:.1f} m/s2 is enough"
 
 
 class TractorAhead(EventKind):
@@ -241,8 +325,9 @@ class TractorAhead(EventKind):
 
     name = "tractor"
     about = "the car comes up fast behind a slow vehicle on a fast road"
-    bait = "a slow vehicle ahead in a town"
+    lookalike = "a slow vehicle ahead in a town"
     source = "8 s to the vehicle ahead; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO)"
+    neutral = "a vehicle that the car would reach within 15 s, on any road"
     alerts = frozenset(
         {AlertKind.TRAFFIC, AlertKind.DISTANCE, AlertKind.COLLISION, AlertKind.SPEED, AlertKind.MOVE_OVER}
     )
@@ -261,10 +346,22 @@ class TractorAhead(EventKind):
             return
         words = f"a vehicle at {leader.speed_mps * KMH_PER_MPS:.0f} km/h {leader.gap_m:.0f} m ahead"
         if limit_kmh < FAST_ROAD_KMH:
-            yield Sighting(words, bait=True)
+            if self.against(drive):
+                yield Sighting(words, lookalike=True)
             return
         left_s = time_left_s(leader.gap_m, closing_mps)
         yield Sighting(words, due=leader.gap_m <= TRACTOR_DUE_S * closing_mps, left_s=left_s)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Nobody ahead, or nobody whom the car would reach soon."""
+        leader, mps = _in_sight(drive[-1]), drive[-1].driving.speed_mps
+        if leader is None:
+            return f"nobody within {RADAR_M:.0f} m ahead"
+        closing_mps = mps - leader.speed_mps
+        if closing_mps <= 1.0:
+            return f"the vehicle ahead drives {leader.speed_mps * KMH_PER_MPS:.0f} km/h, as fast as the car"
+        left_s = leader.gap_m / closing_mps
+        return f"{left_s:.0f} s to the vehicle ahead" if left_s > SOON_S else None
 
 
 def _in_sight(now: Moment) -> OtherVehicle | None:

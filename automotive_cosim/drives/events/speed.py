@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from automotive_cosim.cockpit.reach import HORIZON_M
 from automotive_cosim.cockpit.signals import ADAS
-from automotive_cosim.contracts import AlertKind, Cruise, PullOver, SlowDown
+from automotive_cosim.contracts import AlertKind, Cruise, PullOver, SightKind, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
 from automotive_cosim.drives.events.law import (
@@ -13,11 +14,15 @@ from automotive_cosim.drives.events.law import (
     SLOW_KMH,
     is_reduced,
     limit_here,
+    seen,
     speed_kmh,
     time_left_s,
 )
 from automotive_cosim.drives.margins import hold_s, margin_kmh
+from automotive_cosim.geo.breaches import binding_limit
 
+FOG_M = 1000.0
+"""Sight below which there is fog (WMO No. 8)."""
 AHEAD_M = 500.0
 """How far ahead the navigation announces a limit: the horizon that ADASIS-based map systems send at least."""
 COASTING_MPS2 = 1.0
@@ -55,8 +60,9 @@ class OverLimit(SpeedKind):
 
     name = "over_limit"
     about = "the car is faster than the sign or the law of the road allows"
-    bait = "a little above the limit, within the error limit of speed meters: 52 in a 50"
+    lookalike = "a little above the limit, within the error limit of speed meters: 52 in a 50"
     source = "Regulation (EU) 2021/1958, annex I: the tone after 3 to 6 s by ratio; deadline: the tone's 5 s twice"
+    neutral = "below 20 km/h, by a rule that is not verified, or where no limit is known"
     grace_s = 10.0
     alerts = frozenset({AlertKind.SPEED})
 
@@ -68,15 +74,28 @@ class OverLimit(SpeedKind):
             return
         yield from _over(kmh, limit.kmh, f"{kmh:.0f} km/h where {limit.kmh:.0f} apply")
 
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """A limit, by whatever rule, that the car keeps."""
+        now = drive[-1]
+        limit, kmh = binding_limit(now.context), speed_kmh(now)
+        if limit is None:
+            is_lifted = now.driving.road.limit.is_posted
+            return f"{kmh:.0f} km/h where no limit applies" if is_lifted else None
+        return None if kmh > limit.kmh + margin_kmh(limit.kmh) else _kept(kmh, limit.kmh)
+
+
+def _kept(kmh: float, limit_kmh: float) -> str:
+    return f"{kmh:.0f} km/h where {limit_kmh:.0f} apply, within {margin_kmh(limit_kmh):.0f} km/h"
+
 
 def _over(kmh: float, limit_kmh: float, words: str) -> Iterator[Sighting]:
-    """The sighting of a speed above a limit: a bait within the margin, due above it."""
+    """The sighting of a speed above a limit: a look-alike within the margin, due above it."""
     excess_kmh = kmh - limit_kmh
     if excess_kmh <= 1.0:
         return
     subject = f"{limit_kmh:.0f}"
     if excess_kmh <= margin_kmh(limit_kmh):
-        yield Sighting(words, subject, bait=True, value=limit_kmh)
+        yield Sighting(words, subject, lookalike=True, value=limit_kmh)
         return
     hold = hold_s(kmh / limit_kmh)
     severity = max(1.0, excess_kmh / 10)
@@ -88,8 +107,9 @@ class LimitFalls(SpeedKind):
 
     name = "limit_falls"
     about = "the limit falls ahead, and the car no longer gets down to it by coasting"
-    bait = "a lower limit ahead that the car already keeps"
+    lookalike = "a lower limit ahead that the car already keeps"
     source = "coasting 1 m/s2; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) end at the sign"
+    neutral = "a lower limit within 2 km, which the car does not keep yet"
     weight = 0.5
     alerts = frozenset({AlertKind.SPEED, AlertKind.SCHOOL})
 
@@ -105,16 +125,27 @@ class LimitFalls(SpeedKind):
         if here is not None and following.kmh > here.kmh - 9.0:
             return
         words, subject = f"{following.kmh:.0f} km/h in {away_m:.0f} m at {kmh:.0f} km/h", f"{following.kmh:.0f}"
-        if kmh <= following.kmh + 1.0:
-            yield Sighting(words, subject, bait=True, value=following.kmh)
-            return
         right_mps = following.mps + margin_kmh(following.kmh) / 3.6
         mps = now.driving.speed_mps
         if mps <= right_mps:
+            yield Sighting(words, subject, lookalike=True, value=following.kmh)
             return
         coasting_m = (mps**2 - right_mps**2) / (2 * COASTING_MPS2) + mps * REACTION_S
         left_s = time_left_s(away_m, mps, right_mps)
         yield Sighting(words, subject, due=away_m <= coasting_m, left_s=left_s, value=following.kmh)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No lower limit on the map's horizon, or one that the car keeps already."""
+        now = drive[-1]
+        ahead, kmh = now.driving.ahead, speed_kmh(now)
+        following, away_m = ahead.next_limit, ahead.next_limit_distance_m
+        if following is None or away_m is None or away_m > HORIZON_M or not following.is_posted:
+            return "no other limit is signed within 2 km"
+        if following.kmh is None:
+            return f"the limit ends in {away_m:.0f} m"
+        if kmh > following.kmh + margin_kmh(following.kmh):
+            return None
+        return f"{kmh:.0f} km/h, and {following.kmh:.0f} apply in {away_m:.0f} m"
 
 
 def is_school_time(moment: Moment) -> bool:
@@ -128,8 +159,9 @@ class SchoolHours(SpeedKind):
 
     name = "school_zone"
     about = "the car is in a school zone at its hours, faster than its sign"
-    bait = "a school zone outside its hours, or a little above its sign"
+    lookalike = "a school zone outside its hours, or a little above its sign"
     source = "Regulation (EU) 2021/1958, annex I, the tone after 3 s; deadline: 8 s, 100 m at 50 km/h"
+    neutral = "a zone ahead on the route"
     weight = 2.0
     grace_s = 8.0
     alerts = frozenset({AlertKind.SCHOOL, AlertKind.SPEED})
@@ -143,11 +175,11 @@ class SchoolHours(SpeedKind):
         limit_kmh = road.limit.kmh
         if not is_school_time(now) or limit_kmh is None:
             if road.limit_hours:
-                yield Sighting("a school zone outside its hours", road.name, bait=True, value=limit_kmh)
+                yield Sighting("a school zone outside its hours", road.name, lookalike=True, value=limit_kmh)
             return
         if 1.0 < kmh - limit_kmh <= margin_kmh(limit_kmh):
             yield Sighting(
-                f"{kmh:.0f} km/h in a school zone of {limit_kmh:.0f}", road.name, bait=True, value=limit_kmh
+                f"{kmh:.0f} km/h in a school zone of {limit_kmh:.0f}", road.name, lookalike=True, value=limit_kmh
             )
             return
         over_kmh = kmh - limit_kmh - margin_kmh(limit_kmh)
@@ -160,14 +192,26 @@ class SchoolHours(SpeedKind):
             value=limit_kmh,
         )
 
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No zone, a zone outside its hours, or one whose sign the car keeps."""
+        now = drive[-1]
+        road, kmh = now.driving.road, speed_kmh(now)
+        if not road.school_zone:
+            return None if seen(now, SightKind.SCHOOL_ZONE) is not None else "no school zone within 2 km"
+        if not is_school_time(now) or road.limit.kmh is None:
+            return f"the zone's limit applies at other hours: {road.limit_hours}" if road.limit_hours else None
+        over = kmh > road.limit.kmh + margin_kmh(road.limit.kmh)
+        return None if over else _kept(kmh, road.limit.kmh)
+
 
 class WeatherSpeed(SpeedKind):
     """Faster than weather or sight allows."""
 
     name = "weather_speed"
     about = "rain, fog or snow lowers the limit by law, or the car cannot stop within what its driver sees"
-    bait = "a road whose limit is lower in rain or fog, in dry clear weather"
+    lookalike = "a road whose limit is lower in rain or fog, in dry clear weather"
     source = "the law of the place; Vienna Convention, art. 13; times as over the limit"
+    neutral = "fog, of less than a kilometre of sight; a lower limit in this weather by a rule that is not verified"
     weight = 1.5
     grace_s = 10.0
     alerts = frozenset({AlertKind.SPEED, AlertKind.VISIBILITY, AlertKind.WEATHER, AlertKind.SLIPPERY})
@@ -180,12 +224,11 @@ class WeatherSpeed(SpeedKind):
             return
         if limit is not None and is_reduced(context, limit):
             words = f"{kmh:.0f} km/h where {limit.kmh:.0f} apply {limit.text}"
-            over = [sighting for sighting in _over(kmh, limit.kmh, words) if not sighting.bait]
+            over = [sighting for sighting in _over(kmh, limit.kmh, words) if not sighting.lookalike]
             if over:  # else one may still see too little to stop
                 yield from over
                 return
-        mps, friction = now.driving.speed_mps, max(now.driving.road.friction, 0.1)
-        stopping_m = mps * REACTION_S + mps**2 / (2 * friction * 9.81)
+        stopping_m = _stopping_m(now)
         if not now.driving.road.in_tunnel and stopping_m > now.weather.visibility:
             words = f"needs {stopping_m:.0f} m to stop and sees {now.weather.visibility:.0f} m"
             yield Sighting(words, "sight", due=True, hold_s=3.0, severity=stopping_m / now.weather.visibility)
@@ -193,5 +236,24 @@ class WeatherSpeed(SpeedKind):
         for reduced in context.reduced_limits:
             value = reduced.rule.cases[0].value
             if reduced.value is None and isinstance(value, float) and kmh > value + margin_kmh(value):
-                yield Sighting(f"{reduced.rule.text}, which it is not", bait=True, value=value)
+                yield Sighting(f"{reduced.rule.text}, which it is not", lookalike=True, value=value)
                 return
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Sight enough to stop, and no lower limit in this weather that the car exceeds."""
+        now = drive[-1]
+        kmh, sight_m = speed_kmh(now), now.weather.visibility
+        for reduced in now.context.reduced_limits:
+            value = reduced.rule.cases[0].value
+            applies = reduced.value is not None or now.weather.precipitation > 0
+            if applies and isinstance(value, float) and kmh > value + margin_kmh(value):
+                return None
+        if sight_m < FOG_M and not now.driving.road.in_tunnel:
+            return None
+        return f"the car stops within {_stopping_m(now):.0f} m, and its driver sees {sight_m:.0f} m"
+
+
+def _stopping_m(now: Moment) -> float:
+    """The distance to stop, with the driver's reaction."""
+    mps, friction = now.driving.speed_mps, max(now.driving.road.friction, 0.1)
+    return mps * REACTION_S + mps**2 / (2 * friction * 9.81)

@@ -21,7 +21,7 @@ class DriveEvent:
     kind: str
     subject: str
     words: str
-    bait: bool
+    lookalike: bool
     weight: float
     observable_s: float
     last_s: float
@@ -57,7 +57,7 @@ class Tracker:
         now_s = drive[-1].time_s
         opened = []
         for kind in self._kinds.values():
-            seen = {(kind.name, sighting.subject, sighting.bait): sighting for sighting in kind.sight(drive)}
+            seen = {(kind.name, sighting.subject, sighting.lookalike): sighting for sighting in kind.sight(drive)}
             for key, sighting in seen.items():
                 event = self._latest.get(key)
                 if event is None or (event.ended and now_s - event.last_s > REOPEN_S):
@@ -75,13 +75,13 @@ class Tracker:
             kind=kind.name,
             subject=sighting.subject,
             words=sighting.words,
-            bait=sighting.bait,
+            lookalike=sighting.lookalike,
             weight=kind.weight,
             observable_s=now_s,
             last_s=now_s,
             value=sighting.value,
         )
-        self._latest[kind.name, sighting.subject, sighting.bait] = event
+        self._latest[kind.name, sighting.subject, sighting.lookalike] = event
         self.events.append(event)
         return event
 
@@ -89,7 +89,7 @@ class Tracker:
         event.last_s, event.ended = now_s, False
         if sighting.severity > event.severity_at(now_s):
             event.severities.append((now_s, sighting.severity))
-        if not sighting.due or sighting.bait:
+        if not sighting.due or sighting.lookalike:
             event.due_since_s = None
             return
         event.due_until_s = now_s

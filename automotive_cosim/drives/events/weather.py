@@ -5,17 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
-from automotive_cosim.cockpit.screens.notices import NOTICED
+from automotive_cosim.cockpit.notices import NOTICED
 from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, off, on
-from automotive_cosim.drives.events.law import SLOW_KMH, speed_kmh
+from automotive_cosim.drives.events.law import SLOW_KMH, grows, speed_kmh
 
 ICY = 0.5
 """Friction of snow, slush and ice (Wallman and Astrom, VTI 911A, 2001); a wet road has 0.7 to 0.8."""
 ICY_FROM_KMH = 40.0
 """Faster than this, stopping on packed snow (0.25) takes over 30 m."""
+DRY = 0.9
+"""Friction from which a road is dry."""
+GROWTH = 0.01
+"""Share of the glass by which a film or fog on it grows within ten seconds, at least, on its way to an event."""
 COLD_C = 4.0
 """Cars warn of possible ice from this temperature."""
 
@@ -25,8 +29,9 @@ class GlassFogs(EventKind):
 
     name = "glass_fog"
     about = "the windshield fogs inside while the car moves"
-    bait = "a breath of mist on the glass, that no screen speaks of"
+    lookalike = "a breath of mist on the glass, that no screen speaks of"
     source = "a fifth of the light is lost, as the screens say; deadline: 20 s, what a defroster takes"
+    neutral = "any more, while it grows"
     grace_s = 20.0
     alerts = frozenset({AlertKind.VISIBILITY})
     writes: ClassVar[Mapping[str, Wanted]] = {
@@ -45,10 +50,17 @@ class GlassFogs(EventKind):
         if fog < NOTICED / 4 or speed_kmh(now) < 1.0:
             return
         words = f"windshield fogged by {fog:.0%}"
-        if fog < NOTICED:
-            yield Sighting(words, bait=True)
-        else:
+        if fog >= NOTICED:
             yield Sighting(words, due=True, hold_s=3.0, severity=fog / NOTICED)
+        else:
+            yield Sighting(words, lookalike=not grows(drive, GLASS.WINDSHIELD_FOG.path, GROWTH))
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Glass that is clear, or a mist on it that does not grow."""
+        fog = float(drive[-1].signals[GLASS.WINDSHIELD_FOG.path])
+        if fog >= NOTICED or grows(drive, GLASS.WINDSHIELD_FOG.path, GROWTH):
+            return None
+        return f"the windshield is fogged by {fog:.0%}, and no more than before"
 
 
 class Wipers(EventKind):
@@ -56,8 +68,9 @@ class Wipers(EventKind):
 
     name = "wipers"
     about = "rain covers the windshield and the wipers are off"
-    bait = "a few drops that cover less than a fifth of the glass"
+    lookalike = "a few drops that cover less than a fifth of the glass"
     source = "a fifth of the light is lost; deadline: 10 s"
+    neutral = "any more, while it grows"
     alerts = frozenset({AlertKind.VISIBILITY, AlertKind.WEATHER})
     writes: ClassVar[Mapping[str, Wanted]] = {BODY.FRONT_WIPER.path: lambda value: value != "OFF"}
 
@@ -71,7 +84,17 @@ class Wipers(EventKind):
         if film >= NOTICED:
             yield Sighting(words, due=True, hold_s=3.0, severity=film / NOTICED)
         elif float(now.signals[BODY.RAIN_INTENSITY.path]) > 0:
-            yield Sighting(words, bait=True)
+            yield Sighting(words, lookalike=not grows(drive, GLASS.WINDSHIELD_FILM.path, GROWTH))
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Wipers that wipe, or glass that is dry enough and becomes no wetter."""
+        signals = drive[-1].signals
+        film, wipers = float(signals[GLASS.WINDSHIELD_FILM.path]), signals[BODY.FRONT_WIPER.path]
+        if wipers != "OFF":
+            return f"the wipers are on: {str(wipers).lower().replace('_', ' ')}"
+        if film >= NOTICED or grows(drive, GLASS.WINDSHIELD_FILM.path, GROWTH):
+            return None
+        return f"the windshield is covered by {film:.0%}, and no more than before"
 
 
 class Slippery(EventKind):
@@ -79,8 +102,9 @@ class Slippery(EventKind):
 
     name = "slippery"
     about = "the road has the grip of snow or ice and the car is fast"
-    bait = "cold, but a dry road"
+    lookalike = "cold, but a dry road"
     source = "friction: VTI meddelande 911A; deadline: 20 s, 450 m at 80 km/h"
+    neutral = "a wet road; snow or ice below 40 km/h"
     weight = 1.5
     grace_s = 20.0
     alerts = frozenset({AlertKind.SLIPPERY, AlertKind.WEATHER})
@@ -96,7 +120,16 @@ class Slippery(EventKind):
         if friction < ICY:
             words = f"{kmh:.0f} km/h on a road with friction {friction:.2f}"
             yield Sighting(words, due=kmh > ICY_FROM_KMH, hold_s=5.0, severity=ICY / friction)
-        elif friction < 0.9:
+        elif friction < DRY:
             yield Sighting(f"a wet road, friction {friction:.2f}", "wet")
         elif now.weather.temperature_2m <= COLD_C:
-            yield Sighting(f"{now.weather.temperature_2m:.0f} degrees and dry", bait=True)
+            yield Sighting(f"{now.weather.temperature_2m:.0f} degrees and dry", lookalike=True)
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """A dry road."""
+        now = drive[-1]
+        if now.driving.road.friction < DRY and not now.driving.road.in_tunnel:
+            return None
+        if now.weather.precipitation > 0 and not now.driving.road.in_tunnel:
+            return None
+        return f"the road is dry, at {now.weather.temperature_2m:.0f} degrees"

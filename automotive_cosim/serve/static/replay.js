@@ -66,7 +66,7 @@ export async function replayPage(query, id, episode) {
     heading.replaceChildren(
       h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).flatMap((each, index) => (index ? [" · ", each] : [each])))),
       run.of_study ? h("span", { class: running ? "pill live" : "pill quiet" }, running ? "Running" : "Ended")
-        : run.kind === "drive" && !running ? h("span", { class: "pill" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.bait && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
+        : run.kind === "drive" && !running ? h("span", { class: "pill" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.lookalike && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
     live.hidden = !running;
     const parts = Object.entries(run.verdict?.parts ?? {});
     verdict.replaceChildren(...(parts.length ? [h("h2", {}, "Verdict"), h("ol", { class: "card parts" },
@@ -89,7 +89,7 @@ export async function replayPage(query, id, episode) {
       return mark;
     }));
     marks.append(...(run.spans ?? []).filter((each) => each.outcome !== "void").map((each) => {
-      const bar = h("i", { class: `span ${each.bait ? "bait" : ["hit", "prepared", "prevented"].includes(each.outcome) ? "good" : "bad"}`, title: `${each.kind}: ${each.words} [${plain(each.outcome)}]` });
+      const bar = h("i", { class: `span ${each.lookalike ? "lookalike" : ["hit", "prepared", "prevented"].includes(each.outcome) ? "good" : "bad"}`, title: `${each.kind}: ${each.words} [${plain(each.outcome)}]` });
       bar.style.left = `${100 * (each.from_s - begin()) / span}%`;
       bar.style.width = `max(3px, ${100 * (each.to_s - each.from_s) / span}%)`;
       return bar;

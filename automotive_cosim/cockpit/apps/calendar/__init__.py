@@ -1,0 +1,1 @@
+"""Calendar: the day's appointments."""

@@ -1,0 +1,24 @@
+"""Calendar: the day's appointments."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.apps.calendar.screens import appointment, calendar
+from automotive_cosim.cockpit.apps.calendar.state import agenda
+from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts.text import say
+
+APP = App(
+    name="calendar",
+    title=say("Calendar"),
+    icon=Icon.CALENDAR,
+    order=16,
+    where=Where.STORE,
+    about=say("Today's appointments and how to get there"),
+    pages={"calendar": Page(calendar, Room.ONE), "appointment": Page(appointment, Room.ONE)},
+    preinstalled=False,
+    starts=lambda state, rng: (agenda(rng, state.of(Gazetteer)),),
+    turn=5,
+)

@@ -1,0 +1,117 @@
+"""Calendar: the day's appointments, and one of them, to be moved and removed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from automotive_cosim.cockpit.apps.calendar.state import Agenda, Appointment
+from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column
+from automotive_cosim.cockpit.messages import Back, Show
+from automotive_cosim.cockpit.parts import content, gone, note, picked_at, rows, title
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Row, Widget
+from automotive_cosim.contracts.text import joined, say
+
+MOVES_MIN = (
+    ("hour_earlier", "-1 h", -60),
+    ("earlier", "-15 min", -15),
+    ("later", "+15 min", 15),
+    ("hour_later", "+1 h", 60),
+)
+"""Key, text and minutes of the buttons that move an appointment."""
+
+
+def calendar(state: State) -> tuple[Widget, ...]:
+    """The day's appointments; each leads to its place."""
+    area = content(state)
+    inner = area.inset(28, 20)
+    agenda = state.of(Agenda).entries
+    date = say("Today") if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
+
+    def line(index: int, cell: Rect) -> Row:
+        entry = agenda[index]
+        return Row(
+            rect=cell,
+            key=f"calendar.{index}",
+            raised=True,
+            text=joined(" ", (entry.at, entry.title)),
+            detail=entry.place,
+            trail=say("Open"),
+            icon=Icon.CALENDAR,
+            on_tap=Show("appointment", entry.name),
+        )
+
+    return (
+        Card(
+            rect=area,
+            children=(
+                title(inner.top(40), Icon.CALENDAR, date, "calendar.date"),
+                rows(inner.below(56), "calendar.entries", say("Appointments"), state, len(agenda), line, height=76)
+                if agenda
+                else note(inner.below(56), "calendar.empty", say("Nothing today")),
+            ),
+        ),
+    )
+
+
+def appointment(state: State) -> tuple[Widget, ...]:
+    """The entry that was tapped."""
+    area = content(state)
+    inner = area.inset(28, 20)
+    head, _, where, _, times, _, acts = column(inner, 40, 40, 56, 64, 72, REST, 72)
+    agenda = state.of(Agenda).entries
+    at = picked_at(state, "appointment", [entry.name for entry in agenda])
+    if at is None:
+        return gone(inner, "appointment", say("This appointment is no longer there"))
+    entry = agenda[at]
+
+    def put(others: tuple[Appointment, ...], said: str) -> Put:
+        return Put(Agenda(others), said)
+
+    def moved(by_min: int) -> Put:
+        hours, minutes = map(int, entry.at.split(":"))
+        then = (60 * hours + minutes + by_min) % 1440
+        new = replace(entry, at=f"{then // 60:02d}:{then % 60:02d}")
+        return put(
+            (*agenda[:at], new, *agenda[at + 1 :]), say("{title} is at {time}", title=entry.title, time=new.at)
+        )
+
+    cells = times.columns(len(MOVES_MIN), 12)
+    back, there, remove = acts.columns(3, 16)
+    return (
+        Card(
+            rect=area,
+            children=(
+                title(head, Icon.CALENDAR, joined(" ", (entry.at, entry.title)), "appointment.title"),
+                Label(
+                    rect=where,
+                    key="appointment.place",
+                    text=entry.place,
+                    description=say("Place"),
+                    style=Type.HEADLINE,
+                ),
+                *(
+                    Button(rect=cell, key=f"appointment.{key}", text=text, icon=Icon.CLOCK, on_tap=moved(by_min))
+                    for cell, (key, text, by_min) in zip(cells, MOVES_MIN, strict=True)
+                ),
+                Button(rect=back, key="appointment.back", text=say("Back"), icon=Icon.BACK, on_tap=Back()),
+                Button(
+                    rect=there,
+                    key="appointment.place_there",
+                    text=say("Show the place"),
+                    icon=Icon.GOAL,
+                    on_tap=Show("place", entry.place),
+                ),
+                Button(
+                    rect=remove,
+                    key="appointment.remove",
+                    text=say("Remove"),
+                    icon=Icon.DELETE,
+                    on_tap=put((*agenda[:at], *agenda[at + 1 :]), say("{name} is removed", name=entry.title)),
+                ),
+            ),
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Charging: the battery, its charge limit and schedule, and stations nearby."""

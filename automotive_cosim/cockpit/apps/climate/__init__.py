@@ -1,0 +1,1 @@
+"""Climate: both seats, fan and air, glass, and a schedule."""

@@ -1,0 +1,20 @@
+"""Climate: both seats, fan and air, glass, and a schedule."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.apps.climate.screens import climate, comfort
+from automotive_cosim.cockpit.apps.climate.state import ClimateSchedule
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts.text import say
+
+APP = App(
+    name="climate",
+    title=say("Climate"),
+    icon=Icon.CLIMATE,
+    order=3,
+    where=Where.DOCK,
+    pages={"climate": Page(climate), "comfort": Page(comfort)},
+    aliases={"hvac": ""},
+    starts=lambda state, rng: (ClimateSchedule(),),
+)

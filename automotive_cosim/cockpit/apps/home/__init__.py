@@ -1,0 +1,1 @@
+"""Home: the map, the drive, and every app at a glance."""

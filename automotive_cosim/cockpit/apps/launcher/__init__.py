@@ -1,0 +1,1 @@
+"""The launcher: every app, to be opened."""

@@ -1,0 +1,1 @@
+"""Manual: the owner's handbook."""

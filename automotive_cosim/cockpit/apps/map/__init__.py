@@ -1,0 +1,1 @@
+"""Map: the road around the car, the route ahead, and destinations."""

@@ -1,0 +1,42 @@
+"""Map: the road around the car, the route ahead, and destinations."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.apps.map.screens import map_screen
+from automotive_cosim.cockpit.apps.map.state import Navigation, Viewpoint
+from automotive_cosim.cockpit.apps.map.way import explore, place, route
+from automotive_cosim.cockpit.places import atlas
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import AppData, State
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts.text import say
+
+
+def starts(state: State, rng: np.random.Generator) -> Iterable[AppData]:
+    """Draws the places."""
+    places = atlas(state.roads, rng)
+    return places, Navigation(favourites=places.favourites), Viewpoint()
+
+
+APP = App(
+    name="map",
+    title=say("Map"),
+    icon=Icon.MAP,
+    order=2,
+    where=Where.DOCK,
+    pages={
+        "map": Page(map_screen, Room.WHOLE),
+        "explore": Page(explore, Room.WHOLE),
+        "place": Page(place, Room.WHOLE),
+        "route": Page(route, Room.WHOLE),
+    },
+    aliases={"maps": "", "navigation": ""},
+    picked={"map.list": "saved", "explore": "all", "route": "turns"},
+    starts=starts,
+    turn=2,
+)

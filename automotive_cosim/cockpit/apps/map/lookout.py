@@ -1,0 +1,229 @@
+"""The lookout: what a current car notices and shows by itself, from its sensors, its map and its traffic service.
+
+It states measurements and messages, whether or not anything follows from them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import accumulate
+
+from automotive_cosim.cockpit.aboard import Kind, Seat, seated
+from automotive_cosim.cockpit.apps.cabin.screens import KINDS, SEATS
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.notices import LOW_KPA
+from automotive_cosim.cockpit.parts import distance, pressure, speed, speed_unit
+from automotive_cosim.cockpit.reach import (
+    BLUE_LIGHT_M,
+    CLOSING_MPS,
+    HORIZON_M,
+    REAR_RADAR_M,
+)
+from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOTION, OCCUPANT, SEAT, TYRE, Signals
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Sight, SightKind
+from automotive_cosim.contracts.text import Text, say
+
+LINE_PX, LINES = 38, 8
+"""Height of a line on the screen, and how many there are room for."""
+METRES_BELOW_M, FEET_BELOW_M, FOOT_M = 100.0, 300.0, 0.3048
+"""Distances below are shown in metres or feet, others as on signs."""
+ICONS: Mapping[SightKind, Icon] = {
+    SightKind.DRIVER_BELT: Icon.SEAT_BELT,
+    SightKind.PASSENGER_BELT: Icon.SEAT_BELT,
+    SightKind.WITHOUT_DRIVER: Icon.CHILD,
+    SightKind.PHONE: Icon.PHONE,
+    SightKind.TAILGATE: Icon.VEHICLE_FAULT,
+    SightKind.CHARGE_FLAP: Icon.VEHICLE_FAULT,
+    SightKind.TYRE: Icon.TYRE,
+    SightKind.DRIVING_TIME: Icon.FATIGUE,
+    SightKind.EMERGENCY_VEHICLE: Icon.AMBULANCE,
+    SightKind.VEHICLE_BEHIND: Icon.VEHICLE,
+    SightKind.VEHICLE_AHEAD: Icon.VEHICLE,
+    SightKind.TUNNEL: Icon.TUNNEL,
+    SightKind.LIMIT: Icon.SPEED,
+    SightKind.SCHOOL_ZONE: Icon.SCHOOL,
+    SightKind.JAM: Icon.JAM,
+    SightKind.BREAKDOWN: Icon.HAZARD,
+    SightKind.ROADWORKS: Icon.ROADWORKS,
+    SightKind.CLOSURE: Icon.CLOSURE,
+}
+TYRE_NAMES = {
+    TYRE.FRONT_LEFT: say("Front left tyre"),
+    TYRE.FRONT_RIGHT: say("Front right tyre"),
+    TYRE.REAR_LEFT: say("Rear left tyre"),
+    TYRE.REAR_RIGHT: say("Rear right tyre"),
+}
+PHONE = {"HAND": say("Phone in the driver's hand"), "CRADLE": say("Phone in use in its cradle")}
+AHEAD: Mapping[SightKind, Callable[[str], Text]] = {
+    SightKind.TUNNEL: lambda far: say("Tunnel in {distance}", distance=far),
+    SightKind.SCHOOL_ZONE: lambda far: say("School zone in {distance}", distance=far),
+    SightKind.JAM: lambda far: say("Traffic jam in {distance}", distance=far),
+    SightKind.BREAKDOWN: lambda far: say("Broken-down vehicle in {distance}", distance=far),
+    SightKind.ROADWORKS: lambda far: say("Roadworks in {distance}", distance=far),
+    SightKind.CLOSURE: lambda far: say("Road closed in {distance}", distance=far),
+}
+WHO = {kind: name for kind, (name, _) in KINDS.items()} | {Kind.ELDERLY: say("Elderly")}
+
+
+def sights(state: State) -> tuple[Sight, ...]:
+    """What the car notices now: first what is aboard, then by distance. Empty without this equipment."""
+    if not state.lookout or state.outside is None:
+        return ()
+    driving = state.outside.driving
+    around = (*_behind(state, driving), *_ahead(state, driving))
+    return (*_aboard(state), *sorted(around, key=lambda sight: sight.distance_m or 0.0))[:LINES]
+
+
+def _aboard(state: State) -> Iterator[Sight]:
+    signals = state.signals
+    if not signals[SEAT.DRIVER_BELT] and signals[MOTION.GEAR] != "P":
+        yield Sight(SightKind.DRIVER_BELT, say("Driver's belt is open"))
+    others = sorted(
+        (one for one in seated(signals) if one.seat is not Seat.DRIVER), key=lambda one: not one.kind.needs_care
+    )
+    unbelted = [one for one in others if not one.belted]
+    if unbelted and signals[MOTION.GEAR] != "P":
+        yield Sight(SightKind.PASSENGER_BELT, say("Belt is open: {seat}", seat=SEATS[unbelted[0].seat]))
+    if state.parked_s is not None and not signals[OCCUPANT.DRIVER.occupied]:
+        left = (
+            say("Driver has left, aboard: {who}", who=WHO[others[0].kind])
+            if others
+            else say("Driver has left, nobody aboard")
+        )
+        yield Sight(SightKind.WITHOUT_DRIVER, left)
+    if signals[CALL.PHONE] != "AWAY":
+        yield Sight(SightKind.PHONE, PHONE[signals[CALL.PHONE]])
+    if signals[CABIN.TRUNK]:
+        yield Sight(SightKind.TAILGATE, say("Tailgate is open"))
+    if signals[ENERGY.CHARGE_FLAP]:
+        yield Sight(SightKind.CHARGE_FLAP, say("Charging flap is open"))
+    softest = min(TYRE_NAMES, key=lambda tyre: signals[tyre])
+    if signals[softest] < LOW_KPA:
+        kpa = signals[softest]
+        yield Sight(
+            SightKind.TYRE,
+            say("{name}: {value}", name=TYRE_NAMES[softest], value=pressure(signals, kpa)),
+            value=kpa,
+        )
+    minutes = int((state.driven_s + state.time_s - state.departed_s) / 60)
+    if minutes >= 60:
+        said = say("Driving for {hours} h {minutes} min", hours=minutes // 60, minutes=f"{minutes % 60:02d}")
+        yield Sight(SightKind.DRIVING_TIME, said, value=minutes / 60)
+
+
+def _behind(state: State, driving: DrivingState) -> Iterator[Sight]:
+    around = driving.around
+    blue, follower = around.emergency_behind, around.follower
+    if blue is not None and blue.gap_m <= BLUE_LIGHT_M:
+        said = say("Emergency vehicle {distance} behind", distance=_near(state.signals, blue.gap_m))
+        yield Sight(SightKind.EMERGENCY_VEHICLE, said, blue.gap_m, blue.speed_mps - driving.speed_mps)
+    if follower is not None and follower.gap_m <= REAR_RADAR_M:
+        closing_mps = follower.speed_mps - driving.speed_mps
+        if closing_mps >= CLOSING_MPS:
+            said = say("Vehicle {distance} behind comes closer", distance=_near(state.signals, follower.gap_m))
+            yield Sight(SightKind.VEHICLE_BEHIND, said, follower.gap_m, closing_mps)
+
+
+def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
+    signals, ahead = state.signals, driving.ahead
+    gap_m = signals[ADAS.LEADER_DISTANCE]
+    if gap_m is not None:
+        yield Sight(
+            SightKind.VEHICLE_AHEAD, say("Vehicle ahead: {distance}", distance=_near(signals, gap_m)), gap_m
+        )
+    limit, limit_m = ahead.next_limit, ahead.next_limit_distance_m
+    if state.sign_camera and limit is not None and limit.is_posted and limit_m is not None and limit_m <= HORIZON_M:
+        kmh = None if limit.mps is None else limit.mps * KMH_PER_MPS
+        far = _near(signals, limit_m)
+        told = (
+            say("No limit in {distance}", distance=far)
+            if kmh is None
+            else say(
+                "Limit {speed} in {distance}",
+                speed=f"{speed(signals, kmh)} {speed_unit(signals)}",
+                distance=far,
+            )
+        )
+        yield Sight(SightKind.LIMIT, told, limit_m, kmh)
+    if driving.road.in_tunnel:
+        yield Sight(SightKind.TUNNEL, say("In a tunnel"), 0.0)
+    elif ahead.tunnel_distance_m is not None:
+        yield from _told(state, SightKind.TUNNEL, ahead.tunnel_distance_m)
+    if driving.road.school_zone:
+        yield Sight(SightKind.SCHOOL_ZONE, say("In a school zone"), 0.0)
+    yield from _mapped(state, driving)
+
+
+def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
+    """Schools of the map and incidents of the last report, on the route within the horizon."""
+    starts_m = _starts_m(state, driving)
+    news = state.news
+    found: dict[SightKind, float] = {}
+    for edge_id, start_m in starts_m.items():
+        road = state.roads.find(edge_id)
+        if road is not None and road.school_zone and start_m >= 0:
+            found[SightKind.SCHOOL_ZONE] = min(start_m, found.get(SightKind.SCHOOL_ZONE, start_m))
+    if news is not None:
+        if news.ahead.jam_distance_m is not None:
+            found[SightKind.JAM] = news.ahead.jam_distance_m - (driving.distance_m - news.distance_m)
+        for incident in news.ahead.incidents:
+            if incident.edge_id in starts_m:
+                kind = SightKind(incident.kind.value)
+                away_m = starts_m[incident.edge_id] + incident.position_m
+                if away_m > 0:
+                    found[kind] = min(away_m, found.get(kind, away_m))
+    for kind, away_m in found.items():
+        if kind is not SightKind.SCHOOL_ZONE or not driving.road.school_zone:
+            yield from _told(state, kind, away_m)
+
+
+def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
+    """The edges of the route within the horizon, and where each begins, counted from the car."""
+    route = driving.ahead.route_edges
+    roads = [state.roads.find(edge_id) for edge_id in route]
+    lengths_m = [0.0 if road is None else road.length_m for road in roads]
+    in_junction = driving.road.edge_id.startswith(":")
+    # in a junction the route still begins with the edge that has been left
+    begun_m = sum(lengths_m[:1]) if in_junction else driving.road.lane_position_m
+    starts_m = accumulate(lengths_m, initial=-begun_m)
+    found: dict[str, float] = {}
+    for edge_id, start_m in zip(route, starts_m, strict=False):
+        if start_m > HORIZON_M:
+            break
+        found.setdefault(edge_id, start_m)
+    return found
+
+
+def _told(state: State, kind: SightKind, away_m: float) -> Iterator[Sight]:
+    if 0 <= away_m <= HORIZON_M:
+        yield Sight(kind, AHEAD[kind](_near(state.signals, away_m)), away_m)
+
+
+def _near(signals: Signals, metres: float) -> str:
+    """A distance to the metre or the foot where that matters."""
+    if signals[HMI.DISTANCE_UNIT] == "MILES" and metres < FEET_BELOW_M:
+        return f"{metres / FOOT_M:.0f} ft"
+    return f"{metres:.0f} m" if metres < METRES_BELOW_M else distance(signals, metres)
+
+
+def plate(x: int, y: int, width: int, state: State) -> tuple[Widget, ...]:
+    """The sights over a map, one line each, with the keys ``ahead.<kind>``; nothing if there are none."""
+    shown = sights(state)
+    if not shown:
+        return ()
+    rect = Rect(x, y, width, 12 + LINE_PX * len(shown))
+    lines: list[Widget] = []
+    for sight, line in zip(shown, rect.inset(14, 6).rows(len(shown), 0), strict=True):
+        lines.append(Glyph(rect=line.left(30), icon=ICONS[sight.kind], size=24, tone="accent"))
+        lines.append(
+            Label(
+                rect=line.right_part(line.width - 40),
+                key=f"ahead.{sight.kind}",
+                text=sight.text,
+                style=Type.LABEL,
+            )
+        )
+    return (Card(rect=rect, look="plate", children=tuple(lines)),)

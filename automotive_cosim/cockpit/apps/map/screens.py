@@ -1,0 +1,483 @@
+"""Map: the road around the car, the route ahead, and destinations."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from datetime import timedelta
+
+from automotive_cosim.cockpit.apps.map import lookout
+from automotive_cosim.cockpit.apps.map.commands import Follow, Guide, Zoom
+from automotive_cosim.cockpit.apps.map.scene import box_of, ego, goal, incidents, jam, map_camera, scene
+from automotive_cosim.cockpit.apps.map.state import Navigation, Turn, Viewpoint, turns
+from automotive_cosim.cockpit.commands import Set
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.layout import REST, column, panes, row
+from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
+from automotive_cosim.cockpit.messages import Pick, Show
+from automotive_cosim.cockpit.parts import choices, content, distance, heading, rows, search, speed
+from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
+from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
+from automotive_cosim.cockpit.signals import VOICE
+from automotive_cosim.cockpit.state import Message, State
+from automotive_cosim.cockpit.telltales import RoadSign, SignKind
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import (
+    Badge,
+    Button,
+    Card,
+    Glyph,
+    Label,
+    Look,
+    MapView,
+    Row,
+    SignView,
+    Widget,
+)
+from automotive_cosim.contracts import IncidentKind, Road, RoadHere
+from automotive_cosim.contracts.text import say
+
+INCIDENTS: Mapping[IncidentKind, tuple[str, Icon]] = {
+    IncidentKind.CLOSURE: (say("Road closed"), Icon.CLOSURE),
+    IncidentKind.BREAKDOWN: (say("Broken-down vehicle"), Icon.HAZARD),
+    IncidentKind.ROADWORKS: (say("Roadworks"), Icon.ROADWORKS),
+    IncidentKind.JAM: (say("Traffic jam"), Icon.JAM),
+    IncidentKind.SCHOOL_ZONE: (say("School zone"), Icon.CHILD),
+}
+"""Incidents of live traffic, the most serious first: of overlapping marks, the first is shown."""
+_CLASSES = {
+    "motorway": say("Motorway"),
+    "trunk": say("Expressway"),
+    "service": say("Service road"),
+    "residential": say("Side street"),
+}
+PANEL_WIDTH, PANEL_HEIGHT = 372, 544
+RESULTS = ENTRIES_LIMIT
+CHARGER = 28
+"""Side of the mark of a charging stop."""
+
+
+def map_screen(state: State) -> tuple[Widget, ...]:
+    """Search, favourites and recent destinations next to the map."""
+    return *_panel(panel(state), state), sight(state)
+
+
+def panel(state: State) -> Rect:
+    """The box next to the map; where it is taller than wide, below."""
+    return _parts(content(state))[0]
+
+
+def _parts(rect: Rect) -> tuple[Rect, Rect]:
+    """The panel and the map."""
+    if rect.height > rect.width:
+        above, _, below = column(rect, REST, GAP, PANEL_HEIGHT)
+        return below, above
+    left, right = panes(rect, PANEL_WIDTH, REST)
+    return left, right
+
+
+def sight(state: State) -> Widget:
+    """The map, with the next turn, the road and the buttons over it."""
+    rect = _parts(content(state))[1]
+    left, _, keys = row(rect.inset(20), 560, REST, 64)
+    turn, _, lowest = column(left, 72, REST, 56)
+    plate = lowest.left(420)
+    north, _, voice, _, closer, _, further, _ = column(keys, 64, REST, 64, 12, 64, 12, 64, 0)
+    ahead = next_turn(state)
+    closer_in = Zoom(-1) if state.of(Viewpoint).zoom else None
+    noticed = lookout.plate(rect.x + 20, turn.bottom + 12 if ahead else turn.y, 440, state)
+    sign = sign_view(Rect(plate.right + 12, plate.bottom - 64, 64, 64), "map.sign", state)
+    over = (
+        *(each.rect for each in sign),
+        plate,
+        voice,
+        closer,
+        further,
+        north,
+        *((turn,) if ahead else ()),
+        *(card.rect for card in noticed),
+    )
+    silent = state.signals[VOICE.GUIDANCE] == "MUTED"
+    return Card(
+        rect=rect,
+        look="none",
+        children=(
+            map_view(rect, "map.view", state, map_camera(state), over, None, closer_in, pans=True),
+            *((_turn_plate(turn, ahead, state),) if ahead else ()),
+            *noticed,
+            *sign,
+            street_plate(plate, state),
+            _orientation(north, state),
+            Button(
+                rect=voice,
+                key="map.voice",
+                description=say("Guidance is silent") if silent else say("Guidance speaks"),
+                icon=Icon.MUTE if silent else Icon.VOICE,
+                look=Look.FLOATING,
+                on_tap=Set(VOICE.GUIDANCE, "UNMUTED" if silent else "MUTED"),
+            ),
+            Button(
+                rect=closer,
+                key="map.zoom_in",
+                description=say("Zoom in"),
+                icon=Icon.PLUS,
+                look=Look.FLOATING,
+                on_tap=Zoom(-1),
+                disabled="" if state.of(Viewpoint).zoom > 0 else say("The map cannot zoom in further"),
+            ),
+            Button(
+                rect=further,
+                key="map.zoom_out",
+                description=say("Zoom out"),
+                icon=Icon.MINUS,
+                look=Look.FLOATING,
+                on_tap=Zoom(1),
+                disabled=""
+                if state.of(Viewpoint).zoom < len(ZOOMS_M_PER_PX) - 1
+                else say("The map cannot zoom out further"),
+            ),
+        ),
+    )
+
+
+def sign_view(rect: Rect, key: str, state: State) -> tuple[SignView, ...]:
+    """The last road sign over a map; none without the camera."""
+    if not state.sign_camera:
+        return ()
+    sign = state.last_sign
+    figure = "" if sign is None or sign.limit_kmh is None else speed(state.signals, sign.limit_kmh)
+    return (SignView(rect=rect, key=key, description=_sign_in_words(sign, figure), sign=sign, figure=figure),)
+
+
+def _sign_in_words(sign: RoadSign | None, figure: str) -> str:
+    """What the last sign says, for the list."""
+    if sign is None:
+        return say("Last sign")
+    match sign.kind:
+        case SignKind.LIMIT:
+            shown = say("Limit sign {limit}", limit=figure)
+        case SignKind.END_OF_LIMIT:
+            shown = say("End of limit")
+        case SignKind.SCHOOL:
+            shown = say("School zone")
+        case SignKind.TUNNEL:
+            shown = say("Tunnel")
+    return say("Last sign: {sign}", sign=shown)
+
+
+def _orientation(rect: Rect, state: State) -> Button:
+    """Back to the car if the map was moved away; otherwise turns the map."""
+    if state.of(Viewpoint).panned is not None:
+        words, icon, message = say("Back to the car"), Icon.GPS, Follow(state.of(Viewpoint).north_up)
+    elif state.of(Viewpoint).north_up:
+        words, icon, message = say("North is up"), Icon.COMPASS, Follow(False)
+    else:
+        words, icon, message = say("The map turns with the car"), Icon.NAVIGATION, Follow(True)
+    return Button(
+        rect=rect, key="map.orientation", description=words, icon=icon, look=Look.FLOATING, on_tap=message
+    )
+
+
+def map_view(
+    rect: Rect,
+    key: str,
+    state: State,
+    camera: Camera,
+    avoid: tuple[Rect, ...],
+    on_tap: Message | None = None,
+    on_double_tap: Message | None = None,
+    pans: bool = False,
+) -> MapView:
+    """The moving map in a box, with the street names and marks that fit next to what is over it."""
+    marks = _marks(rect, state, camera, avoid)
+    taken = (*avoid, *(mark.rect for mark in marks))
+    names = state.roads.names_in_sight(rect, camera, taken)
+    chargers = _chargers(rect, state, camera, (*taken, *(name.rect for name in names)))
+    return MapView(
+        rect=rect,
+        key=key,
+        description=_sight(state),
+        roads=state.roads,
+        scene=scene(state, camera),
+        on_tap=on_tap,
+        on_double_tap=on_double_tap,
+        pans=pans,
+        children=(
+            *(
+                Label(rect=name.rect, text=name.text, style=Type.SMALL, align="centre", plate=True)
+                for name in names
+            ),
+            *chargers,
+            *marks,
+        ),
+    )
+
+
+def _sight(state: State) -> str:
+    """A description of the map; without live traffic, also the time of the last report."""
+    if state.heard is None or state.heard is state.outside:
+        return say("Map around {street}", street=street(state))
+    return say(
+        "Map around {street}, traffic as of {time}",
+        street=street(state),
+        time=state.clock_at(state.heard.local_time),
+    )
+
+
+def _chargers(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Badge, ...]:
+    """Small marks of the charging stops in sight that cover nothing else."""
+    here = ego(state)
+    taken = [*avoid] if here is None else [*avoid, box_of(camera, rect, here[:2], 48)]
+    room, found = rect.inset(4), list[Badge]()
+    for stop in state.of(Gazetteer).of(PlaceKind.CHARGING):
+        box = box_of(camera, rect, (stop.x_m, stop.y_m), CHARGER)
+        if room.encloses(box) and not any(box.overlaps(other) for other in taken):
+            taken.append(box)
+            found.append(Badge(rect=box, icon=Icon.CHARGING, charges=True))
+    return tuple(found)
+
+
+def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Widget, ...]:
+    """Marks of jam, destination and incidents, as far as they are visible.
+
+    A mark that would cover the car stands beside it.
+    """
+    known: list[tuple[str, str, Icon, tuple[float, float] | None]] = [
+        ("jam", say("A jam begins here"), Icon.JAM, jam(state)),
+        ("end", say("The route ends here"), Icon.GOAL, goal(state)),
+    ]
+    told = enumerate(incidents(state, besides_jam=known[0][3] is not None))
+    for at, (kind, road, place) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
+        words, icon = INCIDENTS[kind]
+        known.append((f"incident.{at}", say("{name}: {value}", name=words, value=road_name(road)), icon, place))
+    here = ego(state)
+    car = None if here is None else box_of(camera, rect, here[:2], 48)
+    found: list[Badge] = []
+    for name, words, icon, point in known:
+        if point is None:
+            continue
+        box = box_of(camera, rect, point, 40)
+        if car is not None and box.overlaps(car):
+            box = box.moved(car.right - box.x, 0)
+        taken = (*avoid, *(mark.rect for mark in found))
+        if rect.inset(4).encloses(box) and not any(box.overlaps(other) for other in taken):
+            found.append(Badge(rect=box, key=f"map.{name}", description=words, icon=icon, warns=name != "end"))
+    return tuple(found)
+
+
+def road_name(road: Road | RoadHere) -> str:
+    """Name of a road, or its kind."""
+    return road.name or _CLASSES.get(road.road_class, say("Unnamed road"))
+
+
+def street(state: State) -> str:
+    """Name of the present road, or its kind."""
+    if state.outside is None:
+        return say("Locating")
+    return road_name(state.outside.driving.road)
+
+
+def turns_ahead(state: State) -> tuple[tuple[Turn, float], ...]:
+    """The turns of the route and their distances in metres."""
+    if state.outside is None:
+        return ()
+    driving = state.outside.driving
+    found = turns(state.roads, driving.ahead.route_edges)
+    return tuple((turn, max(0.0, turn.after_m - driving.road.lane_position_m)) for turn in found)
+
+
+def next_turn(state: State) -> tuple[Turn, float] | None:
+    """The next turn."""
+    return next(iter(turns_ahead(state)), None)
+
+
+def _turn_plate(rect: Rect, ahead: tuple[Turn, float], state: State) -> Widget:
+    turn, away_m = ahead
+    picture, _, far, _, words = row(rect.inset(14, 0), 44, 14, 116, 4, REST)
+    return Card(
+        rect=rect,
+        look="plate",
+        children=(
+            Glyph(rect=picture.middle(44, 44), icon=turn.icon, size=42, tone="accent"),
+            Label(
+                rect=far.inset(0, 8),
+                key="map.next_turn.distance",
+                text=distance(state.signals, away_m),
+                description=say("Distance to the next turn"),
+                style=Type.TITLE,
+            ),
+            Label(
+                rect=words.inset(0, 8),
+                key="map.next_turn",
+                text=say("{name}: {value}", name=turn.words, value=turn.street),
+                description=say("Next turn"),
+                style=Type.LABEL,
+                lines=2,
+            ),
+        ),
+    )
+
+
+def street_plate(rect: Rect, state: State) -> Widget:
+    """The present road, over a map."""
+    picture, _, words, _ = row(rect, 44, 12, REST, 20)
+    tunnel = state.outside is not None and state.outside.driving.road.in_tunnel
+    return Card(
+        rect=rect,
+        look="plate",
+        children=(
+            Glyph(
+                rect=picture.right_part(28).middle(28, 28),
+                icon=Icon.TUNNEL if tunnel else Icon.MAP,
+                size=26,
+                tone="accent",
+                key="map.tunnel" if tunnel else "",
+                description=say("In a tunnel") if tunnel else "",
+            ),
+            Label(
+                rect=words,
+                key="map.street",
+                text=street(state),
+                description=say("Current road"),
+                style=Type.STRONG,
+            ),
+        ),
+    )
+
+
+def _panel(rect: Rect, state: State) -> tuple[Widget, ...]:
+    wanted, _, tabs, _, listed, _, way = column(rect, 64, 12, 56, 12, REST, GAP, 184)
+    found = matches(state)
+    typed = bool(state.typed.get("map.search")) or state.focus == "map.search"
+    shown = state.picked["map.list"]
+    names = (
+        found if typed else state.of(Navigation).recents if shown == "recent" else state.of(Navigation).favourites
+    )
+    lists = choices(
+        tabs,
+        "map.list",
+        [
+            ("saved", say("Saved"), Icon.STAR, shown == "saved", Pick("map.list", "saved", rewinds="map.")),
+            ("recent", say("Recent"), Icon.HISTORY, shown == "recent", Pick("map.list", "recent", rewinds="map.")),
+            ("explore", say("Near"), Icon.PLACE, False, Show("explore", "all")),
+        ],
+    )
+    empty = Label(
+        rect=listed.top(60),
+        key="map.places.empty",
+        text=say("No street or place with this name") if typed else say("No destinations yet"),
+        tone="muted",
+        style=Type.LABEL,
+        align="centre",
+    )
+    return (
+        search(
+            wanted,
+            "map.search",
+            say("Search for a place or street"),
+            say("Where to?"),
+            state,
+            _first(found if typed else ()),
+        ),
+        heading(tabs.moved(4, 14).top(28), say("Results"), "map.results") if typed else lists,
+        rows(
+            listed,
+            "map.places",
+            say("Destinations"),
+            state,
+            len(names),
+            lambda index, cell: destination(cell, f"map.place.{index}", names[index], state),
+            height=60,
+            gap=6,
+        )
+        if names
+        else empty,
+        _way(way, state),
+    )
+
+
+def _first(found: tuple[str, ...]) -> Message | None:
+    return Guide(found[0]) if found else None
+
+
+def destination(rect: Rect, key: str, name: str, state: State) -> Row:
+    """A line of a list of destinations."""
+    place = state.of(Gazetteer).find(name)
+    return Row(
+        rect=rect,
+        key=key,
+        text=name,
+        detail=place.street if place else say("Street"),
+        trail=away(state, name),
+        icon=place.icon if place else Icon.ROUTE,
+        selected=name == state.of(Navigation).destination,
+        on_tap=Show("place", name),
+    )
+
+
+def away(state: State, name: str) -> str:
+    """Straight-line distance of a place; empty for a street."""
+    place = state.of(Gazetteer).find(name)
+    if place is None or state.outside is None:
+        return ""
+    driving = state.outside.driving
+    return distance(state.signals, place.away_m(driving.x_m, driving.y_m))
+
+
+def matches(state: State) -> tuple[str, ...]:
+    """Places and streets whose name contains the typed text."""
+    wanted = state.typed.get("map.search", "").casefold().strip()
+    if not wanted:
+        return ()
+    places = (place.name for place in state.of(Gazetteer).places if wanted in place.name.casefold())
+    streets = (name for name in state.roads.names if wanted in name.casefold())
+    return (*places, *streets)[:RESULTS]
+
+
+def _way(rect: Rect, state: State) -> Widget:
+    head, _, when, _, acts = column(rect.inset(20, 14), 28, 2, 50, REST, 56)
+    faster, details = acts.columns(2, 12)
+    goal = state.of(Navigation).destination
+    return Card(
+        rect=rect,
+        children=(
+            heading(head, say("To {place}", place=goal) if goal else say("Arrival"), "map.goal"),
+            *arrival(when, "map", state),
+            Button(rect=faster, key="map.faster_route", text=say("Faster"), icon=Icon.ROUTE, on_tap=Guide("")),
+            Button(rect=details, key="map.route", text=say("Route"), icon=Icon.TURNS, on_tap=Show("route")),
+        ),
+    )
+
+
+def arrival(rect: Rect, key: str, state: State) -> tuple[Widget, ...]:
+    """Arrival time, distance and delay."""
+    ahead = None if state.outside is None else state.outside.driving.ahead
+    at, left, late = "--:--", "", ""
+    if state.outside is not None and ahead is not None:
+        at = state.clock_at(state.outside.local_time + timedelta(seconds=ahead.eta_s))
+        left = distance(state.signals, ahead.route_left_m)
+        late = (
+            say("{minutes} min delay", minutes=f"{ahead.delay_s / 60:.0f}")
+            if ahead.delay_s >= 30
+            else say("No delay")
+        )
+    cells = rect.columns(2, 12)
+    return (
+        Label(rect=cells[0], key=f"{key}.arrival", text=at, description=say("Arrival time"), style=Type.HEADLINE),
+        Label(
+            rect=cells[1].top(26),
+            key=f"{key}.route_left",
+            text=left,
+            description=say("Distance left"),
+            style=Type.LABEL,
+            align="right",
+        ),
+        Label(
+            rect=cells[1].bottom_part(24),
+            key=f"{key}.delay",
+            text=late,
+            description=say("Traffic delay"),
+            style=Type.CAPTION,
+            tone="muted",
+            align="right",
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Media: what plays, the controls, and tracks, playlists, stations, podcasts."""

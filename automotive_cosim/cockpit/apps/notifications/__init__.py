@@ -1,0 +1,1 @@
+"""The notifications: what requires attention now, and earlier notices."""

@@ -1,0 +1,1 @@
+"""Parking: pays for a space from the car."""

@@ -1,0 +1,1 @@
+"""Phone: calls, contacts and messages."""

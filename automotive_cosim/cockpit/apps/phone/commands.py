@@ -1,0 +1,165 @@
+"""Commands of the phone: outgoing and incoming calls, and messages."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from automotive_cosim.cockpit.apps.phone.state import Directory, OnCall, PastCall, Phone, tell
+from automotive_cosim.cockpit.restrictions import Restriction
+from automotive_cosim.cockpit.signals import LINK
+from automotive_cosim.cockpit.state import Command, State
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts import Feedback, FeedbackCode, Severity
+from automotive_cosim.contracts.text import say
+
+NOT_LINKED = say("No phone is connected: switch Bluetooth on first")
+NOBODY_CALLS = Feedback(FeedbackCode.NO_EFFECT, say("nobody is calling"))
+
+
+@dataclass(frozen=True, slots=True)
+class Dial(Command):
+    """Call somebody: a contact's name or a number."""
+
+    who: str
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The call."""
+        return frozenset({"calls"})
+
+    def perform(self, state: State) -> Feedback:
+        """The call, if a phone is linked."""
+        if not state.signals[LINK.BLUETOOTH]:
+            return state.refused(NOT_LINKED)
+        state.keep(state.of(Phone).dialled(self.who, state.clock, state.time_s))
+        tell(state)
+        return state.said(say("Calling {who}", who=self.who), Icon.CALL_OUT)
+
+
+@dataclass(frozen=True, slots=True)
+class CallEmergency(Command):
+    """Call the emergency services."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The call."""
+        return frozenset({"calls"})
+
+    def perform(self, state: State) -> Feedback:
+        """The call, with the car's position."""
+        phone = state.of(Phone)
+        state.keep(replace(phone, called=(*phone.called, "emergency")))
+        state.notify(say("Emergency call made"), Icon.PHONE_ALERT, Severity.CRITICAL)
+        return Feedback(FeedbackCode.OK, say("the emergency services are called"))
+
+
+@dataclass(frozen=True, slots=True)
+class HangUp(Command):
+    """End the call."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The present call."""
+        return frozenset({"phone.on_call"})
+
+    def perform(self, state: State) -> Feedback:
+        """The end of the call."""
+        phone = state.of(Phone)
+        if phone.on_call is None:
+            return Feedback(FeedbackCode.NO_EFFECT, say("there is no call"))
+        state.keep(replace(phone, on_call=None))
+        tell(state)
+        return Feedback(FeedbackCode.OK, say("the call with {who} is over", who=phone.on_call.who))
+
+
+@dataclass(frozen=True, slots=True)
+class TakeCall(Command):
+    """Answer the ringing call."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The answered calls."""
+        return frozenset({"calls.answered"})
+
+    def perform(self, state: State) -> Feedback:
+        """The caller is on the phone."""
+        phone, ringing = state.of(Phone), state.of(Phone).ringing
+        if ringing is None:
+            return NOBODY_CALLS
+        state.keep(
+            replace(
+                phone.logged(PastCall(ringing.who, state.clock, "in")),
+                ringing=None,
+                on_call=OnCall(ringing.who, state.time_s),
+                taken=(*phone.taken, ringing.who),
+            )
+        )
+        tell(state)
+        return Feedback(FeedbackCode.OK, say("you are on the phone with {who}", who=ringing.who))
+
+
+@dataclass(frozen=True, slots=True)
+class DeclineCall(Command):
+    """Decline the ringing call."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The declined calls."""
+        return frozenset({"calls.declined"})
+
+    def perform(self, state: State) -> Feedback:
+        """The call is missed."""
+        phone, ringing = state.of(Phone), state.of(Phone).ringing
+        if ringing is None:
+            return NOBODY_CALLS
+        logged = phone.logged(PastCall(ringing.who, state.clock, "missed"))
+        state.keep(replace(logged, ringing=None, declined=(*phone.declined, ringing.who)))
+        tell(state)
+        return Feedback(FeedbackCode.OK, say("the call of {who} is declined", who=ringing.who))
+
+
+@dataclass(frozen=True, slots=True)
+class SendReply(Command):
+    """Send somebody a message."""
+
+    to: str
+    text: str
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The sent messages."""
+        return frozenset({"messages.sent"})
+
+    def perform(self, state: State) -> Feedback:
+        """The message; to the present caller, it also declines the call."""
+        if not state.signals[LINK.BLUETOOTH]:
+            return state.refused(NOT_LINKED)
+        ringing = state.of(Phone).ringing
+        if ringing is not None and ringing.who == self.to:
+            DeclineCall().perform(state)
+        state.keep(state.of(Phone).replied(self.to, self.text))
+        tell(state)
+        return state.said(say("Sent to {to}: {text}", to=self.to, text=self.text), Icon.REPLY)
+
+
+@dataclass(frozen=True, slots=True)
+class Read(Command):
+    """Have somebody's messages read out, or open them where that is allowed."""
+
+    who: str
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The read messages."""
+        return frozenset({"messages.read"})
+
+    def perform(self, state: State) -> Feedback:
+        """The messages, read."""
+        who, phone = self.who, state.of(Phone)
+        thread = state.of(Directory).thread(who, phone)
+        state.keep(phone.opened(who))
+        state.notices = tuple(notice for notice in state.notices if notice.opens != ("thread", who))
+        tell(state)
+        words = " ".join(map(_sentence, thread.lines)) if thread else ""
+        aloud = state.locked(Restriction.NO_TEXT_MESSAGE)
+        return Feedback(
+            FeedbackCode.READ_OUT if aloud else FeedbackCode.OK, say("{who} wrote: {text}", who=who, text=words)
+        )
+
+
+def _sentence(text: str) -> str:
+    """A message as it is read out before another: with its stop."""
+    return text if text.endswith((".", "!", "?", "…", "。", "！", "？")) else f"{text}."

@@ -1,0 +1,136 @@
+"""A message with a figure, put together by taps: a sentence, a number, send. The draft stays until it is sent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+
+from automotive_cosim.cockpit.apps.phone.commands import SendReply
+from automotive_cosim.cockpit.apps.phone.handset import handset, handset_and_page
+from automotive_cosim.cockpit.apps.phone.state import Directory, FigureDraft, Phone
+from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.layout import REST, column, row
+from automotive_cosim.cockpit.messages import Back
+from automotive_cosim.cockpit.parts import choices, heading
+from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import GAP, Icon, Type
+from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Widget
+from automotive_cosim.contracts.text import Quantity, Text, say
+
+
+@dataclass(frozen=True, slots=True)
+class Sentence:
+    """What can be said with a figure."""
+
+    text: Callable[[str], Text]
+    """The message with its figure."""
+    label: str
+    start: float
+    fine: float
+    """Change per tap of plus or minus."""
+    coarse: float
+    most: float
+
+    def said(self, value: float) -> Text:
+        """The whole message, with the value in its sentence."""
+        if self.label == "Arrival":
+            return self.text(f"{int(value) // 60:02d}:{int(value) % 60:02d}")
+        return self.text(Quantity(f"{value:.1f}" if self.fine < 1 else f"{value:.0f}"))
+
+
+SENTENCES: Mapping[str, Sentence] = {
+    "arrive": Sentence(
+        lambda figure: say("I'll be there at {time}", time=figure), say("Arrival"), 12 * 60, 5, 60, 1439
+    ),
+    "late": Sentence(
+        lambda figure: say("I'll be {minutes} minutes late", minutes=figure), say("Delay"), 0, 5, 30, 600
+    ),
+    "driven": Sentence(
+        lambda figure: say("I have driven {distance} km", distance=figure), say("Distance"), 0, 1, 10, 990
+    ),
+    "used": Sentence(
+        lambda figure: say("I used {energy} kWh per 100 km", energy=figure), say("Use"), 15.0, 0.1, 1, 99
+    ),
+    "level": Sentence(
+        lambda figure: say("The battery has {share} %", share=figure), say("Battery"), 50, 1, 10, 100
+    ),
+    "pressure": Sentence(
+        lambda figure: say("The tyre has {pressure} psi", pressure=figure), say("Tyre"), 30, 1, 10, 60
+    ),
+    "paid": Sentence(lambda figure: say("I paid {price}", price=figure), say("Price"), 0, 0.1, 1, 200),
+}
+"""By key; the distance is in kilometres whatever the display's unit."""
+
+
+def figure(state: State) -> tuple[Widget, ...]:
+    """The sentence, its figure, and the button that sends it."""
+    who = state.picked.get("figure") or state.of(Directory).contacts[0].name
+    phone = state.of(Phone)
+    draft = phone.draft or FigureDraft("arrive", SENTENCES["arrive"].start)
+    sentence = SENTENCES[draft.sentence]
+
+    def put(new: FigureDraft) -> Put:
+        return Put(replace(phone, draft=new), SENTENCES[new.sentence].said(new.value))
+
+    def moved(by: float) -> Put:
+        value = round(min(sentence.most, max(0.0, draft.value + by)), 1)
+        return put(replace(draft, value=value))
+
+    _, page = handset_and_page(state)
+    bar, _, label, _, sentences, _, card, _, sizes_row, _, send = column(
+        page, 64, GAP, 28, 8, 56, 16, 64, 12, 72, 16, 72
+    )
+    back, _, name = row(bar, 64, 16, REST)
+    steps = sizes_row.columns(4, 12)
+    words = sentence.said(draft.value)
+    sizes = (("less", -sentence.coarse), ("down", -sentence.fine), ("up", sentence.fine), ("more", sentence.coarse))
+    return (
+        handset(state),
+        Button(rect=back, key="figure.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()),
+        Label(rect=name, key="figure.who", text=who, style=Type.TITLE),
+        heading(label, say("Say")),
+        choices(
+            sentences,
+            "figure.say",
+            [
+                (
+                    key,
+                    each.label,
+                    None,
+                    key == draft.sentence,
+                    put(FigureDraft(key, each.start)),
+                )
+                for key, each in SENTENCES.items()
+            ],
+        ),
+        Card(
+            rect=card,
+            children=(
+                Label(
+                    rect=card.inset(20, 8),
+                    key="figure.words",
+                    text=words,
+                    description=say("Message"),
+                    style=Type.TITLE,
+                ),
+            ),
+        ),
+        *(
+            Button(rect=cell, key=f"figure.{key}", text=_signed(by, sentence), on_tap=moved(by))
+            for cell, (key, by) in zip(steps, sizes, strict=True)
+        ),
+        Button(
+            rect=send,
+            key="figure.send",
+            text=say("Send"),
+            icon=Icon.REPLY,
+            look=Look.ACCENT,
+            on_tap=SendReply(who, words),
+        ),
+    )
+
+
+def _signed(by: float, sentence: Sentence) -> str:
+    if sentence.label == "Arrival":
+        return f"{by / 60:+.0f} h" if abs(by) >= 60 else f"{by:+.0f} min"
+    return Quantity(f"{by:+g}")

@@ -1,0 +1,1 @@
+"""Settings: display and units, sound, connections, language and time, privacy, profiles."""

@@ -1,0 +1,37 @@
+"""Settings: display and units, sound, connections, language and time, privacy, profiles."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.apps.settings.screens import (
+    connections,
+    language,
+    privacy,
+    profile_list,
+    settings,
+    sound,
+)
+from automotive_cosim.cockpit.apps.settings.state import Connections, profiles
+from automotive_cosim.cockpit.apps.vehicle.state import Car
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts.text import say, say_in
+
+APP = App(
+    name="settings",
+    title=say("Settings"),
+    short=say_in("dock", "Settings"),
+    icon=Icon.SETTINGS,
+    order=10,
+    where=Where.DOCK,
+    pages={
+        "settings": Page(settings),
+        "sound": Page(sound),
+        "connections": Page(connections),
+        "language": Page(language),
+        "privacy": Page(privacy),
+        "profiles": Page(profile_list),
+    },
+    aliases={"system": ""},
+    starts=lambda state, rng: (Connections(), profiles(state.of(Car))),
+    turn=6,
+)

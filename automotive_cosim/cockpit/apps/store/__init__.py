@@ -1,0 +1,1 @@
+"""The store: apps that can be installed and removed."""

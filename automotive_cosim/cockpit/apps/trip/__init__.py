@@ -1,0 +1,1 @@
+"""Trip: two trip meters."""

@@ -1,0 +1,1 @@
+"""Vehicle: lamps and wipers, assistance, doors, seats, mirrors, and the lights inside."""

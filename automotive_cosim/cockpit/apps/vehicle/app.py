@@ -1,0 +1,32 @@
+"""Vehicle: lamps and wipers, assistance, doors, seats, mirrors, and the lights inside."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.apps.vehicle.body import doors, driving, interior, mirrors, seats
+from automotive_cosim.cockpit.apps.vehicle.screens import assistance, vehicle
+from automotive_cosim.cockpit.apps.vehicle.state import car
+from automotive_cosim.cockpit.theme import Icon
+from automotive_cosim.contracts.text import say, say_in
+
+APP = App(
+    name="vehicle",
+    title=say("Vehicle"),
+    short=say_in("dock", "Vehicle"),
+    icon=Icon.VEHICLE,
+    order=5,
+    where=Where.DOCK,
+    pages={
+        "vehicle": Page(vehicle),
+        "assistance": Page(assistance),
+        "driving": Page(driving),
+        "doors": Page(doors),
+        "seats": Page(seats),
+        "mirrors": Page(mirrors),
+        "interior": Page(interior),
+    },
+    aliases={"road": ""},
+    picked={"seats": "driver"},
+    starts=lambda state, rng: (car(rng),),
+    turn=4,
+)

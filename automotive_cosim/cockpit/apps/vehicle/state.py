@@ -1,0 +1,61 @@
+"""What the driver did at the car, and the seat positions that it remembers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from automotive_cosim.cockpit.signals import MIRROR, SEAT, Signal, Signals
+from automotive_cosim.cockpit.state import AppData
+
+SLOTS = 3
+"""Number of seat memories."""
+REMEMBERED: tuple[Signal[float], ...] = (
+    SEAT.DRIVER_POSITION,
+    SEAT.DRIVER_HEIGHT,
+    SEAT.DRIVER_RECLINE,
+    SEAT.DRIVER_LUMBAR,
+    MIRROR.DRIVER_PAN,
+    MIRROR.DRIVER_TILT,
+    MIRROR.PASSENGER_PAN,
+    MIRROR.PASSENGER_TILT,
+)
+"""Signals stored in a seat memory."""
+
+
+@dataclass(frozen=True, slots=True)
+class Car(AppData):
+    """Seat memories, and what cannot be taken back."""
+
+    memory: tuple[tuple[float, ...], ...]
+    """Values of ``REMEMBERED`` by memory slot."""
+    horns: int = 0
+    washes: int = 0
+
+    def with_memory(self, slot: int, signals: Signals) -> Car:
+        """With the present seat position stored in a memory slot."""
+        values = tuple(signals[signal] for signal in REMEMBERED)
+        return replace(self, memory=(*self.memory[:slot], values, *self.memory[slot + 1 :]))
+
+    def commands(self) -> dict[str, Any]:
+        """Memories, horn and washer."""
+        return {
+            "seat.memory": [list(values) for values in self.memory],
+            "horn": self.horns,
+            "washer": self.washes,
+        }
+
+
+def car(rng: np.random.Generator) -> Car:
+    """Draws the seat positions stored earlier."""
+    return Car(tuple(_seat(rng) for _ in range(SLOTS)))
+
+
+def _seat(rng: np.random.Generator) -> tuple[float, ...]:
+    def step(signal: Signal[float]) -> float:
+        steps = int(rng.integers(round((signal.high - signal.low) / signal.step) // 2 + 1))
+        return signal.low + (steps + round((signal.high - signal.low) / signal.step) // 4) * signal.step
+
+    return tuple(step(signal) for signal in REMEMBERED)

@@ -1,0 +1,375 @@
+"""Parts of every screen: the status bar above, the dock below."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, lru_cache
+from typing import Any
+
+from automotive_cosim.cockpit.app import Where
+from automotive_cosim.cockpit.apps.notifications.screens import wanting
+from automotive_cosim.cockpit.apps.phone.commands import DeclineCall, TakeCall
+from automotive_cosim.cockpit.apps.phone.state import Phone
+from automotive_cosim.cockpit.apps.settings.state import wifi
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.language import translated
+from automotive_cosim.cockpit.layout import REST, row
+from automotive_cosim.cockpit.messages import Back, Dismiss, Show
+from automotive_cosim.cockpit.notices import lit, lit_in_words
+from automotive_cosim.cockpit.parts import speed, speed_unit, stepper, switch, temperature
+from automotive_cosim.cockpit.registry import apps_in, docked
+from automotive_cosim.cockpit.signals import ADAS, CALL, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
+from automotive_cosim.cockpit.size import ScreenSize
+from automotive_cosim.cockpit.state import Notice, State
+from automotive_cosim.cockpit.telltales import Telltale
+from automotive_cosim.cockpit.theme import MARGIN, Icon, Type
+from automotive_cosim.cockpit.widgets import (
+    Button,
+    Choice,
+    Glyph,
+    Label,
+    LimitSign,
+    Look,
+    Pill,
+    Telltales,
+    Tile,
+    Widget,
+)
+from automotive_cosim.contracts import Severity
+from automotive_cosim.contracts.text import counted, say
+
+DOCKED: tuple[Signal[Any], ...] = (
+    HVAC.DRIVER_TEMPERATURE,
+    HVAC.PASSENGER_TEMPERATURE,
+    HVAC.FRONT_DEFROSTER,
+    HVAC.REAR_DEFROSTER,
+    HMI.TEMPERATURE_UNIT,
+    HMI.LANGUAGE,
+)
+"""Everything that the dock depends on, besides the present screen."""
+NOTICE_WIDTH = 640
+"""At most; notices in a wider bar leave the rest free."""
+LAMP, FEW = 31, 5
+"""Width of a tell-tale, and how many the smallest status bar has room for."""
+BEFORE, AFTER = 212, 424
+"""Widths of what is always in the status bar, left and right of what comes and goes."""
+_SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGNAL_3)
+
+
+@dataclass(frozen=True, slots=True)
+class _Bar:
+    """The boxes of the status bar."""
+
+    clock: Rect
+    air: Rect
+    bell: Rect
+    lamps: Rect
+    notice: Rect
+    links: tuple[Rect, Rect, Rect, Rect]
+    """Mobile network, satellites, the battery and its charge."""
+    motion: tuple[Rect, Rect, Rect]
+    """Gear, speed and its unit."""
+    sign: Rect
+
+
+@cache
+def _bar(size: ScreenSize) -> _Bar:
+    """From the left what time brings, from the right what the drive does; between them, or in a second line, what
+    comes and goes."""
+    lines = size.status.rows(size.bars, 0)
+    left, between, right = row(lines[0], BEFORE, REST, AFTER)
+    room = lines[1].inset(MARGIN, 0) if size.bars > 1 else between
+    many = FEW if size is ScreenSize.STANDARD else len(Telltale)
+    _, lamps, _, notice, _ = row(room, 4, many * LAMP, 1, REST, 12)
+    _, clock, _, air, _, bell = row(left, MARGIN - 4, 76, 2, 68, -2, 48)
+    mobile, _, fix, _, cell, _, charge, _, gear, _, pace, _, unit, _, sign, _ = row(
+        right, 28, 8, 28, 8, 28, -2, 56, 10, 36, 6, 76, 8, 52, 8, 50, MARGIN
+    )
+    return _Bar(
+        clock,
+        air,
+        bell.middle(48, 48),
+        lamps.middle(lamps.width, 28),
+        notice.left(min(notice.width, NOTICE_WIDTH)).inset(0, 6),
+        (mobile.middle(28, 28), fix.middle(28, 28), cell.middle(28, 28), charge),
+        (gear.middle(36, 36), pace, unit.moved(0, 6)),
+        sign.middle(50, 50),
+    )
+
+
+def status_bar(state: State) -> tuple[Widget, ...]:
+    """What is there on every screen: clock, weather, bell, tell-tales, links, battery, gear and speed."""
+    signals = state.signals
+    bar = _bar(state.size)
+    return (
+        Label(
+            rect=bar.clock,
+            key="status.clock",
+            text=state.clock,
+            description=say("Local time"),
+            style=Type.TITLE,
+        ),
+        Label(
+            rect=bar.air,
+            key="status.outside_temperature",
+            text=temperature(signals, signals[OUTSIDE.TEMPERATURE], 0),
+            description=say("Outside temperature"),
+            style=Type.LABEL,
+            tone="muted",
+        ),
+        Button(
+            rect=bar.bell,
+            key="status.notifications",
+            description=say("Notifications: {count}", count=len(wanting(state)) + len(state.notices)),
+            icon=Icon.BELL_OFF if state.of(Phone).do_not_disturb else Icon.BELL,
+            icon_size=24,
+            look=Look.PLAIN,
+            on_tap=Back() if state.screen == "notifications" else Show("notifications"),
+        ),
+        Telltales(rect=bar.lamps, key="status.telltales", description=lit_in_words(state), lit=lit(state)),
+        *_links(bar.links, state),
+        *_motion(bar.motion, state),
+    )
+
+
+def callouts(state: State) -> tuple[Widget, ...]:
+    """What comes and goes in the status bar: a caller, a notice or a call, and the limit sign of the camera."""
+    told: tuple[Widget, ...] = ()
+    bar = _bar(state.size)
+    ringing, partner = state.signals[CALL.RINGING], state.signals[CALL.PARTNER]
+    if ringing:
+        told = _incoming(bar.notice, ringing, state)
+    elif state.notice is not None:
+        told = (_pill(bar.notice, state.notice, state),)
+    elif partner:
+        words = say("On the phone with {who}", who=partner)
+        told = (
+            Pill(
+                rect=bar.notice,
+                key="call.running",
+                text=words,
+                icon=Icon.IN_CALL,
+                severity=Severity.INFO,
+                on_tap=Show("phone"),
+            ),
+        )
+    return (*told, *_limit_sign(bar.sign, state))
+
+
+def _pill(rect: Rect, notice: Notice, state: State) -> Pill:
+    """The newest notice. A tap leads to its subject, or removes it."""
+    here = (state.screen, state.picked.get(state.screen, ""))
+    return Pill(
+        rect=rect,
+        key="status.notice",
+        text=notice.text,
+        icon=notice.icon,
+        severity=notice.tone,
+        on_tap=Show(*notice.opens) if notice.opens and notice.opens != here else Dismiss(),
+    )
+
+
+def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
+    """The caller, and the possible reactions, on every screen."""
+    picture, _, name, _, acts = row(rect, 40, 4, REST, 8, 3 * 64)
+    answer, decline, message = acts.columns(3, 8)
+    return (
+        Glyph(rect=picture, icon=Icon.CALL_IN, size=30, tone="good"),
+        Label(
+            rect=name,
+            key="call.incoming",
+            text=who,
+            description=say("Incoming call"),
+            style=Type.LABEL,
+            lines=2,
+        ),
+        Button(
+            rect=answer,
+            key="call.answer",
+            description=say("Answer the call"),
+            icon=Icon.PHONE,
+            look=Look.ACCENT,
+            on_tap=TakeCall(),
+        ),
+        Button(
+            rect=decline,
+            key="call.decline",
+            description=say("Decline the call"),
+            icon=Icon.HANG_UP,
+            look=Look.CRITICAL,
+            on_tap=DeclineCall(),
+        ),
+        Button(
+            rect=message,
+            key="call.reply",
+            description=say("Answer with a message"),
+            icon=Icon.MESSAGE,
+            on_tap=Show("thread", who),
+            disabled=say("Choose an answer below")
+            if (state.screen, state.picked.get("thread")) == ("thread", who)
+            else "",
+        ),
+    )
+
+
+def _links(boxes: tuple[Rect, Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:
+    mobile, satellites, battery, charge = boxes
+    outside = state.outside
+    online = state.signals[LINK.ONLINE] and outside is not None
+    bars = outside.connectivity.signal_bars if outside is not None else 0
+    words = say("Offline")
+    if outside is not None and online:
+        network = outside.connectivity.kind.upper()
+        words = (
+            say("Wi-Fi {network}", network=wifi(state))
+            if wifi(state)
+            else counted("{network}, {n} bar", "{network}, {n} bars", bars, network=network)
+        )
+    fix = outside is not None and outside.gps is not None and outside.gps.has_fix
+    level = state.signals[ENERGY.LEVEL]
+    return (
+        Glyph(
+            rect=mobile,
+            key="status.connectivity",
+            description=words,
+            icon=Icon.SIGNAL_OFF if not online else Icon.WIFI if wifi(state) else _SIGNAL[bars],
+            size=24,
+            tone="text" if online else "muted",
+        ),
+        Glyph(
+            rect=satellites,
+            key="status.gps",
+            description=say("GPS fix") if fix else say("No GPS fix"),
+            icon=Icon.GPS if fix else Icon.GPS_OFF,
+            size=24,
+            tone="text" if fix else "muted",
+        ),
+        Glyph(rect=battery, icon=Icon.BATTERY, size=24, tone="muted"),
+        Label(
+            rect=charge,
+            key="status.battery",
+            text=f"{level:.0f} %",
+            description=say("Battery"),
+            style=Type.LABEL,
+        ),
+    )
+
+
+def _motion(boxes: tuple[Rect, Rect, Rect], state: State) -> tuple[Widget, ...]:
+    signals = state.signals
+    gear, pace, unit = boxes
+    return (
+        Label(
+            rect=gear,
+            key="status.gear",
+            text=signals[MOTION.GEAR],
+            description=say("Gear"),
+            style=Type.STRONG,
+            align="centre",
+            plate=True,
+        ),
+        Label(
+            rect=pace,
+            key="status.speed",
+            text=speed(signals, signals[MOTION.SPEED]),
+            description=say("Speed in {unit}", unit=speed_unit(signals)),
+            style=Type.HEADLINE,
+            align="right",
+        ),
+        Label(
+            rect=unit,
+            key="status.speed_unit",
+            text=speed_unit(signals),
+            style=Type.CAPTION,
+            tone="muted",
+        ),
+    )
+
+
+def _limit_sign(rect: Rect, state: State) -> tuple[Widget, ...]:
+    limit = state.signals[ADAS.LIMIT_SIGN]
+    if not state.sign_camera or limit is None:
+        return ()
+    shown = speed(state.signals, limit)
+    return (
+        LimitSign(
+            rect=rect, key="status.limit_sign", text=shown, description=say("Limit sign {limit}", limit=shown)
+        ),
+    )
+
+
+def dock(state: State) -> tuple[Widget, ...]:
+    """The apps in the middle, the temperatures and defrosters within the front seats' reach.
+
+    It seldom changes, and is the same object as long as it does not. The driver's side is that of the traffic.
+    """
+    here = docked()[state.screen]
+    values = tuple(state.signals[signal] for signal in DOCKED)
+    return _dock(state.size, here, values, state.roads.network.left_hand)
+
+
+@lru_cache(maxsize=256)
+def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool) -> tuple[Widget, ...]:
+    signals = Signals({signal.path: value for signal, value in zip(DOCKED, values, strict=True)})
+    first, *second = size.dock.rows(size.bars, 0)
+    wide, large = (240, 96) if second else (184, 58)
+    _, left, _, front, _, middle, _, rear, _, right, _ = row(
+        second[0] if second else first, MARGIN, wide, 10, large, 8, REST, 8, large, 10, wide, MARGIN
+    )
+    if second:
+        middle = first.inset(MARGIN, 0)
+    offered = apps_in(Where.DOCK)
+    cells = middle.inset(0, 8).columns(len(offered), 4)
+    apps = tuple(
+        Choice(
+            rect=cell,
+            key=f"dock.{app.name}",
+            text=app.short or app.title,
+            icon=app.icon,
+            selected=app.name == here,
+            on_tap=Show(app.name),
+            look="quiet",
+            stacked=True,
+            style=Type.SMALL,
+        )
+        for cell, app in zip(cells, offered, strict=True)
+    )
+    left, front, rear, right = (each.inset(0, 22) for each in (left, front, rear, right))
+    driver, passenger = signals[HVAC.DRIVER_TEMPERATURE], signals[HVAC.PASSENGER_TEMPERATURE]
+    whole = (
+        *stepper(
+            right if left_hand else left,
+            "dock.driver_temperature",
+            say("Driver's temperature"),
+            HVAC.DRIVER_TEMPERATURE,
+            signals,
+            temperature(signals, driver),
+            Type.LABEL,
+        ),
+        _quick(front, "front", Icon.DEFROST_FRONT, signals),
+        *apps,
+        _quick(rear, "rear", Icon.DEFROST_REAR, signals),
+        *stepper(
+            left if left_hand else right,
+            "dock.passenger_temperature",
+            say("Passenger's temperature"),
+            HVAC.PASSENGER_TEMPERATURE,
+            signals,
+            temperature(signals, passenger),
+            Type.LABEL,
+        ),
+    )
+    return tuple(translated(widget, signals[HMI.LANGUAGE]) for widget in whole)
+
+
+def _quick(rect: Rect, where: str, icon: Icon, signals: Signals) -> Tile:
+    signal = HVAC.FRONT_DEFROSTER if where == "front" else HVAC.REAR_DEFROSTER
+    tile = switch(rect, f"dock.{where}_defroster", "", icon, signal, signals)
+    return Tile(
+        rect=tile.rect,
+        key=tile.key,
+        description=say("Front defroster") if where == "front" else say("Rear defroster"),
+        icon=icon,
+        checked=tile.checked,
+        on_tap=tile.on_tap,
+    )

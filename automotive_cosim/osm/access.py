@@ -1,0 +1,111 @@
+"""Who may drive a road: the access keys of the OSM wiki's pages "Key:access" and "Conditional restrictions".
+
+Four laws hold for all of them:
+
+* The nearer key wins: of the car before of motor vehicles before of vehicles before of everybody, and within one of
+  them, of one direction before of both.
+* A list lets a car in if any of its values does: ``no;destination`` lets it in, ``psv;delivery`` does not.
+* A direction all of whose lanes are for buses is closed to cars.
+* A value that is not known to let a car in keeps it out, and is told.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
+
+KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
+"""Access keys that are about cars, the most specific first."""
+
+ENDS = ("forward", "backward")
+"""Directions, as they end a key: with the nodes of the way, and against them."""
+
+OPEN = frozenset(
+    ("yes", "permissive", "designated", "destination", "customers", "public", "unknown", "discouraged", "variable",
+     "true", "1")
+)  # fmt: skip
+"""Values that let an ordinary car in, to its destination at least."""
+
+CLOSED = frozenset(
+    ("no", "private", "agricultural", "forestry", "agricultural/forestry", "military", "emergency", "psv", "bus",
+     "taxi", "tourist_bus", "coach", "delivery", "loading", "official", "permit", "hgv", "goods", "bicycle", "foot",
+     "horse", "moped", "motorcycle", "residents", "resident", "employees", "employee", "staff", "members",
+     "students", "school", "service", "maintenance", "authorized", "authorised", "false", "0")
+)  # fmt: skip
+"""Values for others than an ordinary car."""
+
+DOUBTED = frozenset(("unknown", "discouraged", "variable"))
+"""Values that let a car in and are told all the same."""
+
+OF_THE_VEHICLE = re.compile(
+    r"weight|length|width|height|axle|load|wheels|draught|trailer|caravan|hazmat|emission|fuel|stay|occupants"
+    r"|hgv|goods|bus|psv|taxi|permit|residents?|delivery|disabled|agricultural|forestry|emergency|electric"
+)
+"""Conditions on a vehicle or its driver that an ordinary car does not meet."""
+
+
+class Access(NamedTuple):
+    """Whether cars may drive in one direction."""
+
+    is_open: bool
+    tag: str = ""
+    """The tag that says so, ``"motor_vehicle=no"``; empty where none does."""
+    is_doubtful: bool = False
+    """Whether to tell about that tag: its value is unknown, or contradicts itself."""
+
+
+def access(tags: Mapping[str, str], direction: str = "") -> Access:
+    """Whether cars may pass: along a way in a direction of ``ENDS``, or a node, which has none."""
+    for key in KEYS:
+        for name in (f"{key}:{direction}", key) if direction else (key,):
+            if tags.get(name):
+                return _read(name, tags[name])
+    for key in KEYS:
+        for name in (f"{key}:lanes:{direction}", f"{key}:lanes") if direction else ():
+            lanes = tags.get(name, "").split("|")
+            if any(lanes):
+                is_open = any(not lane or _read(name, lane).is_open for lane in lanes)
+                return Access(is_open, f"{name}={tags[name]}")
+    for name in (f"psv:lanes:{direction}", f"bus:lanes:{direction}"):
+        if set(tags.get(name, "").split("|")) == {"designated"}:
+            return Access(is_open=False, tag=f"{name}={tags[name]}")
+    return Access(is_open=True)
+
+
+def lets_in(value: str) -> bool:
+    """Whether one value, or a list of values, lets an ordinary car in."""
+    return _read("", value).is_open
+
+
+def doubts(tags: Mapping[str, str]) -> Iterator[str]:
+    """The tags whose value is doubtful, and those that let cars in or keep them out at times only."""
+    for direction in ENDS:
+        found = access(tags, direction)
+        if found.is_doubtful:
+            yield found.tag
+    yield from _conditional(tags)
+
+
+def _conditional(tags: Mapping[str, str]) -> Iterator[str]:
+    """Conditions that change the answer for a car; a nearer key without condition leaves them without effect."""
+    usual = any(access(tags, direction).is_open for direction in ENDS)
+    for key in KEYS:
+        for ending in ("", *(f":{direction}" for direction in ENDS)):
+            name = f"{key}{ending}:conditional"
+            for clause in re.split(r";(?![^(]*\))", tags.get(name, "")):
+                value, at, condition = clause.partition("@")
+                if at and lets_in(value) is not usual and not OF_THE_VEHICLE.search(condition):
+                    yield f"{name}={tags[name]}"
+                    break
+        if key in tags:
+            return
+
+
+def _read(name: str, value: str) -> Access:
+    parts = [part.strip() for part in re.split("[;,]", value)]
+    words = [part.lower() for part in parts]
+    is_open = any(word in OPEN for word in words)
+    known = all(word in OPEN | CLOSED for word in words) and words == parts
+    contradicts = "yes" in words and "no" in words
+    return Access(is_open, f"{name}={value}", not known or contradicts or bool(DOUBTED & set(words)))

@@ -1,0 +1,87 @@
+"""What an import was not told clearly enough, left out or decided, in words, with the OSM numbers to look it up."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.osm import access, barriers, lanes, limits, oneway
+from automotive_cosim.osm.extract import Extract, OsmWay
+from automotive_cosim.osm.network import Built
+from automotive_cosim.osm.roads import MappedRoad, way_of
+from automotive_cosim.traffic.posted import timed_limits
+
+SHOWN = 10
+"""How many OSM numbers a line names."""
+
+
+def in_words(kind: str, numbers: Sequence[int]) -> str:
+    """``"ways 1, 2 and 5 more"``."""
+    more = f" and {len(numbers) - SHOWN} more" if len(numbers) > SHOWN else ""
+    return f"{kind}{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers[:SHOWN]))}{more}"
+
+
+def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, country: str) -> Iterator[str]:
+    """Everything about access, direction, barriers, turns, lanes and limits that somebody should look at."""
+    everywhere = (*extract.ways, *extract.closed)
+    for tag, ways in _by_tag((way, doubt) for way in everywhere for doubt in access.doubts(way.tags)):
+        shut = {way.way_id for way in extract.closed}
+        what = "closed to cars" if set(ways) <= shut else "open to cars" if not shut & set(ways) else "read by way"
+        yield f"access that is doubtful, {what}: {tag}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in oneway.doubts(way.tags)):
+        yield f"direction that is doubtful: {tag}: {in_words('way', ways)}"
+    yield from _of_barriers(built.cut)
+    yield from _of_turns(built)
+    for tag, ways in _by_tag(
+        (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, oneway.directions(way.tags))
+    ):
+        done = "a lane each was built" if tag == lanes.SHARED else "left out"
+        yield f"{tag}, {done}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, country)):
+        about = tag if tag == limits.NO_UNIT else f"{tag}, left out"
+        yield f"{about}: {in_words('way', ways)}"
+    for part, ways in _by_tag((way, part) for way in extract.ways for part in _unread(way.tags)):
+        yield f"limits under conditions that are not understood, left out: {part}: {in_words('way', ways)}"
+
+
+def _unread(tags: Mapping[str, str]) -> Iterator[str]:
+    for direction in access.ENDS:
+        yield from timed_limits(limits.conditional_of(tags, direction))[1]
+
+
+def _by_tag(found: Iterable[tuple[OsmWay, str]]) -> list[tuple[str, list[int]]]:
+    ways: dict[str, dict[int, None]] = {}
+    for way, tag in found:
+        ways.setdefault(tag, {})[way.way_id] = None
+    return sorted((tag, list(numbers)) for tag, numbers in ways.items())
+
+
+def _of_barriers(cut: barriers.Cut) -> Iterator[str]:
+    for found, about in (
+        (cut.stopping, "barriers that cars cannot pass"),
+        (cut.gates, "gates of which the map does not say for whom they open, passed"),
+        (cut.unplaced, "barriers on a junction, of which the map does not say which road they close, passed"),
+    ):
+        tags: dict[str, list[int]] = {}
+        for barrier in found:
+            tags.setdefault(barrier.tag, []).append(barrier.node)
+        for tag, nodes in sorted(tags.items()):
+            yield f"{about}: {tag}: {in_words('node', nodes)}"
+
+
+def _of_turns(built: Built) -> Iterator[str]:
+    for relations, about in (
+        (built.turns.at_times, "turn restrictions at certain times or under conditions, left out"),
+        (built.turns.over_ways, "turn restrictions over a way that is reached from elsewhere too, left out"),
+        (built.turns.unread, "turn restrictions that are not understood, left out"),
+    ):
+        if relations:
+            yield f"{about}: {in_words('relation', relations)}"
+
+
+def unconnected(extract: Extract, built: Built) -> Iterator[str]:
+    """The roads that are not in the network, because no road leads from them to most of it."""
+    there = {way_of(edge.edge_id) for edge in built.edges}
+    missing = [way.way_id for way in extract.ways if way.way_id not in there]
+    if missing:
+        yield f"{counted(len(missing), 'road')} apart from the rest, left out: {in_words('way', missing)}"

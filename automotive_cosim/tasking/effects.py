@@ -1,0 +1,97 @@
+"""Checks of what a command does to the cabin, against doing nothing: a set point is no warmth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from automotive_cosim.cockpit.cabin import FOG_OPAQUE, Air, Cabin, CabinStart, Pane
+from automotive_cosim.cockpit.signals import GLASS, HVAC, OUTSIDE, Signals
+from automotive_cosim.cockpit.vehicle import Vehicle
+from automotive_cosim.cosim.moment import Moment
+
+AHEAD_S = 60.0
+"""How far ahead the cabin is forecast: a minute in which somebody who is cold would notice a difference."""
+HEATING = frozenset(
+    signal.path
+    for signal in (
+        HVAC.DRIVER_TEMPERATURE,
+        HVAC.PASSENGER_TEMPERATURE,
+        HVAC.FAN_SPEED,
+        HVAC.AUTO,
+        HVAC.AIR_CONDITIONING,
+        HVAC.AIR_DISTRIBUTION,
+        HVAC.RECIRCULATION,
+        HVAC.FRONT_DEFROSTER,
+        HVAC.REAR_DEFROSTER,
+        HVAC.MAX_DEFROST,
+    )
+)
+"""What may be commanded to warm or dry the air."""
+
+
+@dataclass(frozen=True, slots=True)
+class CabinWarmer:
+    """In a minute the air of the cabin is warmer by some kelvins than with the settings of the start."""
+
+    by_k: float
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The climate's commands."""
+        return HEATING
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether the present settings warm that much more."""
+        acted, idle = (_in_a_minute(settings.signals, now) for settings in (now, start))
+        return acted.temperature_c - idle.temperature_c >= self.by_k
+
+    def __str__(self) -> str:
+        return f"the cabin {self.by_k:g} K warmer in a minute than with the settings of the start"
+
+
+@dataclass(frozen=True, slots=True)
+class GlassClears:
+    """In a minute the fog on the inside of a pane is less than with the settings of the start, by a share."""
+
+    rear: bool
+    """The rear window, not the windshield."""
+    by: float
+    """Share of the road that the fog hides no longer, 0 to 1."""
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """The climate's commands."""
+        return HEATING
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether the present settings clear that much more."""
+        acted, idle = (self._pane(_in_a_minute(settings.signals, now)) for settings in (now, start))
+        return idle.fog_inside - acted.fog_inside >= self.by
+
+    def _pane(self, cabin: Cabin) -> Pane:
+        return cabin.rear_window if self.rear else cabin.windshield
+
+    def __str__(self) -> str:
+        return f"the {'rear window' if self.rear else 'windshield'} clearing, by {self.by:.0%} within a minute"
+
+
+EFFECTS = (CabinWarmer, GlassClears)
+"""Checks of an effect: whatever brings it about is right."""
+
+
+def _in_a_minute(settings: Mapping[str, Any], now: Moment) -> Cabin:
+    """The cabin after ``AHEAD_S`` from now with these settings."""
+    signals = now.signals
+    outside = Air(signals[OUTSIDE.TEMPERATURE.path], signals[OUTSIDE.HUMIDITY.path], 0.0, now.driving.speed_mps)
+    start = CabinStart(
+        temperature_c=signals[HVAC.CABIN_TEMPERATURE.path], humidity_pct=signals[HVAC.CABIN_HUMIDITY.path]
+    )
+    cabin = Cabin.at(start, outside)
+    cabin = replace(
+        cabin,
+        windshield=replace(cabin.windshield, fog=signals[GLASS.WINDSHIELD_FOG.path] * FOG_OPAQUE),
+        rear_window=replace(cabin.rear_window, fog=signals[GLASS.REAR_FOG.path] * FOG_OPAQUE),
+    )
+    return cabin.after(AHEAD_S, Vehicle(Signals(settings)).controls(now.weather.precipitation), outside)

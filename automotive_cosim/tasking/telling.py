@@ -1,0 +1,177 @@
+"""What a verdict says of an end state: what is, and what should be, in a reader's words.
+
+fan speed is 30 %, should be 100 %
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from automotive_cosim.cockpit.signals import ACTUATORS, named
+from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.tasking.checks import (
+    AlertGiven,
+    AllOf,
+    AnyOf,
+    AppDataIs,
+    Check,
+    SignalChanged,
+    SignalIs,
+    SignalLowered,
+    SignalRaised,
+    SignalWithin,
+)
+
+SEATS = {
+    ("Row1", "DriverSide"): "driver's",
+    ("Row1", "PassengerSide"): "passenger's",
+    ("Row2", "DriverSide"): "rear left",
+    ("Row2", "PassengerSide"): "rear right",
+    ("Mirrors", "DriverSide"): "driver's",
+    ("Mirrors", "PassengerSide"): "passenger's",
+}
+GENERAL = frozenset({
+    "Vehicle", "ADAS", "Body", "Cabin", "Chassis", "Connectivity", "HMI", "HVAC", "Infotainment", "Powertrain",
+    "Privacy", "Seating", "Station", "Row1", "Row2", "Driver", "Passenger", "DriverSide", "PassengerSide",
+    "Mirrors", "Door", "Lights", "AnyPosition", "Center", "Spotlight", "Backrest", "Equalizer", "Media", "Played",
+    "AmbientLight", "Wiping", "TractionBattery", "ChargingPort", "Transmission",
+})  # fmt: skip
+"""Parts of a path that only say where the signal is filed."""
+FIELD_WORDS = ("Active", "Enabled", "Engaged", "On", "Position", "Mode", "Level", "Cooling", "SpeedSet")
+UNITS = {"percent": " %", "celsius": " °C", "degrees": "°"}
+NAMES = {
+    "navigation.destination": "the destination",
+    "navigation.onward": "the place after the destination",
+    "navigation.avoid": "what routes avoid",
+    "messages.sent": "messages sent",
+    "messages.read": "messages read",
+    "phone.do_not_disturb": "do not disturb",
+    "requests": "requests to the road",
+}
+PATHS = {
+    "Vehicle.ADAS.CruiseControl.IsActive": "cruise control",
+    "Vehicle.ADAS.CruiseControl.IsEnabled": "cruise control permitted",
+    "Vehicle.ADAS.CruiseControl.SpeedSet": "cruise speed",
+    "Vehicle.ADAS.CruiseControl.TimeGapSet": "cruise time gap",
+    "Vehicle.ADAS.SpeedLimiter.SpeedSet": "limiter speed",
+    "Vehicle.ADAS.EBA.IsEnabled": "emergency braking",
+    "Vehicle.ADAS.ESC.IsEnabled": "stability control",
+    "Vehicle.ADAS.DMS.IsEnabled": "driver monitoring",
+    "Vehicle.Body.Lights.Beam.High.IsOn": "high beam",
+    "Vehicle.Body.Lights.Beam.Low.IsOn": "dipped beam",
+    "Vehicle.Body.Lights.Fog.Front.IsOn": "front fog lamps",
+    "Vehicle.Body.Lights.Fog.Rear.IsOn": "rear fog lamp",
+    "Vehicle.Body.Lights.Hazard.IsSignaling": "hazard lights",
+    "Vehicle.Body.Lights.Parking.IsOn": "position lamps",
+    "Vehicle.Body.Trunk.Rear.IsOpen": "trunk open",
+    "Vehicle.Body.Windshield.Front.Wiping.Mode": "front wiper",
+    "Vehicle.Body.Windshield.Rear.Wiping.Mode": "rear wiper",
+    "Vehicle.Cabin.HVAC.IsMaxAirConditioningActive": "maximum cooling",
+    "Vehicle.Cabin.HVAC.IsKeptAfterParking": "climate after parking",
+    "Vehicle.Cabin.HVAC.Station.Row1.Driver.Temperature": "driver's temperature",
+    "Vehicle.Cabin.Infotainment.HMI.Brightness": "screen brightness",
+    "Vehicle.Cabin.Infotainment.HMI.CurrentLanguage": "language",
+    "Vehicle.Cabin.Infotainment.HMI.RearBrightness": "rear screen brightness",
+    "Vehicle.Cabin.Infotainment.Media.Action": "playback",
+    "Vehicle.Cabin.Infotainment.Media.Played.Source": "media source",
+    "Vehicle.Cabin.Infotainment.Media.Volume": "media volume",
+    "Vehicle.Cabin.Infotainment.Media.IsMuted": "media muted",
+    "Vehicle.Cabin.Infotainment.Media.SelectedURI": "what plays",
+    "Vehicle.Cabin.Infotainment.Navigation.Mute": "voice guidance",
+    "Vehicle.Cabin.Infotainment.Navigation.Volume": "guidance volume",
+    "Vehicle.Cabin.Light.AmbientLight.Row1.DriverSide.Color": "ambient light colour",
+    "Vehicle.Cabin.Light.AmbientLight.Row1.DriverSide.Intensity": "ambient light",
+    "Vehicle.Cabin.Light.IsDomeOn": "cabin light",
+    "Vehicle.Cabin.Light.Spotlight.Row1.DriverSide.IsLightOn": "driver's reading light",
+    "Vehicle.Cabin.Light.Spotlight.Row1.PassengerSide.IsLightOn": "passenger's reading light",
+    "Vehicle.Cabin.Seat.IsBeltReminderSounding": "seat-belt reminder",
+    "Vehicle.Cabin.Seat.Row1.DriverSide.Position": "driver's seat position",
+    "Vehicle.Cabin.Seat.Row1.PassengerSide.Position": "passenger's seat position",
+    "Vehicle.Cabin.Seat.Row1.PassengerSide.Airbag.IsSwitchedOn": "passenger's airbag",
+    "Vehicle.Connectivity.Cellular.IsEnabled": "mobile data",
+    "Vehicle.Connectivity.WiFi.IsEnabled": "Wi-Fi",
+    "Vehicle.Connectivity.WiFi.IsHotspotActive": "Wi-Fi hotspot",
+    "Vehicle.Powertrain.TractionBattery.Charging.ChargeLimit": "charge limit",
+    "Vehicle.Powertrain.Transmission.PerformanceMode": "drive mode",
+}
+"""Names where the path alone would not tell a reader."""
+
+
+def told(key: str) -> str:
+    """The name of an entry of ``Moment.commands`` in words: a signal's path, or a key of the apps' data."""
+    if key in PATHS or key in NAMES:
+        return PATHS.get(key) or NAMES[key]
+    if not key.startswith("Vehicle."):
+        return key.replace(".", " ").replace("_", " ")
+    parts = key.split(".")
+    seats = [word for pair, word in SEATS.items() if set(pair) <= set(parts)]
+    words = [part for part in parts[:-1] if part not in GENERAL]
+    last = parts[-1].removeprefix("Is")
+    for ending in FIELD_WORDS:
+        if last.endswith(ending) and (last != ending or words):
+            last = last.removesuffix(ending)
+            break
+    if last == "Locked":
+        last = "DoorLock"
+    split = [word for part in (*words, last) for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", part)]
+    return " ".join([*seats, *(word if word.isupper() and len(word) > 1 else word.lower() for word in split)])
+
+
+def told_value(key: str, value: Any) -> str:
+    """A value in words, with its unit."""
+    if value is None or value == "":
+        return "none"
+    if isinstance(value, bool):
+        return "on" if value else "off"
+    unit = named(key).unit if key in ACTUATORS else ""
+    if isinstance(value, int | float):
+        return f"{value:g}{UNITS.get(unit, f' {unit}' if unit else '')}"
+    return str(value)
+
+
+def missing(check: Check, start: Moment, now: Moment, trace: Sequence[Moment]) -> str:
+    """What keeps a goal from being reached: what is, and what should be."""
+    return "; ".join(dict.fromkeys(_lacks(check, start, now, trace)))
+
+
+def _lacks(check: Check, start: Moment, now: Moment, trace: Sequence[Moment]) -> Iterator[str]:
+    if check.holds(start, now, trace):
+        return
+    match check:
+        case AllOf(checks):
+            for each in checks:
+                yield from _lacks(each, start, now, trace)
+        case AnyOf(checks):
+            yield ", or ".join(missing(each, start, now, trace) for each in checks)
+        case SignalIs(signal, values) | AppDataIs(signal, values):
+            key = signal if isinstance(signal, str) else signal.path
+            yield _is(key, now, " or ".join(told_value(key, value) for value in values))
+        case SignalRaised(signal, by):
+            least = float(start.signals[signal.path]) + by
+            yield _is(signal.path, now, f"{told_value(signal.path, least)} or more")
+        case SignalLowered(signal, by):
+            most = float(start.signals[signal.path]) - by
+            yield _is(signal.path, now, f"{told_value(signal.path, most)} or less")
+        case SignalWithin(signal, low, high):
+            yield _is(signal.path, now, f"{told_value(signal.path, low)} to {told_value(signal.path, high)}")
+        case SignalChanged(signal):
+            yield f"{told(signal.path)} is still {told_value(signal.path, now.signals[signal.path])}"
+        case AlertGiven():
+            given = now.commands["alerts"][len(start.commands["alerts"]) :]
+            yield f"{_alerts(given)}, should be {check}"
+        case _:
+            yield f"there should be {check}"
+
+
+def _is(key: str, now: Moment, wanted: str) -> str:
+    value = now.signals[key] if key in now.signals else now.commands[key]
+    return f"{told(key)} is {told_value(key, value)}, should be {wanted}"
+
+
+def _alerts(given: Sequence[Any]) -> str:
+    if not given:
+        return "no alert was given"
+    words = (f"{one['kind']}" + (f" to {one['speed_kmh']:g} km/h" if one["speed_kmh"] else "") for one in given)
+    return f"alerts given: {', '.join(words)}"

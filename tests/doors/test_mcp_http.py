@@ -1,0 +1,102 @@
+"""Over HTTP, the server answers whoever has its token, under its own names, and no other site's pages."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import pytest
+
+pytest.importorskip("mcp", reason="the extra mcp is not installed")
+import anyio
+
+from automotive_cosim.doors.mcp_http import Guarded
+from automotive_cosim.service.own_names import is_own, own_names
+from tests.laws import over
+
+PORT, TOKEN = 8123, "the-token"
+OWN = f"127.0.0.1:{PORT}"
+BEARER = {"authorization": f"Bearer {TOKEN}"}
+
+
+async def reached(scope: Any, receive: Any, send: Any) -> None:
+    await send({"type": "http.response.start", "status": 200, "headers": []})
+    await send({"type": "http.response.body", "body": b"reached"})
+
+
+def status(headers: Mapping[str, str], query: str = "", host: str = "127.0.0.1", path: str = "/mcp") -> int:
+    """The status of the answer to a request."""
+    sent: list[Any] = []
+
+    async def receive() -> Any:
+        return {"type": "http.request", "body": b"{}", "more_body": False}
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    scope = {
+        "type": "http",
+        "method": "POST",
+        "path": path,
+        "query_string": query.encode("latin-1"),
+        "headers": [(name.encode(), value.encode("latin-1")) for name, value in headers.items()],
+    }
+    anyio.run(Guarded(reached, host, PORT, TOKEN), scope, receive, send)
+    return int(sent[0]["status"])
+
+
+def test_the_token_is_taken_from_the_address_or_the_header() -> None:
+    for name in (OWN, f"localhost:{PORT}", f"[::1]:{PORT}", f"LOCALHOST:{PORT}"):
+        assert status({"host": name} | BEARER) == 200
+        assert status({"host": name}, f"token={TOKEN}") == 200
+        assert status({"host": name, "origin": f"http://{name}"} | BEARER) == 200
+
+
+@over(["", "token=", "token=the-toke", "token=the-token2", "token=%ff%fe", "TOKEN=the-token", "token=the%00-token"])
+def test_another_token_in_the_address_is_refused(query):
+    assert status({"host": OWN}, query) == 403
+
+
+@over(
+    ["", "Bearer", "Bearer ", "Bearer wrong", "Basic the-token", "the-token", "Bearer \xff", "bearer the-token x"]
+)
+def test_another_token_in_the_header_is_refused(given):
+    assert status({"host": OWN, "authorization": given}) == 403
+
+
+@over(["", "evil.example", f"evil.example:{PORT}", "127.0.0.1", "127.0.0.1:80", f"127.0.0.1.evil.example:{PORT}",
+       f"{OWN}@evil.example", f"evil.example#{OWN}", f"10.0.0.1:{PORT}", "127.0.0.1:x"])  # fmt: skip
+def test_a_name_that_is_not_the_servers_is_refused_with_the_token_too(name):
+    assert status({"host": name} | BEARER) == 421
+
+
+def test_a_request_without_a_name_is_refused() -> None:
+    assert status(BEARER) == 421
+
+
+@over(
+    [
+        "null",
+        "http://evil.example",
+        f"https://127.0.0.1:{PORT}",
+        "http://127.0.0.1:80",
+        f"http://localhost:{PORT}",
+        "",
+    ]
+)
+def test_another_sites_page_is_refused_with_the_token_too(origin):
+    assert status({"host": OWN, "origin": origin} | BEARER) == 403
+
+
+@over(["/", "/mcp", "/mcp/", "/docs", "//mcp"])
+def test_no_path_does_without_the_token(path):
+    assert status({"host": OWN}, path=path) == 403
+
+
+def test_one_that_listens_everywhere_is_asked_by_any_address_but_by_no_foreign_name() -> None:
+    names = own_names("0.0.0.0")
+    assert is_own(f"10.1.2.3:{PORT}", names, PORT)
+    assert is_own(f"[fe80::1]:{PORT}", names, PORT)
+    assert not is_own(f"evil.example:{PORT}", names, PORT)
+    assert status({"host": f"10.1.2.3:{PORT}"} | BEARER, host="0.0.0.0") == 200
+    assert status({"host": f"10.1.2.3:{PORT}"}, host="0.0.0.0") == 403

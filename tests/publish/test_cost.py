@@ -1,0 +1,192 @@
+"""What a bundle costs to check is bounded by its size and its plan, and what is too dear is refused in one line."""
+
+import gzip
+import json
+import lzma
+import os
+import sys
+import time
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import MOST_VALUES, open_file, parse_json, read_json, read_json_lines
+from automotive_cosim.publish import archive, limited
+from automotive_cosim.publish.bundle import write_bundle
+from automotive_cosim.publish.contents import NAME, file_sha256, read_contents
+from automotive_cosim.publish.episodes import ROWS
+from automotive_cosim.publish.limited import LimitedProcesses
+from automotive_cosim.publish.verify import verify
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.moments import judged_file
+from automotive_cosim.run.store import read_rows, trace_file
+
+linux = pytest.mark.skipif(sys.platform != "linux", reason="limits memory on Linux")
+VALUES = b"[" + b"[]," * (MOST_VALUES // 2 + 1) + b"0]"
+"""8 MB of empty lists, which Python keeps in thirty times as much."""
+
+
+def renewed(folder: Path, out: Path) -> Path:
+    """A bundle of changed files with hashes that fit."""
+    hashes = {name: file_sha256(folder / name) for name in archive.members(folder) if name != NAME}
+    (folder / NAME).write_text(replace(read_contents(folder), files=hashes).text())
+    archive.pack(folder, out)
+    return out
+
+
+def judged(folder: Path) -> EpisodeRow:
+    return next(row for row in read_rows(folder, EpisodeRow).values() if row.success is not None)
+
+
+def takes(megabytes: int) -> int:
+    return len(bytearray(megabytes << 20))
+
+
+def spins(seconds: float) -> None:
+    end_s = time.process_time() + seconds
+    while time.process_time() < end_s:
+        pass
+
+
+def ends() -> None:
+    os._exit(9)
+
+
+def refuses() -> None:
+    raise UserError("not this")
+
+
+def test_a_call_that_takes_too_much_memory_is_refused_and_the_next_one_is_answered(tmp_path):
+    (tmp_path / "b").write_bytes(b"small")
+    with LimitedProcesses(tmp_path / "b") as processes:
+        if sys.platform == "linux":
+            with pytest.raises(UserError, match="more memory or processor time than a file of its size"):
+                processes.call(takes, 2 * limited.FREE_BYTES >> 20)
+        assert processes.call(takes, 100) == 100 << 20
+        assert list(processes.map(takes, [1, 2, 3])) == [1 << 20, 2 << 20, 3 << 20]
+        with pytest.raises(UserError, match="not this"):
+            processes.call(refuses)
+        with pytest.raises(UserError, match="b is incomplete or malformed"):
+            processes.call(int, "x")
+
+
+@pytest.mark.slow
+@linux
+def test_a_larger_file_may_take_more(tmp_path):
+    with (tmp_path / "b").open("wb") as file:
+        file.truncate(2 * limited.FREE_BYTES // limited.TIMES)
+    with LimitedProcesses(tmp_path / "b") as processes:
+        assert processes.call(takes, 5 * limited.FREE_BYTES >> 22)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform == "win32", reason="has no limits")
+@pytest.mark.parametrize(("what", "given"), [(spins, (100.0,)), (ends, ())])
+def test_a_call_that_takes_too_long_or_ends_its_process_is_refused(tmp_path, monkeypatch, what, given):
+    monkeypatch.setattr(limited, "FREE_S", 1)
+    (tmp_path / "b").write_bytes(b"small")
+    with LimitedProcesses(tmp_path / "b") as processes, pytest.raises(UserError, match="processor time"):
+        processes.call(what, *given)
+
+
+@pytest.mark.slow
+def test_json_of_too_many_values_is_refused_before_it_is_parsed(tmp_path):
+    for text in (VALUES, VALUES.decode(), VALUES.replace(b"[]", b"{}")):
+        with pytest.raises(ValueError, match="too many values"):
+            parse_json(text)
+    path = tmp_path / "x.json.xz"
+    path.write_bytes(lzma.compress(VALUES, preset=0))
+    with pytest.raises(ValueError, match="too many values"):
+        read_json(path)
+    line = b"[" + b"[]," * (MOST_VALUES // 8) + b"0]\n"
+    path.write_bytes(gzip.compress(line * 3, 1))
+    assert len(read_json_lines(path)) == 3
+    path.write_bytes(gzip.compress(line * 5, 1))
+    with pytest.raises(ValueError, match="too many values"):
+        read_json_lines(path)
+
+
+@pytest.mark.parametrize("file", [judged_file, trace_file])
+def test_a_file_that_unpacks_to_more_than_its_plan_allows_is_named(unpacked, tmp_path, file):
+    path = file(unpacked, judged(unpacked).id)
+    padded = b'{"pad": "' + b"x" * (25 << 20) + b'"}\n'
+    path.write_bytes(lzma.compress(padded, preset=0) if path.suffix == ".xz" else gzip.compress(padded, 1))
+    (problem,) = verify(renewed(unpacked, tmp_path / "b.bundle")).problems
+    assert str(problem).startswith(f"traces/{path.name}: unpacks to over ")
+
+
+@pytest.mark.slow
+def test_references_that_grow_twofold_a_line_cost_a_bounded_time(unpacked, tmp_path, monkeypatch):
+    """Each entry of the pool holds the one before twice: small to keep, and endless to look through."""
+    monkeypatch.setattr(limited, "FREE_S", 3)
+    path = judged_file(unpacked, judged(unpacked).id)
+    whole = json.loads(lzma.decompress(path.read_bytes()))
+    at = len(whole["pool"])
+    whole["pool"] += [["t", 0], *(["t", ["#", at + n], ["#", at + n]] for n in range(60))]
+    whole["pool"] += [["f", ["#", at + 60]]]  # to be hashed
+    path.write_bytes(lzma.compress(json.dumps(whole).encode(), preset=0))
+    try:
+        assert verify(renewed(unpacked, tmp_path / "b.bundle")).problems
+    except UserError as refused:
+        assert "made to do that" in str(refused)
+
+
+def test_an_archive_that_holds_more_than_its_size_is_refused(packed, tmp_path):
+    path = tmp_path / "b.bundle"
+    path.write_bytes(packed.read_bytes())
+    with zipfile.ZipFile(path, "a") as zipped:
+        whole = zipped.getinfo("manifest.json")
+        first = zipped.getinfo(next(name for name in zipped.namelist() if name.endswith(".gz")))
+        for number in range(30):  # one body, many names
+            again = zipfile.ZipInfo(f"traces/a{number}.jsonl.gz")
+            again.header_offset, again.CRC = first.header_offset, first.CRC
+            again.file_size = again.compress_size = 10 * first.file_size
+            zipped.filelist.append(again)
+            zipped.NameToInfo[again.filename] = again
+        zipped.comment = b"x" * (whole.file_size % 7)
+        zipped._didModify = True
+    with pytest.raises(UserError, match=r"is not a bundle|holds more than its size"):
+        verify(path)
+
+
+def test_an_episode_that_stands_twice_is_found_in_a_bundle_and_in_a_folder(folder, unpacked, tmp_path):
+    lines = (unpacked / ROWS).read_text().splitlines(keepends=True)
+    (unpacked / ROWS).write_text("".join(sorted([*lines, lines[0]], key=lambda line: json.loads(line)["id"])))
+    found = verify(renewed(unpacked, tmp_path / "b.bundle")).problems
+    assert any("again, which was judged before" in str(problem) for problem in found)
+    rows = [json.loads(line) for line in (folder / ROWS).read_text().splitlines()]
+    failed = next(row for row in rows if row["success"] is None)
+    with (folder / ROWS).open("a") as file:  # an error may have been run again
+        file.write(json.dumps(failed) + "\n")
+    assert not verify(folder).problems
+    with (folder / ROWS).open("a") as file:
+        file.write(json.dumps(next(row for row in rows if row["success"] is not None)) + "\n")
+    assert any("again, which was judged before" in str(problem) for problem in verify(folder).problems)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="has no pipes with a name")
+def test_what_is_not_a_regular_file_is_refused_unopened(folder, tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path in (tmp_path / "pipe", Path("/dev/zero"), tmp_path):
+        with pytest.raises(OSError, match=r"not a regular file|directory"):
+            open_file(path)
+    for path in (tmp_path / "pipe", Path("/dev/zero")):
+        with pytest.raises(UserError, match="is not a regular file"):
+            verify(path)
+    (folder / "manifest.json").unlink()
+    os.mkfifo(folder / "manifest.json")
+    with pytest.raises(UserError, match="is not a regular file"):
+        verify(folder)
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
+def test_a_link_is_not_published(folder, tmp_path):
+    path = trace_file(folder, judged(folder).id)
+    path.rename(tmp_path / "elsewhere.gz")
+    path.symlink_to(tmp_path / "elsewhere.gz")
+    with pytest.raises(UserError, match="is a link"):
+        write_bundle(folder, tmp_path / "b.bundle")
+    assert not (tmp_path / "b.bundle").exists()

@@ -1,0 +1,54 @@
+"""The film of an episode shows its drive, whatever came before."""
+
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from automotive_cosim.contracts import RoadNetwork
+from automotive_cosim.report import film as films
+from automotive_cosim.report.film import Film
+from automotive_cosim.run.timeline import Sample
+
+SCREEN = np.zeros((48, 80, 3), np.uint8)
+NETWORK = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
+
+
+def _film(
+    folder: Path, moments_s: list[float], path_s: list[float], monkeypatch: pytest.MonkeyPatch
+) -> list[float]:
+    """Times of the frames of a film that was handed over at 100 s."""
+    shown: list[float] = []
+
+    def compose(self: Film, frame: films.FilmFrame, result: Any, painter: Any) -> Image.Image:
+        assert [sample for sample in result.path if sample.at_s <= frame.time_s - 100.0 + films.SAME_TIME_S]
+        shown.append(frame.time_s)
+        return Image.new("RGB", (8, 8))
+
+    monkeypatch.setattr(Film, "_compose", compose)
+    monkeypatch.setattr(films, "_outcome", lambda result: "")
+    monkeypatch.setattr(films, "_why", lambda result: "")
+    film = Film(folder)
+    cockpit = cast("Any", SimpleNamespace(screenshot=lambda: SCREEN))
+    for time_s in moments_s:
+        film.moved(cast("Any", SimpleNamespace(time_s=time_s)), cockpit)
+    episode = SimpleNamespace(network=NETWORK, instance=SimpleNamespace(goal=""))
+    step = SimpleNamespace(moment=SimpleNamespace(time_s=100.0))
+    film.handed_over(cast("Any", episode), cast("Any", SimpleNamespace(step=step, screenshot=SCREEN)))
+    path = tuple(Sample(at_s, 50.0, 50.0, "", 0.0, 0.0, 0.0) for at_s in path_s)
+    film.finished(cast("Any", SimpleNamespace(path=path)))
+    return shown
+
+
+def test_frames_of_earlier_departures_are_left_out(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shown = _film(tmp_path, [40.0, 60.0, 80.0, 97.0], [-3.0, 0.0], monkeypatch)
+    assert shown == [97.0, 100.0]
+    assert (tmp_path / "episode.webp").is_file()
+
+
+def test_without_a_drive_there_is_no_film(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert _film(tmp_path, [97.0], [], monkeypatch) == []
+    assert not (tmp_path / "episode.webp").exists()

@@ -1,0 +1,166 @@
+"""Whatever lies in a run folder, and however requests come, the other pages are shown and nothing leads out."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import sys
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.formats.files import MOST_VALUES
+from automotive_cosim.run.road_recorder import is_being_written
+from automotive_cosim.serve.server import MOST_BYTES
+from tests.laws import over
+
+from .conftest import HOSTILE, Browser, write_evaluation, write_record
+
+Serving = Callable[..., Browser]
+unix = pytest.mark.skipif(sys.platform == "win32", reason="has no pipes with a name, and links need rights")
+
+POSTS = ("/api/play/start", "/api/play/act", "/api/play/pace", "/api/play/leave", "/api/study/join",
+         "/api/study/begin", "/api/study/answer", "/api/study/play/act")  # fmt: skip
+
+
+def shown(browser: Browser) -> list[str]:
+    return sorted(record["name"] for record in browser("/api/runs").json["records"])
+
+
+@unix
+def test_pipes_in_a_folder_hang_nothing(serving: Serving, tmp_path: Path) -> None:
+    write_record(tmp_path / "good")
+    for name, files in (
+        ("evaluation", ("lock", "manifest.json", "traces/one.jsonl.gz", "pictures/one/step_000.jpg")),
+        ("second", ("lock", "episodes.jsonl")),
+    ):
+        folder = write_evaluation(tmp_path / name)
+        for each in files:
+            (folder / each).unlink(missing_ok=True)
+            os.mkfifo(folder / each)
+    folder = write_evaluation(tmp_path / "third")
+    os.mkfifo(folder / "lock")
+    os.mkfifo(folder / "pictures" / "one" / "road.jsonl.gz")
+    run = write_record(tmp_path / "run")
+    for each in ("road.jsonl.gz", "screenshots/step_000.png"):
+        (run / each).unlink()
+        os.mkfifo(run / each)
+    browser = serving(tmp_path)
+    assert shown(browser) == ["good", "run", "third"]
+    for record in browser("/api/runs").json["records"]:
+        for path in ("", "/steps", "/road", "/pictures/0", "/episodes/one", "/episodes/one/steps"):
+            assert browser(f"/api/runs/{record['id']}{path}").status in (200, 404, 422)
+        assert browser(f"/api/evaluations/{record['id']}").status in (200, 404)
+
+
+@unix
+def test_links_in_an_evaluation_do_not_lead_out(serving: Serving, tmp_path: Path) -> None:
+    secret = write_evaluation(tmp_path / "secret", agent="a-secret")
+    for number, name in enumerate(("manifest.json", "episodes.jsonl", "traces/one.jsonl.gz", "pictures/one")):
+        folder = write_evaluation(tmp_path / "shown" / str(number), agent="mine")
+        if (folder / name).is_dir():
+            for each in (folder / name).iterdir():
+                each.unlink()
+            (folder / name).rmdir()
+        else:
+            (folder / name).unlink()
+        (folder / name).symlink_to(secret / name)
+    browser = serving(tmp_path / "shown")
+    assert shown(browser) == ["2", "3"]
+    answers = [browser("/api/runs")]
+    for record in answers[0].json["records"]:
+        answers += [
+            browser(f"/api/runs/{record['id']}/episodes/one{path}") for path in ("", "/steps", "/pictures/0")
+        ]
+        answers.append(browser(f"/api/evaluations/{record['id']}"))
+    assert not any(b"a-secret" in answer.body for answer in answers)
+
+
+def test_json_that_grows_when_it_is_read_is_refused_and_hides_nothing(serving: Serving, tmp_path: Path) -> None:
+    write_record(tmp_path / "good", goal=HOSTILE)
+    for name, text in (
+        ("many", "[" + "[]," * (MOST_VALUES // 2 + 1) + "0]"),
+        ("deep", "[" * 200_000 + "]" * 200_000),
+        ("digits", '{"goal": ' + "9" * 10_000 + "}"),
+        ("list", "[1]"),
+        ("half", '{"goal": "\\ud800", "manifest": 7}'),
+    ):
+        (write_record(tmp_path / name) / "episode.json").write_text(text)
+    browser = serving(tmp_path)
+    assert "good" in shown(browser)
+    for record in browser("/api/runs").json["records"]:
+        answer = browser(f"/api/runs/{record['id']}")
+        assert answer.status == 200 if record["name"] == "good" else answer.status in (200, 422)
+        assert answer.headers["Content-Type"].startswith("application/json")
+
+
+@unix
+def test_whether_a_pipe_is_written_is_not_waited_for(tmp_path: Path) -> None:
+    os.mkfifo(tmp_path / "lock")
+    assert not is_being_written(tmp_path / "lock")
+
+
+def test_slow_clients_keep_nobody_waiting(serving: Serving, tmp_path: Path) -> None:
+    write_record(tmp_path / "run")
+    browser = serving(tmp_path)
+    slow = [socket.create_connection(("127.0.0.1", browser.server.server_port)) for _ in range(30)]
+    for number, each in enumerate(slow):
+        each.sendall(b"POST /api/play/act HTTP/1.1\r\nHost: x\r\nContent-Le"[: 10 + number])
+    try:
+        assert shown(browser) == ["run"]
+        assert browser("/static/app.js").status == 200
+    finally:
+        for each in slow:
+            each.close()
+
+
+def test_fifty_spectators_are_all_answered(serving: Serving, tmp_path: Path) -> None:
+    write_record(tmp_path / "run")
+    browser = serving(tmp_path)
+    (record,) = browser("/api/runs").json["records"]
+    answers: list[int] = []
+
+    def watch() -> None:
+        for path in ("", "/steps", "/road", "/pictures/0"):
+            answers.append(browser(f"/api/runs/{record['id']}{path}").status)
+
+    watching = [threading.Thread(target=watch) for _ in range(50)]
+    for each in watching:
+        each.start()
+    for each in watching:
+        each.join(60)
+    assert answers == [200] * 200
+
+
+@over(POSTS)
+def test_no_other_site_posts_even_with_the_cookie(path, serving, tmp_path):
+    browser = serving(tmp_path)
+    own = f"http://127.0.0.1:{browser.server.server_port}"
+    for origin in ("http://evil.example", "null", own.replace("127.0.0.1", "localhost"), f"{own}.evil.example"):
+        assert browser(path, "POST", body="{}", Origin=origin).status == 403
+    assert browser(path, "POST", body="{}").status == 403  # a form of an old browser
+    assert browser(path, "POST", token="wrong", body="{}", Origin=own).status == 403
+    assert browser(path, "POST", body="{}", Origin=own).status == 405  # neither playing nor a study
+
+
+@over([("x" * (MOST_BYTES + 1), 413), ("", 405), ("[" * 5000, 405), ("\x00\xff", 405)])
+def test_a_body_of_any_kind_gets_an_answer(body, status, serving, tmp_path):
+    browser = serving(tmp_path)
+    own = f"http://127.0.0.1:{browser.server.server_port}"
+    assert browser("/api/play/act", "POST", body=body, Origin=own).status == status
+    assert browser("/api/runs").status == 200
+
+
+@over(["-1", "1e9", "x", "99999999999", "+5", "٣"])
+def test_a_length_that_is_none_is_refused(length, serving, tmp_path):
+    browser = serving(tmp_path)
+    port = browser.server.server_port
+    with socket.create_connection(("127.0.0.1", port), timeout=10) as raw:
+        head = f"POST /api/play/act HTTP/1.1\r\nHost: 127.0.0.1:{port}\r\nOrigin: http://127.0.0.1:{port}\r\n"
+        cookie = f"Cookie: automotive_cosim_{port}={browser.server.token}\r\n"
+        raw.sendall((head + cookie + f"Content-Length: {length}\r\n\r\n{{}}").encode())
+        assert raw.recv(100).split()[1] in (b"413", b"400")
+    assert json.loads(browser("/api/runs").body)["records"] == []
