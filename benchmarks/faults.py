@@ -32,11 +32,12 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
+from automotive_cosim.run.watch_row import WatchRow
+
 from automotive_cosim.agents.leftovers import children, tree
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import steady
 from automotive_cosim.run.store import read_rows
-from automotive_cosim.run.watch_row import WatchRow
 
 COMMAND = (sys.executable, "-c", "from automotive_cosim_main import main; main()", "eval")
 TASKS = (

@@ -15,7 +15,7 @@ from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.run.watch_row import WatchRow
+    from automotive_cosim.run.drive_row import DriveTrialRow
 
 
 @takes_conditions()
@@ -50,9 +50,10 @@ def drive(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.families import FAMILIES
+    from automotive_cosim.run.drive import DriveSetup, run_drive
     from automotive_cosim.run.drive_recorder import DriveRecorder
+    from automotive_cosim.run.jobs import DriveJob
     from automotive_cosim.run.row import as_json as row_json
-    from automotive_cosim.run.watch import WatchSetup, run_watch
 
     console = Console(highlight=False)
     if list_them:
@@ -69,7 +70,7 @@ def drive(
         raise UserError(f"{out} holds the results of a drive; give --out another folder")
     under = Conditions.named(given(conditions))
     player = make_agent(agent, model, AgentSettings(under, seed=seed))
-    setup = WatchSetup(
+    setup = DriveSetup(
         name,
         seed,
         player.name,
@@ -81,7 +82,7 @@ def drive(
     with ExitStack() as ends:
         for recorder in recorders:
             ends.callback(recorder.close)
-        record = run_watch(f"{name}-s{seed}-{player.name}", setup, player, watchers=recorders)
+        record = run_drive(DriveJob(setup).planned(), setup, player, observers=recorders)
     if as_json:
         print_json(row_json(record.row))
     else:
@@ -90,7 +91,7 @@ def drive(
             console.print(f"Recorded in {out}", soft_wrap=True)
 
 
-def _tell(console: Console, row: WatchRow) -> None:
+def _tell(console: Console, row: DriveTrialRow) -> None:
     """The drive's events and acts in chronological order, and its score."""
     from automotive_cosim.drives.judge import Worth
 

@@ -27,7 +27,6 @@ from automotive_cosim.cli.batches import (
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
 from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, number, whole_number
-from automotive_cosim.cli.watches import watch
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
@@ -35,14 +34,16 @@ from automotive_cosim.errors import InfrastructureError
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
-    from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.plan import Plan
+    from automotive_cosim.run.trial_row import TrialRow
 
 EPISODE_S, WARM_UP_S = 2.0, 10.0
 """Seconds that an episode in warm traffic and a warm-up take on one core, agents on `rules` included; rounded up
 from measurements on two shared cores, for the estimate of a dry run."""
 GRID_EPISODE_S, GRID_WARM_UP_S = 0.5, 2.0
 """The same on the small grid."""
+DRIVE_S = 60.0
+"""The same for a drive."""
 
 
 @takes_conditions(lists=True)
@@ -152,7 +153,8 @@ def evaluate(
     drives: Annotated[
         str | None,
         typer.Option(
-            help="Drives instead of tasks: families, patterns, scenarios, seasons or all; separated by commas.",
+            help="Drives, instead of tasks or beside those of --tasks: families, patterns, scenarios, seasons or "
+            "all; separated by commas.",
             show_default=False,
         ),
     ] = None,
@@ -163,9 +165,11 @@ def evaluate(
     """Run agents over tasks, scenarios and seeds, or over drives. Rerun the command to resume."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.errors import UnknownNameError
+    from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
+    from automotive_cosim.run.coverage import unit_of
     from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan, read_plan, with_preset
     from automotive_cosim.run.store import megabytes
@@ -173,7 +177,7 @@ def evaluate(
 
     if pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
-    named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios}
+    named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "drives": drives}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
@@ -185,16 +189,11 @@ def evaluate(
     values |= {"everywhere": True} if everywhere else {}
     values = with_preset(values, preset) if preset is not None else values
     budget = Budget(budget_tokens, budget_usd)
-    if drives is not None:
-        where = executor_of(executor, workers, ray_address, ray_send)
-        drives_of = values | {"drives": words("drives", drives)}
-        watch(drives_of, out, where, retries, budget, dry_run=dry_run, as_json=as_json)
-        return
     plan = make_plan(values)
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
-    lacks = plan.check(dry=dry_run)
+    lacks, unit = plan.check(dry=dry_run), unit_of(plan.as_json())
     check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
@@ -203,7 +202,7 @@ def evaluate(
         for lack in lacks:
             console.print(f"to fix before it can run: {lack}", soft_wrap=True, markup=False)
         return
-    with where, ProgressView(console, "episodes", _said) as view:
+    with where, ProgressView(console, f"{unit}s", _said) as view:
         try:
             end = run_plan(
                 plan,
@@ -216,19 +215,19 @@ def evaluate(
             )
         except KeyboardInterrupt:
             reached = f" ({read_results(folder).coverage})" if (folder / "manifest.json").is_file() else ""
-            typer.echo(f"finished episodes are in {folder}{reached}; rerun the command to resume", err=True)
+            typer.echo(f"finished {unit}s are in {folder}{reached}; rerun the command to resume", err=True)
             raise
     found = read_results(folder)
-    errors = [row for row in found.rows if row.success is None]
+    errors = [row for row in (*found.rows, *found.drives) if row.error is not None]
     size_mb = megabytes(folder)
     if as_json:
         told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
         typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
     else:
         console.print(f"{end.successes:,} succeeded; {found.coverage}")
-        for line in standings(found):
+        for line in (*standings(found), *drive_standings(found.drives)):
             console.print(f"  {line}", soft_wrap=True)
-        for line in _failures(found.rows):
+        for line in _failures((*found.rows, *found.drives)):
             console.print(f"  {line}", soft_wrap=True, markup=False)
         for row in errors:
             console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)
@@ -240,22 +239,22 @@ def evaluate(
     tell_stopped(end)
     if errors:
         raise InfrastructureError(
-            f"{len(errors)} of {counted(end.planned, 'episode')} ended in an infrastructure error, which no rate "
+            f"{len(errors)} of {counted(end.planned, unit)} ended in an infrastructure error, which no rate "
             "counts as a success; rerun the command to retry them"
         )
 
 
-def _failures(rows: Sequence[EpisodeRow]) -> Iterator[str]:
+def _failures(rows: Sequence[TrialRow]) -> Iterator[str]:
     """A line for each agent that failed."""
-    failed: dict[str, list[EpisodeRow]] = {}
+    failed: dict[str, list[TrialRow]] = {}
     for row in rows:
         if row.agent_error is not None:
             failed.setdefault(row.agent, []).append(row)
     for agent, (row, *more) in failed.items():
-        yield f"agent {agent} failed in {counted(1 + len(more), 'episode')}, e.g. {row.id}: {row.agent_error}"
+        yield f"agent {agent} failed in {counted(1 + len(more), 'trial')}, e.g. {row.id}: {row.agent_error}"
 
 
-def _said(progress: Progress[EpisodeRow]) -> str:
+def _said(progress: Progress[TrialRow]) -> str:
     lost = progress.judged - progress.successes
     errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
     return f"{progress.successes:,} succeeded, {lost:,} failed{errors}{time_left(progress)}"
@@ -264,12 +263,18 @@ def _said(progress: Progress[EpisodeRow]) -> str:
 def _announce(console: Console, plan: Plan, folder: Path) -> None:
     from rich.table import Table
 
+    from automotive_cosim.run.jobs import EpisodeJob
     from automotive_cosim.run.plan import languages_in_words
 
     jobs = plan.jobs()
     table = Table.grid(padding=(0, 2))
     table.add_row("agents", ", ".join(sorted({f"{job.setup.agent} ({job.setup.model})" for job in jobs})))
-    table.add_row("tasks", f"{len({job.setup.task for job in jobs})} (pairs in both halves)")
+    episodes = [job for job in jobs if isinstance(job, EpisodeJob)]
+    if episodes:
+        table.add_row("tasks", f"{len({job.setup.task for job in episodes})} (pairs in both halves)")
+    if len(episodes) < len(jobs):
+        families = {job.setup.family for job in jobs if not isinstance(job, EpisodeJob)}
+        table.add_row("drives", counted(len(families), "family", "families"))
     table.add_row("scenarios", ", ".join(sorted({job.scenario for job in jobs})))
     if left_out := plan.left_out():
         table.add_row(
@@ -295,9 +300,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         f"{limits.sim_s:g} s simulated, {limits.wall_s:g} s real and "
         f"{limits.agent_s:g} s in the agent's process, {limits.tokens:,} tokens",
     )
-    table.add_row(
-        "episodes", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}"
-    )
+    table.add_row("runs", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}")
     table.add_row("folder", str(folder))
     console.print(table)
     if any(job.setup.model == "rules" for job in jobs):
@@ -305,10 +308,14 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
 
 
 def _time_in_words(plan: Plan, workers: int) -> str:
+    from automotive_cosim.run.jobs import EpisodeJob
+
     jobs = plan.jobs()
-    places = Counter(job.scenario for job in jobs)
+    places = Counter(job.scenario for job in jobs if isinstance(job, EpisodeJob))
+    drives = len(jobs) - sum(places.values())
     warm = {job.simulation for job in jobs}
     own_s = sum(count * (GRID_EPISODE_S if place == "grid" else EPISODE_S) for place, count in places.items())
+    own_s += drives * DRIVE_S
     warm_s = sum(GRID_WARM_UP_S if place == "grid" else WARM_UP_S for place, _ in warm)
     minutes = (own_s + warm_s) / min(workers, len(warm)) / 60
     told = "less than a minute" if minutes < 1 else f"about {counted(round(minutes), 'minute')}"

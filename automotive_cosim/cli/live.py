@@ -19,7 +19,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.text import amount_of_speed
-from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, Shot
 from automotive_cosim.run.words import (
     action_in_words,
     is_over,
@@ -35,16 +35,16 @@ PLAIN_EVERY_S = 10.0
 """Without a terminal, the drive is reported this often, in simulated seconds."""
 
 
-class Notes(Watcher):
+class Notes(EpisodeObserver):
     """Prints only the assumptions about a scenario, to standard error."""
 
     def loading(self, scenario: Scenario) -> None:
-        """See ``Watcher``."""
+        """See ``EpisodeObserver``."""
         for note in scenario.notes:
             print(f"note: {note}", file=sys.stderr)
 
 
-class Live(Watcher):
+class Live(EpisodeObserver):
     """Shows an episode as it runs and, at the end, the verdict and the timeline."""
 
     def __init__(self, console: Console | None = None) -> None:

@@ -17,7 +17,6 @@ Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_d
 @reads_results
 def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
     """Write report.html, tables and plots into the folder of an evaluation, of tasks or drives, or a study."""
-    from automotive_cosim.report.drives import write_drives
     from automotive_cosim.report.evaluation import write_report
     from automotive_cosim.report.results import read_results
     from automotive_cosim.run.store import read_manifest
@@ -26,8 +25,6 @@ def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
     plan = read_manifest(folder)["plan"]
     if "study" in plan:
         page = write_study(folder)
-    elif "drives" in plan:
-        page = write_drives(folder)
     else:
         page = write_report(folder)
         typer.echo(str(read_results(folder).coverage))
@@ -48,9 +45,8 @@ def replay(
 ) -> None:
     """Replay the actions of a stored episode or drive and compare the traces; exit code 1 if they differ."""
     from automotive_cosim.run.rerun import rerun
-    from automotive_cosim.run.rewatch import holds_drives, rewatch
 
-    compared = rewatch(folder, episode) if holds_drives(folder) else rerun(folder, episode)
+    compared = rerun(folder, episode)
     different = [step for step in compared if step.differs]
     if as_json:
         print_json({"ok": not different, "steps": [asdict(step) for step in compared]})
@@ -68,13 +64,13 @@ def replay(
 
 @reads_results
 def regrade(folder: Folder, tasks_from: TasksFrom = None, as_json: AsJson = False) -> None:
-    """Judge the stored episodes again by the current checks and print what changes; nothing is written."""
+    """Judge the stored trials again by the current checks and print what changes; nothing is written."""
     from automotive_cosim.run.coverage import coverage
-    from automotive_cosim.run.episode_row import EpisodeRow
     from automotive_cosim.run.regrade import regrade as judged_again
-    from automotive_cosim.run.store import read_evaluation, read_rows
+    from automotive_cosim.run.rows import read_trials
+    from automotive_cosim.run.store import read_evaluation
 
-    found = coverage(read_evaluation(folder), read_rows(folder, EpisodeRow))
+    found = coverage(read_evaluation(folder), read_trials(folder))
     if as_json:
         judged = list(judged_again(folder))
         print_json(

@@ -14,11 +14,12 @@ from enum import Enum, StrEnum
 from functools import cache, lru_cache
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
-
-from PIL import ImageFont, features
+from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.errors import SetupError
+
+if TYPE_CHECKING:
+    from PIL import ImageFont  # takes long to load, and sizes of screens need no font
 
 Colour = tuple[int, int, int]
 
@@ -226,6 +227,8 @@ def font(weight: Weight, size: int) -> ImageFont.FreeTypeFont:
     if spec is None or not spec.submodule_search_locations:
         raise SetupError(f"the fonts of {package} are missing; install them with `pip install automotive-cosim`")
     path = Path(spec.submodule_search_locations[0]) / folder / weight.value
+    from PIL import ImageFont
+
     engine = ImageFont.Layout.RAQM if weight is Weight.RIGHT_TO_LEFT else ImageFont.Layout.BASIC
     return ImageFont.truetype(str(path), size, layout_engine=engine)
 
@@ -243,6 +246,8 @@ def face(text: str, weight: Weight, size: int) -> ImageFont.FreeTypeFont:
 @cache
 def sets_right_to_left() -> bool:
     """Whether Arabic and Hebrew can be set: by Pillow's Raqm, in a font of ``matplotlib``."""
+    from PIL import features
+
     return find_spec(_HOMES[Weight.RIGHT_TO_LEFT][0]) is not None and bool(features.check("raqm"))
 
 

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, replace
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.harm import Harm, distraction_s
-from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
+from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.specification import End
@@ -63,8 +63,7 @@ def result_of(watch: Watch) -> DriveResult:
     """The figures of a watch that is over."""
     judgement = watch.judgement
     assert judgement is not None
-    begun_s = watch.moments[0].time_s
-    found = score(judgement, watch.seconds)
+    events, acts, found = judged_since(judgement, watch.moments[0].time_s, watch.seconds)
     mine, nobodys = watch.harms
     texts = [str(step.action.text) for step in watch.steps if step.action is not None and step.action.text]
     return DriveResult(
@@ -74,14 +73,23 @@ def result_of(watch: Watch) -> DriveResult:
         harm=mine,
         baseline_harm=nobodys,
         distraction_s=distraction_s(watch.acts, texts),
-        events=tuple(_since(event, begun_s) for event in judgement.events),
-        acts=tuple(replace(act, time_s=round(act.time_s - begun_s, 3)) for act in judgement.acts),
+        events=events,
+        acts=acts,
         unwatched_from_s=watch.unwatched_from_s,
         steps=len(watch.steps) - 1,
         waits=watch.waits,
         wakes=watch.wakes,
         trace_sha256=watch.trace_sha256,
     )
+
+
+def judged_since(
+    judgement: Judgement, begun_s: float, seconds: float
+) -> tuple[tuple[JudgedEvent, ...], tuple[JudgedAct, ...], Score]:
+    """Events and acts with times since departure, and the score of the drive."""
+    events = tuple(_since(event, begun_s) for event in judgement.events)
+    acts = tuple(replace(act, time_s=round(act.time_s - begun_s, 3)) for act in judgement.acts)
+    return events, acts, score(judgement, seconds)
 
 
 def _since(event: JudgedEvent, begun_s: float) -> JudgedEvent:

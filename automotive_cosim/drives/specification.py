@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.result import DriveOutcome, result_of
@@ -12,6 +13,7 @@ from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import SessionSetup
+from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.traffic.fork import Simulations
 
@@ -28,6 +30,15 @@ class DriveSpec:
     seed: int = 0
     conditions: Conditions = Conditions()  # noqa: RUF009, frozen
     """What the agent is given, and at what speed."""
+
+    def check(self) -> None:
+        """Refuses what no drive has.
+
+        Raises:
+            UserError: another language than English.
+        """
+        if self.conditions.language is not Language.ENGLISH:
+            raise UserError(f"drives are in English, not in {self.conditions.language.words}; omit the language")
 
     def begin(
         self,
@@ -48,6 +59,7 @@ class DriveSpec:
             UserError: something in the specification does not exist.
             InfrastructureError: no gap opened for the car, or the traffic simulation failed.
         """
+        self.check()
         drive = script or family_named(self.family).draw(self.seed)
         setup = SessionSetup(channels, self.conditions, MOST_STEPS, drive.duration_s)
         world = depart(drive, simulations, listener)

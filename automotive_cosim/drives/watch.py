@@ -261,6 +261,11 @@ class Watch(Session):
             tracker.see(drive[max(0, count - BACK) : count])
         return tracker.events
 
+    @property
+    def untouched(self) -> tuple[DriveEvent, ...]:
+        """Events of the do-nothing run, if an act of the agent holds something back: then they are compared."""
+        return tuple(self._untouched()) if any(act.holds_back for act in self.acts) else ()
+
     def _note_acts(self) -> None:
         given = self.world.cockpit.given
         self.acts += acts_of(given[self._given :])
@@ -288,6 +293,6 @@ class Watch(Session):
             self.due_anyway,
             facts_of(self.moments),
             self.moments[0].commands,
-            self._untouched() if any(act.holds_back for act in self.acts) else (),
+            self.untouched,
         )
         super()._finish(end)

@@ -24,10 +24,11 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import FORMAT, NAME, Contents, counts, file_sha256
 from automotive_cosim.run.coverage import coverage
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.row import as_json
-from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, trace_file, write_trace
+from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.store import read_evaluation, read_trace, trace_file, write_trace
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
 
 SHORTEST_KEY = 12
@@ -44,7 +45,7 @@ def write_bundle(folder: Path, out: Path) -> Contents:
         UserError: the folder is not an evaluation's, is damaged, has no episodes, or contains what must not be
             published; or the file cannot be written.
     """
-    manifest, rows = read_evaluation(folder), read_rows(folder, EpisodeRow)
+    manifest, rows = read_evaluation(folder), read_trials(folder)
     found = coverage(manifest, rows)
     manifest["episodes"] = found.planned  # which older evaluations do not record
     if not rows:
@@ -81,7 +82,7 @@ def cleaned(text: str) -> str:
     return _PATH.sub(lambda found: re.split(r"[/\\]", found[0].rstrip("/\\"))[-1], text)
 
 
-def _stage(folder: Path, row: EpisodeRow, staged: Path) -> EpisodeRow:
+def _stage(folder: Path, row: TrialRow, staged: Path) -> TrialRow:
     """Copies the files of a judged episode; returns its row as it is published."""
     clean = replace(
         row,
@@ -89,7 +90,7 @@ def _stage(folder: Path, row: EpisodeRow, staged: Path) -> EpisodeRow:
         agent_error=None if row.agent_error is None else cleaned(row.agent_error),
         failed_attempts=tuple(map(cleaned, row.failed_attempts)),
     )
-    if row.success is not None:
+    if row.outcome is not None:
         for path in (trace_file(folder, row.id), judged_file(folder, row.id)):
             if path.is_symlink():
                 raise UserError(
@@ -110,11 +111,11 @@ def _cleaned_line(line: Json) -> Json:
     """A line of a trace without folders in the texts from an agent's side; nothing else in it may name one."""
     if "result" in line:
         result = _without_homes(line["result"])
-        if result["agent_error"] is not None:
+        if result.get("agent_error") is not None:
             declared = result["verdict"]["parts"]["declared"]
             result["agent_error"], declared["why"] = cleaned(result["agent_error"]), cleaned(declared["why"])
         return {"result": result}
-    said = {name: _without_homes(line[name]) for name in ("thought", "stages")}
+    said: Json = {name: _without_homes(line[name]) for name in ("thought", "stages") if name in line}
     if line["feedback"]["code"] == FeedbackCode.MALFORMED:
         said["feedback"] = line["feedback"] | {"text": cleaned(line["feedback"]["text"])}
     return line | said

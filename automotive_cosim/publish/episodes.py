@@ -13,23 +13,25 @@ from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.files import CHUNK_BYTES, opened
 from automotive_cosim.interface.trace import SAID, Step, plain, sha256
-from automotive_cosim.publish.problems import Problem, differences
+from automotive_cosim.publish.drives import drive_problems
+from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
 from automotive_cosim.report.page import element
-from automotive_cosim.run.collect import alerts, planned, questioned
+from automotive_cosim.run.collect import alerts, questioned
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s
+from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
-from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.taps import pixel_taps
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.tasking.dialogue import dialogue, questions
 from automotive_cosim.tasking.instance import Instance, phrased
 
-ROWS = "episodes.jsonl"
 STEP_BYTES, SPARE_STEPS = 2**20, 4
 """Bytes that a step may have in a trace, on average: a full screen has 40 kB, a question to a model 100 kB."""
 SECOND_BYTES, SPARE_S = 2**15, 120.0
@@ -71,18 +73,22 @@ ON_TRUST = frozenset(
 """Fields that neither the bundle nor a replay can check."""
 
 
-def check_episode(folder: Path, job: EpisodeJob, row: EpisodeRow) -> tuple[Problem, ...]:
-    """Everything that is wrong with an episode.
+def check_trial(folder: Path, job: TrialJob, row: TrialRow) -> tuple[Problem, ...]:
+    """Everything that is wrong with a trial.
 
     Args:
         folder: an evaluation's or an unpacked bundle's.
-        job: the episode in the plan.
+        job: the trial in the plan.
         row: its row.
     """
     try:
-        if large := _too_large(folder, job, row):
-            return (large,)
-        return tuple(_problems(folder, job, row))
+        if isinstance(job, DriveJob) and isinstance(row, DriveTrialRow):
+            return tuple(drive_problems(folder, job, row))
+        if isinstance(job, EpisodeJob) and isinstance(row, EpisodeRow):
+            if large := _too_large(folder, job, row):
+                return (large,)
+            return tuple(_problems(folder, job, row))
+        return (Problem(ROWS, row.id, "is of another kind than the plan says"),)
     except (
         CosimError, OSError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RecursionError,
         MemoryError,
@@ -111,18 +117,14 @@ def _too_large(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Problem | None
 
 def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Problem]:
     told = as_json(row)
-    yield from differences(ROWS, row.id, told, as_json(planned(job)), PLANNED, "the plan")
-    tried = len(row.failed_attempts) + (row.error is None)
-    if row.attempts != tried:
-        yield Problem(ROWS, f"{row.id} attempts", f"is {row.attempts}, but {tried} by failed_attempts")
-    if row.wall_seconds < 0 or row.model_seconds < 0:
-        yield Problem(ROWS, f"{row.id} wall_seconds, model_seconds", "are below zero")
+    yield from differences(ROWS, row.id, told, as_json(job.planned()), PLANNED, "the plan")
+    yield from attempt_problems(row)
     if job.scenario in _shipped() and row.scenario != job.scenario:
         yield Problem(ROWS, f"{row.id} scenario", f"is {row.scenario!r}, but {job.scenario!r} by the plan")
     if row.traffic_seed not in (None, job.setup.seed, *job.setup.spare_traffic):
         yield Problem(ROWS, f"{row.id} traffic_seed", f"is {row.traffic_seed}, which the plan does not have")
     if row.success is None:
-        yield from differences(ROWS, row.id, told, as_json(planned(job)), UNJUDGED, "its error")
+        yield from differences(ROWS, row.id, told, as_json(job.planned()), UNJUDGED, "its error")
         if row.error is None or row.error_kind is None or row.end is not End.ERROR:
             yield Problem(ROWS, row.id, "has neither a verdict nor an error")
     elif row.end is not End.AGENT_FAILED or trace_file(folder, row.id).is_file():

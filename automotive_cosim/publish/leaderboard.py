@@ -19,11 +19,13 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
 from automotive_cosim.publish.verify import verify
-from automotive_cosim.report.results import Contestant, pairs, read_results
+from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, told, whole
+from automotive_cosim.report.results import Contestant, contestant, pairs, read_results
 from automotive_cosim.report.stats import Rate
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, input_of, rate_in_words, rate_of
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.report.templates import render
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
@@ -32,6 +34,11 @@ from automotive_cosim.run.versions import minor
 COLUMNS = (
     "Agent", "Model", "Input", *(each.words.heading for each in TABLE), *DIMENSIONS.values(),
     "Safety pairs", "All episodes", "Bundle",
+)  # fmt: skip
+
+DRIVE_COLUMNS = (
+    "Agent", "Model", "Input", *(each.words.heading for each in TABLE), "Judged",
+    *(name for name, _, _ in FIGURES[:WITH_INTERVAL]), "Bundle",
 )  # fmt: skip
 
 
@@ -78,6 +85,42 @@ class BoardEntry:
         return -joined, -whole, self.contestant.label, self.bundle
 
 
+@dataclass(frozen=True, slots=True)
+class DrivenEntry:
+    """One contestant's drives in one bundle."""
+
+    bundle: str
+    sha256: str
+    version: str
+    """Of the suite that ran them."""
+    suite: str
+    """Its minor version, within which drives can be compared."""
+    contestant: Contestant
+    rows: tuple[DriveTrialRow, ...]
+    drives: str
+    """How many drives a contestant was planned to run, with a digest of which."""
+
+    @property
+    def value(self) -> float:
+        """The score of all judged drives; below any other without one."""
+        return whole(self.rows).value if any(row.score for row in self.rows) else float("-inf")
+
+    @property
+    def row(self) -> TableRow:
+        """Its line in the table."""
+        each, judged = self.contestant, [row for row in self.rows if row.score is not None]
+        figures = FIGURES[:WITH_INTERVAL]
+        return (
+            each.method,
+            each.base_model,
+            input_of(Contestant(each.agent, each.model)),
+            *(line.told(line.of(each.conditions)) for line in TABLE),
+            f"{len(judged)} of {len(self.rows)}",
+            *(told(judged, figure, form) if judged else NONE for _, figure, form in figures),
+            f"{self.bundle} ({self.version}), {self.sha256[:12]}",
+        )
+
+
 def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> list[str]:
     """Writes the page.
 
@@ -96,6 +139,7 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
     if not folder.is_dir():
         raise UserError(f"{folder} is not a folder; give one with bundles, which `automotive-cosim bundle` makes")
     entries: list[BoardEntry] = []
+    driven: list[DrivenEntry] = []
     left_out: list[str] = []
     for path in sorted(path for path in folder.iterdir() if path.is_file() and path.resolve() != out.resolve()):
         try:
@@ -104,14 +148,24 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
                 left_out.append(f"{path.name}: {counted(len(problems), 'problem')}, such as {problems[0]}")
             else:
                 entries += read_entries(path)
+                driven += read_driven(path)
         except UserError as error:
             left_out.append(str(error).replace(str(path), path.name))
-    if not entries:
+    if not entries and not driven:
         raise UserError(f"{folder} has no valid bundle{''.join(f'; {each}' for each in left_out[:3])}")
     if mixed:
-        suite = ", ".join(sorted({entry.conditions.suite for entry in entries}))
+        suite = ", ".join(
+            sorted({*(entry.conditions.suite for entry in entries), *(each.suite for each in driven)})
+        )
+        driven = [replace(each, suite=suite) for each in driven]
         entries = [replace(entry, conditions=replace(entry.conditions, suite=suite)) for entry in entries]
-    page = render("publish/leaderboard.html", tables=tables(entries), left_out=left_out, rates=RATES)
+    page = render(
+        "publish/leaderboard.html",
+        tables=tables(entries),
+        drives=drives_tables(driven),
+        left_out=left_out,
+        rates=RATES,
+    )
     try:
         write_whole(out, page)
     except OSError as error:
@@ -136,6 +190,47 @@ def read_entries(bundle: Path) -> list[BoardEntry]:
         conditions = _conditions(minor(contents.suite), results.manifest["plan"], rows)
         made.append(BoardEntry(bundle.name, contents.sha256, contents.suite, each, conditions, rates))
     return made
+
+
+def read_driven(bundle: Path) -> list[DrivenEntry]:
+    """The contestants of a bundle's drives.
+
+    Raises:
+        UserError: it cannot be read.
+    """
+    with archive.unpacked(bundle) as folder:
+        contents, results = read_contents(folder), read_results(folder)
+    rows = (*results.drives, *results.drives_not_run)
+    made = []
+    for each in dict.fromkeys(map(contestant, rows)):
+        mine = [row for row in rows if contestant(row) == each]
+        instances = sorted({row.instance for row in mine})
+        digest = hashlib.sha256(repr(instances).encode()).hexdigest()[:8]
+        planned = f"{counted(len(instances), 'drive')} of each ({digest})"
+        made.append(
+            DrivenEntry(
+                bundle.name, contents.sha256, contents.suite, minor(contents.suite), each, tuple(mine), planned
+            )
+        )
+    return made
+
+
+def drives_tables(entries: Sequence[DrivenEntry]) -> list[Table]:
+    """A table for each set of drives and version of the suite, the largest first."""
+    alike: dict[tuple[str, str], list[DrivenEntry]] = defaultdict(list)
+    for entry in entries:
+        alike[entry.suite, entry.drives].append(entry)
+    ordered = sorted(alike.items(), key=lambda each: (-len(each[1]), each[0]))
+    return [
+        Table(
+            f"drives_{number}",
+            f"Drives: {drives}, version {suite}",
+            DRIVE_COLUMNS,
+            tuple(entry.row for entry in sorted(found, key=lambda entry: -entry.value)),
+            heads=3 + len(TABLE),
+        )
+        for number, ((suite, drives), found) in enumerate(ordered, start=1)
+    ]
 
 
 def tables(entries: Sequence[BoardEntry]) -> list[tuple[Table, BundleConditions, list[str]]]:

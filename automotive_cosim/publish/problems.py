@@ -8,6 +8,9 @@ from typing import Any
 
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.formats.words import shown
+from automotive_cosim.run.trial_row import TrialRow
+
+ROWS = "episodes.jsonl"
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,6 +25,15 @@ class Problem:
 
     def __str__(self) -> str:
         return f"{self.file}{', ' if self.field else ''}{self.field}: {self.why}"
+
+
+def attempt_problems(row: TrialRow) -> Iterator[Problem]:
+    """What is wrong with the attempts and the times of a row."""
+    tried = len(row.failed_attempts) + (row.error is None)
+    if row.attempts != tried:
+        yield Problem(ROWS, f"{row.id} attempts", f"is {row.attempts}, but {tried} by failed_attempts")
+    if row.wall_seconds < 0 or row.model_seconds < 0:
+        yield Problem(ROWS, f"{row.id} wall_seconds, model_seconds", "are below zero")
 
 
 def differences(

@@ -5,19 +5,23 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import cast
 
 from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.contracts import ActionType, Json
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import SAID
-from automotive_cosim.publish.episodes import FROM_MOMENTS, ROWS
-from automotive_cosim.publish.problems import Problem, differences
+from automotive_cosim.publish.drives import drive_differences
+from automotive_cosim.publish.episodes import FROM_MOMENTS
+from automotive_cosim.publish.problems import ROWS, Problem, differences
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
 from automotive_cosim.run.moments import judged_file, read_judged
-from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.rerun import PlayedAgain, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
 OF_THE_AGENT = frozenset({"prompt_tokens", "tokens_in", "tokens_out", "cost_usd", "end"})
@@ -39,12 +43,15 @@ RESULT = (
 STEP = ("time_s", *FROM_MOMENTS, "elements", "action", "feedback", "thought_s")
 
 
-def replay(folder: Path, job: EpisodeJob, row: EpisodeRow, simulations: Simulations) -> tuple[Problem, ...]:
-    """What differs, bit for bit, when the actions of a stored episode are replayed.
+def replay(folder: Path, job: TrialJob, row: TrialRow, simulations: Simulations) -> tuple[Problem, ...]:
+    """What differs, bit for bit, when the actions of a stored trial are replayed.
 
     Raises:
         CosimError: it cannot be replayed.
     """
+    if isinstance(job, DriveJob):
+        return tuple(drive_differences(folder, job, cast("DriveTrialRow", row), simulations))
+    row = cast("EpisodeRow", row)
     *steps, last = read_trace(folder, row.id)
     found: tuple[Problem, ...] = ()
     for channels in _channels(job, steps):

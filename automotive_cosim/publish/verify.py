@@ -26,16 +26,18 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import CosimError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, Contents, counts, file_sha256, read_contents
-from automotive_cosim.publish.episodes import ROWS, check_episode
+from automotive_cosim.publish.episodes import check_trial
 from automotive_cosim.publish.limited import LimitedProcesses
-from automotive_cosim.publish.problems import Problem, differences
+from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.run.coverage import Coverage, coverage
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.jobs import TrialJob
 from automotive_cosim.run.moments import judged_file
-from automotive_cosim.run.plan import EpisodeJob, make_plan
+from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import as_json
-from automotive_cosim.run.store import read_evaluation, read_rows, trace_file
+from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.store import read_evaluation, trace_file
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
 from automotive_cosim.traffic.fork import Simulations
 
@@ -103,13 +105,13 @@ def verify(
         names = sorted(read.rows)
         jobs, rows = [read.jobs[name] for name in names], [read.rows[name] for name in names]
         problems = [*read.problems]
-        for number, found in enumerate(processes.map(partial(check_episode, folder), jobs, rows), start=1):
+        for number, found in enumerate(processes.map(partial(check_trial, folder), jobs, rows), start=1):
             problems += found
             tell(number, len(names))
         drawn = _sample(read.rows, replays, seed)
         for name in drawn:
             problems += _replayed(folder, read.jobs[name], read.rows[name])
-    judged = sum(row.success is not None for row in read.rows.values())
+    judged = sum(row.outcome is not None for row in read.rows.values())
     contents = read.contents
     facts = [
         *([f"{counted(len(contents.files), 'file')}, sha256 of {NAME} {contents.sha256}"] if contents else []),
@@ -133,9 +135,9 @@ class _Read:
 
     contents: Contents | None
     coverage: Coverage
-    jobs: Mapping[str, EpisodeJob]
+    jobs: Mapping[str, TrialJob]
     """Those with a row."""
-    rows: Mapping[str, EpisodeRow]
+    rows: Mapping[str, TrialRow]
     """Those that the plan has."""
     versions: tuple[str, ...]
     problems: tuple[Problem, ...]
@@ -145,12 +147,12 @@ def _read(folder: Path, bundle: Path | None) -> _Read:
     contents = None if bundle is None else read_contents(folder)
     problems = [] if contents is None else hash_problems(folder, contents)
     problems += [] if bundle is None else _archive_problems(folder, bundle)
-    manifest, rows = read_evaluation(folder), read_rows(folder, EpisodeRow)
+    manifest, rows = read_evaluation(folder), read_trials(folder)
     found = coverage(manifest, rows)
     jobs = {job.id: job for job in make_plan(manifest["plan"]).jobs()}
     problems += _manifest_problems(manifest, jobs)
     problems += _line_problems(folder, rows, strict=contents is not None)
-    problems += [Problem(ROWS, name, "is not an episode of the plan") for name in rows if name not in jobs]
+    problems += [Problem(ROWS, name, "is not a trial of the plan") for name in rows if name not in jobs]
     problems += _file_problems(folder, rows)
     if contents is not None:
         problems += [] if "episodes" in manifest else [Problem(MANIFEST, "episodes", "is missing")]
@@ -187,7 +189,7 @@ def _archive_problems(folder: Path, bundle: Path) -> Iterator[Problem]:
             yield Problem(bundle.name, "", "is not, to the byte, the archive that `bundle` makes of its files")
 
 
-def _manifest_problems(manifest: Json, jobs: Mapping[str, EpisodeJob]) -> Iterator[Problem]:
+def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator[Problem]:
     plan, starts = manifest["plan"], manifest.get("starts") or []
     for name in manifest.keys() - {"format", "plan", "episodes", "starts"}:
         yield Problem(MANIFEST, name, "is not a field of a manifest")
@@ -213,7 +215,7 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, EpisodeJob]) -> Iterat
         yield Problem(MANIFEST, "starts", "are not in order")
 
 
-def _line_problems(folder: Path, rows: Mapping[str, EpisodeRow], *, strict: bool) -> Iterator[Problem]:
+def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) -> Iterator[Problem]:
     """Lines with unknown fields or about an episode that has a verdict already; in a bundle, also any second line
     of an episode, and lines that are not in their only valid form."""
     known = {"untouched_drive", *(name for row in rows.values() for name in as_json(row))}
@@ -235,7 +237,7 @@ def _line_problems(folder: Path, rows: Mapping[str, EpisodeRow], *, strict: bool
         yield Problem(ROWS, "", "is not sorted by id")
 
 
-def _file_problems(folder: Path, rows: Mapping[str, EpisodeRow]) -> Iterator[Problem]:
+def _file_problems(folder: Path, rows: Mapping[str, TrialRow]) -> Iterator[Problem]:
     """Files in ``traces`` that belong to no judged episode."""
     known = {path.name for name in rows for path in (trace_file(folder, name), judged_file(folder, name))}
     for path in sorted((folder / "traces").glob("*")):
@@ -244,7 +246,7 @@ def _file_problems(folder: Path, rows: Mapping[str, EpisodeRow]) -> Iterator[Pro
 
 
 def _count_problems(
-    contents: Contents, manifest: Json, found: Coverage, rows: Mapping[str, EpisodeRow]
+    contents: Contents, manifest: Json, found: Coverage, rows: Mapping[str, TrialRow]
 ) -> Iterator[Problem]:
     told = json.loads(contents.text())
     whole = json.loads(
@@ -258,14 +260,14 @@ def _count_problems(
     yield from differences(NAME, "", told, whole, ("suite", "counts"), f"{MANIFEST} and {ROWS}")
 
 
-def _sample(rows: Mapping[str, EpisodeRow], count: int, seed: int) -> list[str]:
+def _sample(rows: Mapping[str, TrialRow], count: int, seed: int) -> list[str]:
     """Judged episodes, drawn with this seed."""
-    names = sorted(name for name, row in rows.items() if row.success is not None)
+    names = sorted(name for name, row in rows.items() if row.outcome is not None)
     drawn = np.random.default_rng(seed).permutation(len(names))[:count]
     return [names[number] for number in sorted(drawn)]
 
 
-def _replayed(folder: Path, job: EpisodeJob, row: EpisodeRow) -> list[Problem]:
+def _replayed(folder: Path, job: TrialJob, row: TrialRow) -> list[Problem]:
     try:
         with closing(Simulations()) as simulations:
             return list(replay(folder, job, row, simulations))

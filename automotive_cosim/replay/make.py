@@ -21,7 +21,7 @@ from automotive_cosim.models import ChatMessage, ModelReply, Rules
 from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, ProviderApi
 from automotive_cosim.models.base import estimated_tokens
 from automotive_cosim.models.replay import SUFFIX, text_digest
-from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, Shot, run_episode
 from automotive_cosim.traffic.fork import Simulations
 
 SETUP = EpisodeSetup("hvac_fan_max", scenario="grid")
@@ -29,7 +29,7 @@ SCREEN_PX = (1280, 720)
 THOUGHT = "I see what is wanted."
 
 
-class Touches(Watcher):
+class Touches(EpisodeObserver):
     """The acts of an agent as touches of the screen, as a model that sees the picture alone would do them."""
 
     def __init__(self) -> None:

@@ -12,7 +12,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.report.findings import PLACE
 from automotive_cosim.report.page import element, embedded
 from automotive_cosim.report.plot import Plot
-from automotive_cosim.report.results import Results, instance
+from automotive_cosim.report.results import Results
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import from_json
@@ -56,7 +56,7 @@ def contrast(results: Results) -> tuple[Side, Side] | None:
 
 
 def _key(row: EpisodeRow) -> tuple[object, ...]:
-    return row.agent, row.model, *instance(row)
+    return row.agent, row.model, *row.instance
 
 
 def _has_trace(results: Results, row: EpisodeRow) -> bool:

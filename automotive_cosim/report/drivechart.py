@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn
-from automotive_cosim.run.watch_row import WatchRow
+from automotive_cosim.run.drive_row import DriveTrialRow
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,7 +53,7 @@ ANSWER_S = 8.0
 """Within this time after an act, what the driver does is the answer to it."""
 
 
-def timeline_chart(row: WatchRow, timeline: Json) -> tuple[str, str]:
+def timeline_chart(row: DriveTrialRow, timeline: Json) -> tuple[str, str]:
     """The timeline as SVG, for a wide page and a narrow one.
 
     Args:
@@ -67,7 +67,7 @@ def timeline_chart(row: WatchRow, timeline: Json) -> tuple[str, str]:
     return drawn(f"{row.id}", drawing, WIDE_IN), drawn(f"{row.id}", drawing, NARROW_IN)
 
 
-def _drawing(row: WatchRow, timeline: Json) -> Drawing:
+def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
     kinds = _kinds(row.events)
     told = row.acts[:MOST_ACTS]
     panels: list[tuple[float, Callable[[Axes], None]]] = [(SPEED_IN, lambda axes: _speeds(axes, timeline))]
@@ -178,7 +178,7 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> 
                 axes.plot(event.acted_s, place, "o", color=INK, markersize=3.5)
 
 
-def _acts(axes: Axes, row: WatchRow) -> None:
+def _acts(axes: Axes, row: DriveTrialRow) -> None:
     for number, act in enumerate(row.acts, 1):
         mark, colour = MARKS[act.worth]
         size = 4 if act.worth is Worth.NEUTRAL else 6

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,17 +12,15 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.score import Score, together
-from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.drivechart import timeline_chart
 from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.report.templates import render
+from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.former import former_timeline
 from automotive_cosim.run.record import write_whole
-from automotive_cosim.run.store import cannot_write, read_manifest, read_rows
-from automotive_cosim.run.watch_row import WatchRow
-from automotive_cosim.run.watches import TIMELINES
+from automotive_cosim.run.store import read_trace, trace_file
 
 DRAWS = 2000
 """Bootstrap samples of whole drives, at which the second digit of a bound is stable."""
@@ -32,25 +29,25 @@ LEAST_DRIVES = 5
 SHOWN = 8
 """Maximum number of timelines on the page; all of them are written as files."""
 
-Figure = Callable[[Sequence[WatchRow]], float | None]
+Figure = Callable[[Sequence[DriveTrialRow]], float | None]
 """A figure of several drives together; None if there is nothing to divide by."""
 
 
-def grouped(rows: Iterable[WatchRow]) -> dict[Contestant, list[WatchRow]]:
+def grouped(rows: Iterable[DriveTrialRow]) -> dict[Contestant, list[DriveTrialRow]]:
     """The judged drives of each watcher, the best first."""
-    found: dict[Contestant, list[WatchRow]] = {}
+    found: dict[Contestant, list[DriveTrialRow]] = {}
     for row in rows:
         if row.score is not None:
             found.setdefault(contestant(row), []).append(row)
     return dict(sorted(found.items(), key=lambda entry: -whole(entry[1]).value))
 
 
-def whole(rows: Sequence[WatchRow]) -> Score:
+def whole(rows: Sequence[DriveTrialRow]) -> Score:
     """The score of all drives pooled."""
     return together([row.score for row in rows if row.score is not None])
 
 
-def standings(rows: Iterable[WatchRow]) -> list[str]:
+def standings(rows: Iterable[DriveTrialRow]) -> list[str]:
     """A line for each watcher."""
     lines = []
     for each, mine in grouped(rows).items():
@@ -67,12 +64,12 @@ def standings(rows: Iterable[WatchRow]) -> list[str]:
 # --- figures of several drives ----------------------------------------------------------------------------------
 
 
-def _value(rows: Sequence[WatchRow]) -> float | None:
+def _value(rows: Sequence[DriveTrialRow]) -> float | None:
     return whole(rows).value
 
 
 def _share(of: Callable[[Score], float | None]) -> Figure:
-    def figure(rows: Sequence[WatchRow]) -> float | None:
+    def figure(rows: Sequence[DriveTrialRow]) -> float | None:
         found = of(whole(rows))
         return None if found is None else 100 * found
 
@@ -82,7 +79,7 @@ def _share(of: Callable[[Score], float | None]) -> Figure:
 def _saved(of: Callable[[Any], float]) -> Figure:
     """The share of the do-nothing runs' harm that was avoided."""
 
-    def figure(rows: Sequence[WatchRow]) -> float | None:
+    def figure(rows: Sequence[DriveTrialRow]) -> float | None:
         pairs = [(row.harm, row.baseline_harm) for row in rows if row.harm and row.baseline_harm]
         nobodys = sum(of(baseline) for _, baseline in pairs)
         return 100 * (nobodys - sum(of(mine) for mine, _ in pairs)) / nobodys if nobodys else None
@@ -90,15 +87,15 @@ def _saved(of: Callable[[Any], float]) -> Figure:
     return figure
 
 
-def _per_hour(of: Callable[[WatchRow], float]) -> Figure:
-    def figure(rows: Sequence[WatchRow]) -> float | None:
+def _per_hour(of: Callable[[DriveTrialRow], float]) -> Figure:
+    def figure(rows: Sequence[DriveTrialRow]) -> float | None:
         driven_s = whole(rows).driven_s
         return 3600 * sum(map(of, rows)) / driven_s if driven_s else None
 
     return figure
 
 
-def _watched_share(rows: Sequence[WatchRow]) -> float | None:
+def _watched_share(rows: Sequence[DriveTrialRow]) -> float | None:
     """The share of the driving time in which the agent watched, before it failed or its budget was spent."""
     judged = [row for row in rows if row.score is not None]
     driven_s = sum(row.score.driven_s for row in judged if row.score is not None)
@@ -131,9 +128,9 @@ WITH_INTERVAL = 5
 """The first of them have intervals."""
 
 
-def interval(rows: Sequence[WatchRow], figure: Figure) -> Interval | None:
+def interval(rows: Sequence[DriveTrialRow], figure: Figure) -> Interval | None:
     """Bounds from resampling whole drives, each with its repeats; None with fewer than ``LEAST_DRIVES``."""
-    clusters: dict[tuple[str, int], list[WatchRow]] = {}
+    clusters: dict[tuple[str, int], list[DriveTrialRow]] = {}
     for row in rows:
         clusters.setdefault((row.family, row.seed), []).append(row)
     groups = list(clusters.values())
@@ -152,7 +149,7 @@ def interval(rows: Sequence[WatchRow], figure: Figure) -> Interval | None:
     return Interval(float(low), float(high))
 
 
-def told(rows: Sequence[WatchRow], figure: Figure, form: str, *, bounded: bool = True) -> str:
+def told(rows: Sequence[DriveTrialRow], figure: Figure, form: str, *, bounded: bool = True) -> str:
     """A figure with its interval, as text."""
     value = figure(rows)
     if value is None:
@@ -167,13 +164,13 @@ def told(rows: Sequence[WatchRow], figure: Figure, form: str, *, bounded: bool =
 # --- tables --------------------------------------------------------------------------------------------------
 
 
-def tables(rows: Sequence[WatchRow]) -> list[Table]:
+def tables(rows: Sequence[DriveTrialRow]) -> list[Table]:
     """Every table of the report, the most important first."""
     groups = grouped(rows)
     return [table for table in (_watchers(groups), _kinds(groups), _families(groups), _errors(rows)) if table.rows]
 
 
-def _watchers(groups: dict[Contestant, list[WatchRow]]) -> Table:
+def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
     lines: tuple[TableRow, ...] = tuple(
         (
             each.label,
@@ -197,7 +194,7 @@ def _watchers(groups: dict[Contestant, list[WatchRow]]) -> Table:
     )
 
 
-def _kinds(groups: dict[Contestant, list[WatchRow]]) -> Table:
+def _kinds(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
     """Events met of each kind, and look-alikes left alone."""
     lines = []
     for name, kind in KINDS.items():
@@ -220,7 +217,7 @@ def _kinds(groups: dict[Contestant, list[WatchRow]]) -> Table:
     )
 
 
-def _families(groups: dict[Contestant, list[WatchRow]]) -> Table:
+def _families(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
     families = dict.fromkeys(row.family for mine in groups.values() for row in mine)
     lines = []
     for family in families:
@@ -229,9 +226,9 @@ def _families(groups: dict[Contestant, list[WatchRow]]) -> Table:
     return Table("families", "Score by family", ("Family", *(each.label for each in groups)), tuple(lines))
 
 
-def _errors(rows: Sequence[WatchRow]) -> Table:
+def _errors(rows: Sequence[DriveTrialRow]) -> Table:
     return Table(
-        "errors",
+        "drive_errors",
         "Drives that ended in an error",
         ("Drive", "Error"),
         tuple((row.id, f"{row.error_kind}: {row.error}") for row in rows if row.error is not None),
@@ -241,53 +238,29 @@ def _errors(rows: Sequence[WatchRow]) -> Table:
 # --- the page ------------------------------------------------------------------------------------------------
 
 
-def write_drives(folder: Path) -> Path:
-    """Writes ``report.html``, ``tables/`` and ``plots/`` into the folder of an evaluation of drives.
+def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, tuple[str, str, str]]:
+    """Writes a plot for each judged drive into ``plots/``; returns those of the lowest scores, for the page.
 
     Raises:
-        UserError: no drive has ended yet, or the folder cannot be written.
+        OSError: they cannot be written.
+        UserError: a trace cannot be read.
         SetupError: the extra ``report`` is not installed.
     """
-    rows = list(read_rows(folder, WatchRow).values())
-    if not rows:
-        raise UserError(f"{folder} has no drives yet; rerun its `eval --drives` command to resume")
-    manifest = read_manifest(folder)
-    made = tables(rows)
-    try:
-        for name in ("tables", "plots"):
-            (folder / name).mkdir(exist_ok=True)
-        for table in made:
-            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
-                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
-        plots: dict[str, tuple[str, str, str]] = {}
-        for row in sorted(rows, key=lambda row: (row.value is None, row.value or 0.0)):
-            timeline = folder / TIMELINES / f"{row.id}.json"
-            if row.score is None or not timeline.is_file():
-                continue
-            drawn = timeline_chart(row, _read(timeline))
-            write_whole(folder / "plots" / f"{row.id}.svg", drawn[0].replace("currentColor", INK))
-            if len(plots) < SHOWN:
-                plots[row.id] = (f"{row.family}, seed {row.seed}: {contestant(row).label}", *drawn)
-        page = folder / "report.html"
-        write_whole(
-            page,
-            render(
-                "report/drives.html",
-                rows=rows,
-                errors=sum(row.error is not None for row in rows),
-                standings=standings(rows),
-                tables=made,
-                plots=plots,
-                plan=manifest["plan"],
-                starts=manifest["starts"],
-                stand_in=any(row.model == "rules" for row in rows),
-            ),
-        )
-    except OSError as error:
-        raise cannot_write(folder, error) from error
-    return page
+    plots: dict[str, tuple[str, str, str]] = {}
+    for row in sorted(rows, key=lambda row: (row.value is None, row.value or 0.0)):
+        found = None if row.score is None else timeline_of(folder, row.id)
+        if found is None:
+            continue
+        drawn = timeline_chart(row, found)
+        write_whole(folder / "plots" / f"{row.id}.svg", drawn[0].replace("currentColor", INK))
+        if len(plots) < SHOWN:
+            plots[row.id] = (f"{row.family}, seed {row.seed}: {contestant(row).label}", *drawn)
+    return plots
 
 
-def _read(path: Path) -> Json:
-    made: Json = json.loads(path.read_text("utf-8"))
-    return made
+def timeline_of(folder: Path, name: str) -> Json | None:
+    """The timeline of a drive, from the end of its trace; None without a trace."""
+    if not trace_file(folder, name).is_file():
+        return None
+    result = read_trace(folder, name)[-1].get("result")
+    return former_timeline(folder, name) if result is None else result["timeline"]

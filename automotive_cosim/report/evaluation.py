@@ -9,7 +9,7 @@ from pathlib import Path
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import told
 from automotive_cosim.errors import UserError
-from automotive_cosim.report import findings
+from automotive_cosim.report import drives, findings
 from automotive_cosim.report.case import contrast
 from automotive_cosim.report.charts import INK, charts
 from automotive_cosim.report.failures import FailureClass
@@ -23,6 +23,9 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
+
+Plots = Mapping[str, tuple[str, str, str]]
+"""Title, wide and narrow form of each plot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,20 +46,24 @@ def write_report(folder: Path) -> Path:
         SetupError: the extra ``report`` is not installed.
     """
     results = read_results(folder)
-    if not results.rows:
+    if not results.rows and not results.drives:
         raise UserError(f"{folder} has no episodes yet ({results.coverage}); rerun its `eval` command to resume")
     found = findings.classes(results)
-    made, plots = all_tables(results, found), charts(results.shared())
+    made = all_tables(results, found) if results.rows else []
+    plots = charts(results.shared()) if results.rows else {}
+    of_drives = drives.tables(results.drives)
     try:
         for name in ("tables", "plots"):
             (folder / name).mkdir(exist_ok=True)
-        for table in made:
+        for table in (*made, *of_drives):
             for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
                 write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
         for name, (_, wide, _) in plots.items():
             write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
         page = folder / "report.html"
-        write_whole(page, _page(results, made, plots, found))
+        driven = of_drives, drives.timelines(folder, results.drives)
+        told = _page(results, made, plots, found, driven) if results.rows else _drives_page(results, *driven)
+        write_whole(page, told)
     except OSError as error:
         raise cannot_write(folder, error) from error
     return page
@@ -87,6 +94,7 @@ def _page(
     made: Sequence[Table],
     plots: dict[str, tuple[str, str, str]],
     found: Mapping[str, FailureClass],
+    driven: tuple[Sequence[Table], Plots],
 ) -> str:
     numbers = {row.id: number for number, row in enumerate(results.rows)}
     sources, linked = _sources(results, made)
@@ -113,6 +121,23 @@ def _page(
         is_mixed=any(start["git"] != starts[0]["git"] for start in starts),
         has_stand_in=any(row.model == "rules" for row in results.rows),
         megabytes=megabytes(results.folder),
+        drive_tables=driven[0],
+        drive_plots=driven[1],
+    )
+
+
+def _drives_page(results: Results, made: Sequence[Table], plots: Plots) -> str:
+    """The page of an evaluation of drives alone."""
+    rows = results.drives
+    return render(
+        "report/drives.html",
+        rows=rows,
+        errors=sum(row.error is not None for row in rows),
+        tables=made,
+        plots=plots,
+        plan=results.manifest["plan"],
+        starts=results.manifest["starts"],
+        stand_in=any(row.model == "rules" for row in rows),
     )
 
 

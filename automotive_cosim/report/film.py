@@ -20,7 +20,7 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmplot import speed_plot
 from automotive_cosim.report.filmroad import RoadPainter
-from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, Shot
 from automotive_cosim.run.road import EMPTY, NAME, read_record
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import action_in_words, is_over
@@ -52,7 +52,7 @@ class FilmFrame:
     milliseconds: int
 
 
-class Film(Watcher):
+class Film(EpisodeObserver):
     """Collects frames while an episode runs and writes the film when it is over."""
 
     def __init__(self, folder: Path) -> None:

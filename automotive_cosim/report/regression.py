@@ -9,11 +9,12 @@ from xml.etree import ElementTree
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.report.results import Contestant, instance, pair_instance, pairs, read_results
+from automotive_cosim.report.results import Contestant, contestant, pair_instance, pairs, read_results
 from automotive_cosim.report.stats import Comparison, Rate, compare
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import minor
 
 MOST_LISTED = 30
@@ -25,17 +26,17 @@ class ComparedInstance:
     """One instance in both evaluations."""
 
     name: str
-    before: EpisodeRow
-    after: EpisodeRow | None
+    before: TrialRow
+    after: TrialRow | None
     """None if the later evaluation has no such episode."""
 
     @property
     def kind(self) -> str:
         """``lost``, ``won``, ``solved``, ``not solved`` (both times), or ``error``: judged before and not now."""
-        now = None if self.after is None else self.after.success
+        now = None if self.after is None else self.after.outcome
         if now is None:
             return "error"
-        if self.before.success:
+        if self.before.outcome:
             return "solved" if now else "lost"
         return "won" if now else "not solved"
 
@@ -46,7 +47,7 @@ class ComparedInstance:
             return "it was not planned"
         if not self.after.has_run:
             return "it has not been run"
-        if self.after.success is None:
+        if self.after.outcome is None:
             why = self.after.error
             return f"{self.after.error_kind}: {why}" if why else "one half is not judged"
         missing = [part.replace("_", " ") for part in self.after.missing]
@@ -59,7 +60,7 @@ class SuccessChange:
 
     contestant: Contestant
     unit: str
-    """``episodes`` or ``pairs``."""
+    """``episodes``, ``pairs`` or ``drives``."""
     cases: tuple[ComparedInstance, ...]
     found: Comparison | None
     """After compared with before; None if nothing was judged both times."""
@@ -116,6 +117,12 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
             before_pairs, after_pairs = ([pair for pair, _ in pairs(rows)] for rows in (before_rows, after_rows))
             if before_pairs:
                 found.append(_change(each, "pairs", before_pairs, after_pairs, problems, versions))
+    for each in dict.fromkeys(map(contestant, old.drives)):
+        before_drives, after_drives = (
+            [row for row in (*side.drives, *side.drives_not_run) if contestant(row) == each] for side in (old, new)
+        )
+        if after_drives:
+            found.append(_change(each, "drives", before_drives, after_drives, problems, versions))
     if not found:
         labels = ("; ".join(each.label for each in results.contestants) or "nobody" for results in (old, new))
         named = " and ".join(f"{folder} ({label})" for folder, label in zip((before, after), labels, strict=True))
@@ -129,23 +136,25 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
 def _change(
     each: Contestant,
     unit: str,
-    old: Sequence[EpisodeRow],
-    new: Sequence[EpisodeRow],
+    old: Sequence[TrialRow],
+    new: Sequence[TrialRow],
     problems: tuple[str, ...],
     versions: tuple[str, str],
 ) -> SuccessChange:
-    key = pair_instance if unit == "pairs" else instance
+    def key(row: TrialRow) -> tuple[object, ...]:
+        return pair_instance(row) if unit == "pairs" and isinstance(row, EpisodeRow) else row.instance
+
     news = {key(row): row for row in new}
     cases = tuple(
         ComparedInstance(" ".join(map(str, key(row))), row, news.get(key(row)))
         for row in old
-        if row.success is not None
+        if row.outcome is not None
     )
     judged = {case.name: case for case in cases if case.kind != "error"}
-    clusters: dict[Hashable, Hashable] = {name: case.before.task for name, case in judged.items()}
+    clusters: dict[Hashable, Hashable] = {name: case.before.subject for name, case in judged.items()}
     found = compare(
-        {name: bool(case.after.success) for name, case in judged.items() if case.after},
-        {name: bool(case.before.success) for name, case in judged.items()},
+        {name: bool(case.after.outcome) for name, case in judged.items() if case.after},
+        {name: bool(case.before.outcome) for name, case in judged.items()},
         clusters,
     )
     return SuccessChange(each, unit, cases, found, (rate_of(old), rate_of(new)), problems, versions)
@@ -268,7 +277,7 @@ def junit(found: Sequence[SuccessChange]) -> str:
             skipped=str(each.count("not solved")),
         )
         for case in each.cases:
-            entry = ElementTree.SubElement(suite, "testcase", name=case.name, classname=case.before.task)
+            entry = ElementTree.SubElement(suite, "testcase", name=case.name, classname=case.before.subject)
             element = {"lost": "failure", "error": "error", "not solved": "skipped"}.get(case.kind)
             if element:
                 said = case.why if element != "skipped" else "not solved before either"

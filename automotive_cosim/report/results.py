@@ -13,12 +13,14 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.interface.observe import See
 from automotive_cosim.run.coverage import Coverage, coverage
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import languages_in_words, make_plan
 from automotive_cosim.run.row import columns
-from automotive_cosim.run.store import read_evaluation, read_rows
+from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.store import read_evaluation
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
-from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.tasking.task import NEEDS_PICTURE
 
 if TYPE_CHECKING:
@@ -73,12 +75,14 @@ class Contestant:
 
 @dataclass(frozen=True, slots=True)
 class Results:
-    """An evaluation's manifest and its episodes in the order of their ids."""
+    """An evaluation's manifest and its trials in the order of their ids."""
 
     folder: Path
     manifest: Json
     rows: tuple[EpisodeRow, ...]
+    """Those of tasks."""
     coverage: Coverage
+    drives: tuple[DriveTrialRow, ...] = ()
 
     @property
     def version(self) -> str:
@@ -97,9 +101,19 @@ class Results:
         return f"{were} left out: no phrasings in {languages_in_words(plan.languages)}." if missing else ""
 
     @property
+    def not_run(self) -> tuple[EpisodeRow, ...]:
+        """The planned episodes without a row, with what is known about an episode before it runs."""
+        return tuple(row for row in self.coverage.not_run if isinstance(row, EpisodeRow))
+
+    @property
+    def drives_not_run(self) -> tuple[DriveTrialRow, ...]:
+        """The planned drives without a row."""
+        return tuple(row for row in self.coverage.not_run if isinstance(row, DriveTrialRow))
+
+    @property
     def contestants(self) -> tuple[Contestant, ...]:
         """The contestants, with or without episodes yet; references and negative controls come last."""
-        found = {contestant(row) for row in (*self.rows, *self.coverage.not_run)}
+        found = {contestant(row) for row in (*self.rows, *self.not_run)}
         return tuple(sorted(found, key=lambda each: (each.agent in NOT_RANKED, each)))
 
     @property
@@ -107,7 +121,7 @@ class Results:
         """Tasks not given to contestants that see only the list of elements, because they need the picture."""
         if See.TREE not in self.manifest["plan"].get("see", ()):
             return ()
-        given = (row for row in (*self.rows, *self.coverage.not_run) if NEEDS_PICTURE in row.tags)
+        given = (row for row in (*self.rows, *self.not_run) if NEEDS_PICTURE in row.tags)
         return tuple(sorted({row.task for row in given}))
 
     def of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
@@ -116,7 +130,7 @@ class Results:
 
     def planned_of(self, each: Contestant) -> tuple[EpisodeRow, ...]:
         """The same, including episodes that have not been run."""
-        return (*self.of(each), *(row for row in self.coverage.not_run if contestant(row) == each))
+        return (*self.of(each), *(row for row in self.not_run if contestant(row) == each))
 
     def shared(self) -> Results:
         """The same with only the instances that all contestants have run, on which they can be compared.
@@ -126,8 +140,8 @@ class Results:
         return replace(self, rows=tuple(row for row in self.rows if row.id in self.coverage.shared))
 
 
-def contestant(row: EpisodeRow | WatchRow) -> Contestant:
-    """The contestant that an episode belongs to."""
+def contestant(row: TrialRow) -> Contestant:
+    """The contestant that a trial belongs to."""
     return Contestant(row.agent, row.model, row.conditions)
 
 
@@ -171,13 +185,20 @@ def read_results(folder: Path) -> Results:
         UserError: it is not an evaluation's folder, or is damaged.
     """
     manifest = read_evaluation(folder)
-    rows = read_rows(folder, EpisodeRow)
-    return Results(folder, manifest, tuple(rows[name] for name in sorted(rows)), coverage(manifest, rows))
+    rows = read_trials(folder)
+    ordered = [rows[name] for name in sorted(rows)]
+    return Results(
+        folder,
+        manifest,
+        tuple(row for row in ordered if isinstance(row, EpisodeRow)),
+        coverage(manifest, rows),
+        tuple(row for row in ordered if isinstance(row, DriveTrialRow)),
+    )
 
 
 def load_results(folder: Path | str) -> pd.DataFrame:
-    """The episodes as a data frame, one row per episode by its id; ``part_goal`` and so on are the verdict's parts,
-    ``drive_overspeed_m``, ``baseline_drive_overspeed_m`` and so on the figures of the drives.
+    """The trials as a data frame, one row per episode or drive by its id; ``part_goal`` and so on are a verdict's
+    parts, ``drive_overspeed_m``, ``baseline_drive_overspeed_m`` and so on the figures of the drives.
 
     An episode that ended in an error has ``success`` missing.
 
@@ -189,14 +210,10 @@ def load_results(folder: Path | str) -> pd.DataFrame:
         import pandas as pd
     except ImportError as error:
         raise SetupError("load_results needs pandas: pip install 'automotive-cosim[report]'") from error
-    frame = pd.DataFrame([columns(row) for row in read_results(Path(folder)).rows]).set_index("id")
+    found = read_results(Path(folder))
+    frame = pd.DataFrame([columns(row) for row in (*found.rows, *found.drives)]).set_index("id")
     judged = [name for name in frame.columns if name == "success" or name.startswith("part_")]
     return frame.astype(dict.fromkeys(judged, "boolean"))
-
-
-def instance(row: EpisodeRow) -> tuple[object, ...]:
-    """What two contestants must share to be compared."""
-    return row.task, row.half, row.scenario, row.seed, row.repeat
 
 
 def pair_instance(row: EpisodeRow) -> tuple[object, ...]:

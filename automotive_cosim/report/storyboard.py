@@ -10,7 +10,7 @@ from automotive_cosim.agents import make_agent
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.report.contactsheet import SheetTile, sheet
-from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, Shot, run_episode
 from automotive_cosim.run.words import action_in_words
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.traffic.fork import Simulations
@@ -18,7 +18,7 @@ from automotive_cosim.traffic.fork import Simulations
 COLUMNS = 3
 
 
-class Storyboard(Watcher):
+class Storyboard(EpisodeObserver):
     """Collects the screens of an episode, captioned with the actions."""
 
     def __init__(self, title: str) -> None:

@@ -6,15 +6,17 @@ from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import combinations
 from operator import itemgetter
+from typing import Any
 
 from automotive_cosim.agents import PROFILES, NativeAgent, chosen
 from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import EDITION_2026, EDITION_2026_ROWS, PAPER, PAPER_COLUMNS, PAPER_ROWS
-from automotive_cosim.report.results import Contestant, Results, instance, not_judged, pairs
+from automotive_cosim.report.results import Contestant, Results, not_judged, pairs
 from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.task import Dimension, Module, Subset
 from automotive_cosim.tasking.verdict import PARTS
 
@@ -33,7 +35,7 @@ RATES = (
     "is no success and is counted separately."
 )
 
-SuccessOf = Callable[[EpisodeRow], bool | None]
+SuccessOf = Callable[[Any], bool | None]
 """What of an episode counts as a success."""
 
 
@@ -315,14 +317,14 @@ def parts(results: Results) -> Table:
 
 
 def repeats(results: Results) -> Table:
-    """pass^k over the repeats of each instance, if there are any."""
+    """pass^k over the repeats of each if there are any."""
     most = int(results.manifest["plan"]["repeats"])
     rows: list[TableRow] = []
     for each in results.contestants if most > 1 else ():
         trials: dict[Hashable, list[bool]] = defaultdict(list)
         mine = [row for row in results.of(each) if row.success is not None]
         for row in mine:
-            trials[instance(row)[:-1]].append(row.has_succeeded)
+            trials[row.instance[:-1]].append(row.has_succeeded)
         shares = [pass_hat_k(trials, k) for k in range(1, most + 1)]
         ids = tuple(row.id for row in mine)
         rows.append((each.label, *(Cell(NONE if share is None else f"{share:.0%}", ids) for share in shares)))
@@ -355,11 +357,11 @@ def replaced(results: Results) -> Table:
     return Table("replaced", "Spare traffic", ("Episode", "Seed", "Traffic"), rows, note)
 
 
-def rate_of(rows: Iterable[EpisodeRow], of: SuccessOf = lambda row: row.success) -> Rate:
-    """A rate over planned episodes; those that have run without a verdict are errors."""
+def rate_of(rows: Iterable[TrialRow], of: SuccessOf = lambda row: row.outcome) -> Rate:
+    """A rate over planned trials; those that have run without a verdict are errors."""
     listed = list(rows)
-    outcomes = ((row.task, None if row.success is None else of(row)) for row in listed if row.has_run)
-    return rate(outcomes, not_run=(row.task for row in listed if not row.has_run))
+    outcomes = ((row.subject, None if row.outcome is None else of(row)) for row in listed if row.has_run)
+    return rate(outcomes, not_run=(row.subject for row in listed if not row.has_run))
 
 
 def rate_cell(rows: Iterable[EpisodeRow], of: SuccessOf = lambda row: row.success) -> Cell:
@@ -424,4 +426,4 @@ def _false_alarm(row: EpisodeRow) -> bool:
 
 
 def _judged(rows: Iterable[EpisodeRow]) -> dict[Hashable, EpisodeRow]:
-    return {instance(row): row for row in rows if row.success is not None}
+    return {row.instance: row for row in rows if row.success is not None}

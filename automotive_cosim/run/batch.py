@@ -17,9 +17,9 @@ from typing import Generic
 
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
 from automotive_cosim.run import worker
-from automotive_cosim.run.collect import Pictures, failed
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
+from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.meter import Budget, MeterHandle, Spent
 from automotive_cosim.run.pace import JobTurn, Pace
 from automotive_cosim.run.plan import Plan
@@ -27,7 +27,9 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue, SimulationKey
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.row import JobRow, from_json
+from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.store import Store, cannot_write, opened
+from automotive_cosim.run.trial_row import TrialRow
 
 FINAL_KINDS = frozenset({TriggerNotReachedError.__name__})
 """Errors that are certain to recur, so retrying is useless."""
@@ -69,31 +71,31 @@ def run_plan(
     retries: int = 2,
     pictures: Pictures = Pictures.NONE,
     budget: Budget = Budget(),  # noqa: B008, frozen
-    tell: Callable[[Progress[EpisodeRow]], None] = lambda progress: None,
-) -> Progress[EpisodeRow]:
-    """Runs the remaining episodes of a plan and retries those that ended in an error.
+    tell: Callable[[Progress[TrialRow]], None] = lambda progress: None,
+) -> Progress[TrialRow]:
+    """Runs the remaining trials of a plan and retries those that ended in an error.
 
     Args:
         plan: what to run.
         folder: results folder, new or to be resumed.
         executor: where to run it.
-        retries: how many times an episode is retried after an infrastructure error before the error is recorded.
+        retries: how many times a trial is retried after an infrastructure error before the error is recorded.
         pictures: which screenshots to keep.
         budget: what it may spend on its models, with all earlier starts. Once it is spent, the rest is not run.
-        tell: called at the start and after every episode.
+        tell: called at the start and after every trial.
 
     Raises:
         UserError: the plan names something that does not exist, or the folder cannot take its results.
         InfrastructureError: no worker becomes available.
-        KeyboardInterrupt: passed on; only the running episodes are lost.
+        KeyboardInterrupt: passed on; only the running trials are lost.
     """
     plan.check()
     jobs = plan.jobs()
     with (
-        opened(folder, plan.as_json(), EpisodeRow, planned=len(jobs)) as store,
+        opened(folder, plan.as_json(), kind_of, planned=len(jobs)) as store,
         executor.metered(budget, spent_before(store)) as meter,
     ):
-        opener = partial(worker.episodes, pictures, meter)
+        opener = partial(worker.trials, pictures, meter)
         limit = meter if budget.is_limited else None
         return run_jobs(jobs, store, opener, failed, executor=executor, retries=retries, limit=limit, tell=tell)
 

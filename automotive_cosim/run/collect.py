@@ -15,11 +15,11 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.run.episode import EpisodeResult, Shot, Watcher
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, Shot
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import nearest_s, overspeed, states_of
+from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged
-from automotive_cosim.run.plan import EpisodeJob
 from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.tasking.dialogue import Question
 
@@ -36,7 +36,7 @@ class Pictures(StrEnum):
     ALL = "all"
 
 
-class Collector(Watcher):
+class Collector(EpisodeObserver):
     """Collects data while an episode runs, and makes the row and the trace when it is over."""
 
     def __init__(self, pictures: Pictures) -> None:
@@ -107,7 +107,7 @@ class Collector(Watcher):
         """The episode's row, without the fields that the batch adds."""
         episode, judged, load = self._episode, result.verdict, result.load
         return replace(
-            planned(job),
+            job.planned(),
             scenario=result.scenario,
             parameters=None if episode is None else dict(episode.instance.parameters),
             traffic_seed=result.traffic_seed,
@@ -143,38 +143,6 @@ class Collector(Watcher):
             error_kind=result.error_kind,
             model_seconds=result.model_seconds,
         )
-
-
-def planned(job: EpisodeJob) -> EpisodeRow:
-    """What is known about an episode before it runs."""
-    setup, task = job.setup, job.task
-    half = task.half(setup.half)
-    return EpisodeRow(
-        id=job.id,
-        task=task.id,
-        half=setup.half,
-        pair=job.pair,
-        dimension=task.dimension,
-        module=task.module,
-        basis=half.basis,
-        suite=task.suite,
-        tags=tuple(sorted(task.tags)),
-        skills=tuple(sorted(task.skills)),
-        declines=not half.moves,
-        scenario=job.scenario,
-        agent=setup.agent,
-        model=setup.model,
-        conditions=setup.conditions,
-        seed=setup.seed,
-        repeat=job.repeat,
-        held_out=setup.held_out,
-        split=job.split,
-    )
-
-
-def failed(job: EpisodeJob, kind: str, why: str) -> EpisodeRow:
-    """The row of an episode that ended in an infrastructure error."""
-    return replace(planned(job), error=why, error_kind=kind)
 
 
 def compliance(moments: Sequence[Moment]) -> float | None:

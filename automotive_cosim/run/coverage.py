@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.collect import planned
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.plan import EpisodeJob, make_plan
+from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.trial_row import TrialRow
 
 
 @dataclass(frozen=True, slots=True)
@@ -19,12 +19,14 @@ class Coverage:
 
     judged: int
     errors: int
-    not_run: tuple[EpisodeRow, ...] = ()
+    not_run: tuple[TrialRow, ...] = ()
     """The planned episodes without a row, with what is known about an episode before it runs."""
     shared: frozenset[str] = frozenset()
     """Ids of the episodes on whose instance no contestant's episode is still to be run."""
     shared_instances: int | None = None
     """Their instances; None if nothing is still to be run."""
+    unit: str = "episode"
+    """What is counted: ``episode``, ``drive``, or ``trial`` for both."""
     problem: str = ""
     """Why it is not known what was planned; then ``not_run`` is empty."""
 
@@ -41,52 +43,59 @@ class Coverage:
     def __str__(self) -> str:
         errors = f", {counted(self.errors, 'error')}" if self.errors else ""
         if self.problem:
-            known = f"{counted(self.judged, 'episode')} judged{errors}"
+            known = f"{counted(self.judged, self.unit)} judged{errors}"
             return f"{known}; the rest of the plan is not known: {self.problem}"
         rest = f", {len(self.not_run):,} not run" if self.not_run else ""
-        return f"{self.judged:,} of {counted(self.planned, 'planned episode')} judged{errors}{rest}"
+        return f"{self.judged:,} of {counted(self.planned, f'planned {self.unit}')} judged{errors}{rest}"
 
 
-def coverage(manifest: Json, rows: Mapping[str, EpisodeRow]) -> Coverage:
+def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
     """Compares an evaluation's rows with its plan, expanded by the installed catalogue.
 
     Args:
         manifest: the evaluation's.
         rows: its rows by id.
     """
-    judged = sum(row.success is not None for row in rows.values())
-    errors = len(rows) - judged
+    judged = sum(row.outcome is not None for row in rows.values())
+    errors, unit = len(rows) - judged, unit_of(manifest["plan"])
     if manifest.get("episodes") == len(rows):  # even if the catalogue has changed since
-        return Coverage(judged, errors, shared=frozenset(rows))
-    jobs: dict[str, EpisodeJob] = {}
+        return Coverage(judged, errors, shared=frozenset(rows), unit=unit)
+    jobs: dict[str, TrialJob] = {}
     try:
         jobs |= {job.id: job for job in make_plan(manifest["plan"]).jobs()}
         problem = _drift(manifest, rows, jobs)
     except UserError as error:
         problem = " ".join(str(error).split())
     if problem:
-        return Coverage(judged, errors, shared=frozenset(rows), problem=problem)
+        return Coverage(judged, errors, shared=frozenset(rows), unit=unit, problem=problem)
     not_run = [job for job in jobs.values() if job.id not in rows]
-    waiting = {_instance(job) for job in not_run}
-    shared = [job for job in jobs.values() if _instance(job) not in waiting]
+    waiting = {job.instance for job in not_run}
+    shared = [job for job in jobs.values() if job.instance not in waiting]
     return Coverage(
         judged,
         errors,
-        tuple(map(planned, not_run)),
+        tuple(job.planned() for job in not_run),
         frozenset(job.id for job in shared),
-        len(set(map(_instance, shared))) if not_run else None,
+        len({job.instance for job in shared}) if not_run else None,
+        unit,
     )
 
 
-def _drift(manifest: Json, rows: Mapping[str, EpisodeRow], jobs: Mapping[str, EpisodeJob]) -> str:
+def unit_of(plan: Json) -> str:
+    """What a plan's trials are called."""
+    if not plan.get("drives"):
+        return "episode"
+    return "trial" if plan.get("tasks") else "drive"
+
+
+def _drift(manifest: Json, rows: Mapping[str, TrialRow], jobs: Mapping[str, TrialJob]) -> str:
     """How the plan's episodes differ from those of the version that ran it; empty if they do not."""
     count = manifest.get("episodes", len(jobs))
     if count != len(jobs):
-        return f"the plan had {count} episodes and has {len(jobs)} with the installed tasks"
+        return f"the plan had {count} {unit_of(manifest['plan'])}s and has {len(jobs)} with the installed tasks"
     surplus = [name for name in rows if name not in jobs]
-    return f"{counted(len(surplus), 'episode')} not in the plan, such as {surplus[0]}" if surplus else ""
-
-
-def _instance(job: EpisodeJob) -> Hashable:
-    """What an instance is identified by; the same for every contestant."""
-    return job.setup.task, job.setup.half, job.scenario, job.setup.seed, job.repeat
+    return (
+        f"{counted(len(surplus), unit_of(manifest['plan']))} not in the plan, such as {surplus[0]}"
+        if surplus
+        else ""
+    )

@@ -30,22 +30,22 @@ from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.interface.trace import plain
 from automotive_cosim.run.collect import PICTURE_QUALITY
+from automotive_cosim.run.drive import DriveObserver, DriveRecord, DriveSetup
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.road import NAME
 from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter
 from automotive_cosim.run.row import as_json
-from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher
 from automotive_cosim.run.words import action_in_words
 
 SHOWN = "shown.jsonl"
 
 
-class DriveRecorder(WatchWatcher):
+class DriveRecorder(DriveObserver):
     """Records a drive while it runs."""
 
     looks = True
 
-    def __init__(self, folder: Path, setup: WatchSetup, agent: Agent) -> None:
+    def __init__(self, folder: Path, setup: DriveSetup, agent: Agent) -> None:
         """Nothing is written before the departure.
 
         Args:
@@ -115,7 +115,7 @@ class DriveRecorder(WatchWatcher):
         self._lines.write(json.dumps(line, ensure_ascii=False) + "\n")
         self._lines.flush()
 
-    def arrived(self, watch: Watch, record: WatchRecord) -> None:
+    def arrived(self, watch: Watch, record: DriveRecord) -> None:
         """Adds the do-nothing drive, and writes the row."""
         if self._road is not None:
             self._road.baseline(watch.baseline_moments)

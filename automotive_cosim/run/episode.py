@@ -161,8 +161,8 @@ class Replayed(Protocol):
         ...
 
 
-class Watcher(Listener):
-    """Watches an episode while it runs, e.g. to show or record it. It sees everything and changes nothing."""
+class EpisodeObserver(Listener):
+    """Observes a trial while it runs, e.g. to show or record it. It sees everything and changes nothing."""
 
     def handed_over(self, episode: Episode, shot: Shot) -> None:
         """The trigger holds; the agent begins."""
@@ -177,7 +177,7 @@ class Watcher(Listener):
 def run_episode(
     setup: EpisodeSetup,
     agent: Agent,
-    watchers: Sequence[Watcher] = (),
+    watchers: Sequence[EpisodeObserver] = (),
     *,
     simulations: Simulations | None = None,
 ) -> EpisodeResult:
@@ -212,7 +212,7 @@ class _Run:
     """One episode and the data collected along with it."""
 
     def __init__(
-        self, setup: EpisodeSetup, finder: SituationFinder, agent: Agent, watchers: Sequence[Watcher]
+        self, setup: EpisodeSetup, finder: SituationFinder, agent: Agent, watchers: Sequence[EpisodeObserver]
     ) -> None:
         self._setup = setup
         self._finder = finder

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
-from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.episode.specification import End
 from automotive_cosim.run.harm import DriveFigures
-from automotive_cosim.run.row import InColumns, JobRow, Volatile, formerly
+from automotive_cosim.run.row import InColumns, formerly
 from automotive_cosim.run.taps import PixelTaps
-from automotive_cosim.tasking.split import Split
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.task import Basis, Dimension, Module, Suite
 from automotive_cosim.tasking.verdict import Verdict
 
@@ -38,8 +36,8 @@ class PartsHeld:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class EpisodeRow(JobRow):
-    """One episode. Values that were not measured are None; an error leaves most fields at their defaults."""
+class EpisodeRow(TrialRow):
+    """One episode on a task's half. Values that were not measured are None."""
 
     task: str
     half: str
@@ -55,17 +53,8 @@ class EpisodeRow(JobRow):
     """Skills that the task requires of an agent."""
     declines: bool = False
     """Whether nothing has to be done in this half."""
-    scenario: str
-    agent: str
-    model: str
-    seed: int
     traffic_seed: int | None = None
     """Seed of the traffic: ``seed``, or a spare one; None without a hand-over."""
-    repeat: int
-    conditions: Annotated[Conditions, InColumns("")] = Conditions()  # noqa: RUF009, frozen
-    """What the agent was given, and at what speed."""
-    thought_s: float = 0.0
-    """Simulated seconds that all answers took."""
     parameters: Mapping[str, Any] | None = None
     """Drawn for this seed; None without a hand-over."""
     country: str = ""
@@ -73,9 +62,6 @@ class EpisodeRow(JobRow):
     success: bool | None = None
     """None without a verdict."""
     reward: float = 0.0
-    end: End = End.ERROR
-    agent_error: str | None = None
-    """How the agent's side failed, if that ended the episode: a failure like any other, never an error."""
     parts: Annotated[PartsHeld | None, InColumns("part")] = None
     goal_s: float | None = None
     """Seconds from the trigger since when the goal held to the end."""
@@ -89,7 +75,6 @@ class EpisodeRow(JobRow):
     """Questions whose answer could be found without asking, or had already been given."""
     question_s: float | None = None
     """Seconds that questions and answers took from the driver's attention."""
-    steps: int = 0
     sim_seconds: float = 0.0
     """From the hand-over to the end."""
     speed_compliance: float | None = None
@@ -109,26 +94,23 @@ class EpisodeRow(JobRow):
     """Taps that were given as pixels; None without one."""
     prompt_tokens: tuple[int, ...] = ()
     """Tokens of each call of the model."""
-    tokens_in: int = 0
-    tokens_out: int = 0
-    cost_usd: float = 0.0
     held_out: bool = False
     """Whether the driver's phrasing is held out from the rule model."""
-    split: Split | None = None
-    """The set that it belongs to, by its seed and its phrasing; None in rows from before there were sets."""
-    trace_sha256: str | None = None
-    model_seconds: Volatile[float] = 0.0
-    """Total wait for the model."""
 
     @property
-    def has_succeeded(self) -> bool:
-        """Whether it was judged a success."""
-        return self.success is True
+    def subject(self) -> str:
+        """The task."""
+        return self.task
 
     @property
-    def has_run(self) -> bool:
-        """Whether it was judged or ended in an error; false for an episode that is only planned."""
-        return self.success is not None or self.error is not None
+    def instance(self) -> tuple[Hashable, ...]:
+        """What two contestants must share to be compared."""
+        return self.task, self.half, self.scenario, self.seed, self.repeat
+
+    @property
+    def outcome(self) -> bool | None:
+        """Whether it is a success; None without a verdict."""
+        return self.success
 
     @property
     def missing(self) -> tuple[str, ...]:

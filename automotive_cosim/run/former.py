@@ -1,13 +1,15 @@
 """What earlier versions wrote, in the present form; nothing else reads theirs.
 
 0.1    had modes: ``prompted``, which every episode is now, and ``monitoring``, now drives
-0.2    had each condition as a field of rows, setups and results, ``latency`` for ``latency_s`` and one clock a plan
+0.2    had each condition as a field of rows, setups and results; in plans ``latency`` for ``latency_s``, and one
+       clock; plans of drives apart from those of tasks, with their own ``wall_s``; and files for timelines
 """
 
 from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import Json
@@ -32,6 +34,8 @@ def plan_values(values: Mapping[str, Any], where: str) -> dict[str, Any]:
     made = _without_mode(values, where)
     if "latency" in made:
         made.setdefault("latency_s", made.pop("latency"))
+    if "wall_s" in made:  # a plan of drives
+        made["limits"] = made.get("limits", {}) | {"drive_wall_s": made.pop("wall_s")}
     return {
         name: [value] if name in NAMES and isinstance(value, str | int | float) else value
         for name, value in made.items()
@@ -58,16 +62,19 @@ def with_conditions(values: Mapping[str, Any]) -> dict[str, Any]:
     return {name: value for name, value in values.items() if name not in NAMES} | {"conditions": found}
 
 
-def line_of(line: bytes) -> bytes | None:
-    """A row's line in the present form; None if an earlier version did not write it either.
+def former_timeline(folder: Path, drive: str) -> Json | None:
+    """The timeline of a drive of 0.2, which had a file of its own; None if there is none."""
+    path = folder / "timelines" / f"{drive}.json"
+    return json.loads(path.read_text("utf-8")) if path.is_file() else None
 
-    Raises:
-        ValueError: it is not JSON.
-    """
-    values = json.loads(line)
-    if not isinstance(values, dict) or "conditions" in values:
-        return None
-    return json.dumps(with_conditions(values)).encode()
+
+def present(line: bytes) -> bytes:
+    """A row's line of 0.2 in the present form; one that is no JSON object, as it is."""
+    try:
+        values = json.loads(line)
+    except ValueError:
+        return line
+    return json.dumps(with_conditions(values)).encode() if isinstance(values, dict) else line
 
 
 def _without_mode(values: Mapping[str, Any], where: str) -> Json:

@@ -22,7 +22,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from datetime import datetime
 from enum import Enum
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 from zoneinfo import ZoneInfo
 
 from automotive_cosim.contracts import GoalStatus, Json, Reason
@@ -31,6 +31,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.geo.locate import Geo
 
+T = TypeVar("T")
 PACKAGE = "automotive_cosim."
 """Only classes of this package are created when a file is read."""
 MOVED = {"automotive_cosim.cosim:Moment": "automotive_cosim.cosim.moment:Moment"}
@@ -75,14 +76,23 @@ def write_judged(folder: Path, episode: str, judged: Judged) -> None:
     Raises:
         OSError: the file cannot be written.
     """
-    writer = _Writer()
     beside: Any = _changes(judged.trace[-1].commands, judged.counterfactual or {})
-    value = writer.value(
-        replace(judged, trace=_bare(judged.trace), baseline=_bare(judged.baseline), counterfactual=beside)
+    write_value(
+        judged_file(folder, episode),
+        replace(judged, trace=_bare(judged.trace), baseline=_bare(judged.baseline), counterfactual=beside),
     )
+
+
+def write_value(path: Path, stored: object) -> None:
+    """Writes a dataclass, whole or not at all; the same value gives the same bytes.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
+    writer = _Writer()
+    value = writer.value(stored)
     whole = {"classes": writer.classes, "pool": writer.pool, "value": value}
     text = json.dumps(whole, ensure_ascii=False, separators=(",", ":"))
-    path = judged_file(folder, episode)
     draft = path.with_name(f".{path.name}.part")
     draft.write_bytes(lzma.compress(text.encode(), preset=PRESET))
     draft.replace(path)
@@ -96,15 +106,7 @@ def read_judged(folder: Path, episode: str) -> Judged:
             the counterfactual or with requests to the road as text.
     """
     path = judged_file(folder, episode)
-    try:
-        whole: Json = read_json(path)
-        judged = _Reader(whole["classes"], whole["pool"]).value(whole["value"])
-    except FileNotFoundError as error:
-        raise UserError(f"{path} does not exist; only judged episodes have one") from error
-    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, ImportError) as error:
-        raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
-    if not isinstance(judged, Judged):
-        raise UserError(f"{path} has no moments")
+    judged = read_value(path, Judged)
     geo = Geo()
     judged = replace(judged, trace=_placed(judged.trace, geo), baseline=_placed(judged.baseline, geo))
     requests = (*judged.trace[-1].commands["requests"], *judged.baseline[-1].commands["requests"])
@@ -118,6 +120,24 @@ def read_judged(folder: Path, episode: str) -> Judged:
         )
     beside: Any = judged.counterfactual
     return replace(judged, counterfactual=_changed(judged.trace[-1].commands, *beside))
+
+
+def read_value(path: Path, kind: type[T]) -> T:
+    """What ``write_value`` wrote.
+
+    Raises:
+        UserError: there is no such file, it is damaged, or it holds something else.
+    """
+    try:
+        whole: Json = read_json(path)
+        value = _Reader(whole["classes"], whole["pool"]).value(whole["value"])
+    except FileNotFoundError as error:
+        raise UserError(f"{path} does not exist; only judged episodes have one") from error
+    except (OSError, ValueError, LookupError, TypeError, AttributeError, RecursionError, ImportError) as error:
+        raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
+    if not isinstance(value, kind):
+        raise UserError(f"{path} has no moments" if kind is Judged else f"{path} holds no {kind.__name__}")
+    return value
 
 
 def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:

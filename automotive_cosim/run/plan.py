@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import hashlib
-import re
-from collections.abc import Hashable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from fnmatch import fnmatchcase
 from itertools import product
@@ -12,34 +10,34 @@ from math import prod
 from pathlib import Path
 from typing import Annotated, Any
 
-from annotated_types import Ge, Gt, Le, MinLen
+from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
-from automotive_cosim.episode.conditions import ConditionLists, Conditions, combined, lists_of
+from automotive_cosim.drives.elsewhere import elsewhere
+from automotive_cosim.drives.families import FAMILIES, family_named
+from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.episode.conditions import ConditionLists, combined, lists_of
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
-from automotive_cosim.interface.controls import GeoInput
 from automotive_cosim.interface.observe import See
-from automotive_cosim.interface.trace import canonical
+from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.former import plan_values
-from automotive_cosim.run.outside import EPISODE_S, STEP_S, check_agent
+from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, EpisodeJob, Limits, TrialJob, digest
+from automotive_cosim.run.outside import check_agent
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.tasking.split import Split, split_of
+from automotive_cosim.tasking.split import Split
 from automotive_cosim.tasking.task import Suite, Task
 from automotive_cosim.tasks import CATALOGUE
 
 PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
 """Values of a plan by the name of the preset: the authors' newer edition allows ten steps."""
-NO_MODEL = "none"
-HUMAN = "human"
-"""The agent that is a person; a code name replaces the model."""
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
 ALL_SUITES, BOTH = "all", "both"
@@ -50,41 +48,23 @@ SPARE_TRAFFIC = (1_000_001, 1_000_002)
 
 
 @dataclass(frozen=True, slots=True)
-class Limits:
-    """Limits of one episode."""
-
-    steps: Annotated[int, Ge(1), Le(100_000)] = Suite.STANDARD.max_steps
-    """Number of actions, including unreadable ones."""
-    hard_steps: Annotated[int, Ge(1), Le(100_000)] = Suite.HARD.max_steps
-    """The same for the tasks of the hard suite."""
-    sim_s: Annotated[float, Gt(0)] = 600.0
-    """Simulated seconds from the hand-over, after which the episode is judged as it is."""
-    wall_s: Annotated[float, Gt(0)] = 900.0
-    """Wall seconds of all but the agent's process, warm-up and model included; exceeding them is an infrastructure
-    error."""
-    agent_s: Annotated[float, Gt(0)] = EPISODE_S
-    """Wall seconds that the agent's process may take; exceeding them is a failure of the agent."""
-    agent_step_s: Annotated[float, Gt(0)] = STEP_S
-    """The same for one step."""
-    tokens: Annotated[int, Ge(1)] = 2_000_000
-    """Tokens to and from the model, after which the episode is judged as it is."""
-
-
-@dataclass(frozen=True, slots=True)
 class Plan(ConditionLists):
-    """The content of a ``plan.toml``; every list is combined with every other, also those of the conditions."""
+    """The content of a ``plan.toml``; every list is combined with every other, the conditions' too."""
 
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
-    tasks: Annotated[tuple[str, ...], MinLen(1)] = ("all",)
-    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``."""
+    tasks: tuple[str, ...] = ()
+    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``;
+    empty for all, or for none beside drives."""
+    drives: tuple[str, ...] = ()
+    """Families of drives, patterns such as ``grid_*``, scenarios, seasons, or ``all``."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
     """The suite they are chosen from: ``standard``, ``hard`` or ``all``. An id selects a task in any suite."""
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
     """Models for the agents that use one."""
     scenarios: tuple[str, ...] = ()
-    """Scenarios instead of the tasks' own, for tasks that can run there; one that is not shipped takes all tasks.
-    Empty runs each task in its own."""
+    """Scenarios instead of the tasks' own, for tasks that can run there, and instead of the drives' own roads; one
+    that is not shipped takes all tasks. Empty runs each in its own."""
     everywhere: bool = False
     """Also runs tasks in scenarios that they do not list, where their situation may never arise."""
     seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
@@ -93,7 +73,7 @@ class Plan(ConditionLists):
     """Seeds of traffic that replace a seed's own, in turn, if the situation does not occur in it although the task
     lists the scenario. Every agent gets the same; the row says which."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
-    """Runs of each episode, for models that do not answer the same twice."""
+    """Runs of each task and drive, for models that do not answer the same twice."""
     held_out: bool = False
     """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""
     split: Annotated[str, OneOf(SPLITS, "split")] = BOTH
@@ -122,6 +102,11 @@ class Plan(ConditionLists):
         make_plan(self.as_json())
         for name in self.scenarios:
             open_scenario(name)
+            for family in families_named(self.drives)[:1]:
+                elsewhere(family_named(family).draw(0), name)
+        for job in self.jobs():
+            if isinstance(job, DriveJob):
+                DriveSpec(job.setup.family, conditions=job.setup.conditions).check()
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
         for agent, model, conditions in {(job.setup.agent, job.model, job.setup.conditions) for job in self.jobs()}:
@@ -141,21 +126,24 @@ class Plan(ConditionLists):
                     lacks.append(str(error))
         return tuple(dict.fromkeys(sorted(lacks)))
 
-    def jobs(self) -> tuple[EpisodeJob, ...]:
-        """Every episode, grouped by warm simulation, in an order from which an agent learns nothing.
+    def jobs(self) -> tuple[TrialJob, ...]:
+        """Every trial, grouped by warm simulation, in an order from which an agent learns nothing.
 
-        Simulations and the episodes within each are ordered by hash: first halves do not come before second ones.
+        Simulations and the trials within each are ordered by hash: first halves do not come before second ones.
 
         Raises:
             UserError: there are more than can ever be run.
         """
-        lists = (self.agents, self.models, self._placed(), self.seeds, *lists_of(self).values())
+        lists = (self.agents, self.models, [*self._placed(), *self._driven()], self.seeds, *lists_of(self).values())
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
-            raise UserError(
-                f"the plan has {most:,} runs of tasks; give fewer seeds or repeats, at most {MOST_RUNS:,}"
-            )
-        jobs = {job.id: job for job in self._each() if self.split in (BOTH, job.split)}
+            raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
+        every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives())
+        jobs = {job.id: job for job in every if self.split in (BOTH, job.split)}
         return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
+
+    def episodes(self) -> tuple[EpisodeJob, ...]:
+        """Those of the jobs that are episodes on tasks."""
+        return tuple(job for job in self.jobs() if isinstance(job, EpisodeJob))
 
     @property
     def languages(self) -> tuple[Language, ...]:
@@ -170,15 +158,17 @@ class Plan(ConditionLists):
     def unspoken(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that have no phrasings in one of the languages."""
         spoken = {task.id for task in self._spoken()}
-        return tuple(task_id for task_id in choose(self.tasks, self.suite) if task_id not in spoken)
+        return tuple(task_id for task_id in self._chosen() if task_id not in spoken)
 
     def beyond_the_list(self) -> tuple[str, ...]:
         """Ids of the chosen tasks that are not run with ``see`` tree: something needed is only in the picture."""
         if See.TREE not in lists_of(self)["see"]:
             return ()
-        return tuple(task_id for task_id in choose(self.tasks, self.suite) if CATALOGUE[task_id].needs_picture)
+        return tuple(task_id for task_id in self._chosen() if CATALOGUE[task_id].needs_picture)
 
     def _nowhere(self) -> str:
+        if not self._chosen():
+            return f"no drive with these seeds is in the split {self.split!r}; give other seeds"
         if self._placed() and all(task.needs_picture for task, _ in self._placed()):
             return "these tasks need the picture, which see = tree withholds; give picture or both"
         if not self._spoken():
@@ -208,10 +198,26 @@ class Plan(ConditionLists):
 
     def _spoken(self) -> list[Task]:
         """The chosen tasks that have phrasings in every language."""
-        chosen = [CATALOGUE[task_id] for task_id in choose(self.tasks, self.suite)]
+        chosen = [CATALOGUE[task_id] for task_id in self._chosen()]
         return [task for task in chosen if set(self.languages) <= set(task.languages)]
 
-    def _each(self) -> Iterator[EpisodeJob]:
+    def _chosen(self) -> tuple[str, ...]:
+        """Ids of the chosen tasks."""
+        return choose(self.tasks or (() if self.drives else ("all",)), self.suite)
+
+    def _driven(self) -> list[tuple[str, str]]:
+        """Each family of drives with each scenario that it runs in; empty for its own."""
+        return list(product(families_named(self.drives), self.scenarios or ("",)))
+
+    def _drives(self) -> Iterator[DriveJob]:
+        for agent, model, (family, scenario), seed, conditions, repeat in product(
+            self.agents, self.models, self._driven(), self.seeds, combined(self), range(self.repeats)
+        ):
+            named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
+            setup = DriveSetup(family, seed, agent, named, conditions, scenario)
+            yield DriveJob(setup, repeat, self.limits.of_drives)
+
+    def _episodes(self) -> Iterator[EpisodeJob]:
         for agent, model, (task, scenario), seed, conditions, repeat in product(
             self.agents,
             self.models,
@@ -240,92 +246,10 @@ class Plan(ConditionLists):
                 yield EpisodeJob(setup, repeat, self.limits)
 
 
-@dataclass(frozen=True, slots=True)
-class EpisodeJob:
-    """One episode of a plan."""
-
-    setup: EpisodeSetup
-    repeat: int
-    limits: Limits
-
-    @property
-    def model(self) -> str:
-        """The agent, as given to ``make_agent``."""
-        return "rules" if self.setup.model == NO_MODEL else self.setup.model
-
-    @property
-    def scenario(self) -> str:
-        """Name or folder of its scenario."""
-        return self.setup.scenario or self.task.half(self.setup.half).start.scenario
-
-    @property
-    def task(self) -> Task:
-        """The catalogue's entry."""
-        return CATALOGUE[self.setup.task]
-
-    @property
-    def split(self) -> Split:
-        """The set that it belongs to, by its seed and its phrasing."""
-        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out)
-
-    @property
-    def simulation(self) -> tuple[str, int]:
-        """The warm simulation that it starts from: scenario and seed."""
-        return self.scenario, self.setup.seed
-
-    @property
-    def kind(self) -> Hashable:
-        """The agent and its model, which determine how long it takes."""
-        return self.setup.agent, self.setup.model
-
-    @property
-    def situation(self) -> Hashable:
-        """The drive up to the hand-over, on which no agent acts."""
-        return replace(
-            self.setup,
-            agent="",
-            model="",
-            without=(),
-            conditions=Conditions(language=self.setup.conditions.language),
-        )
-
-    @property
-    def wall_s(self) -> float:
-        """Limit of its wall time."""
-        return self.limits.wall_s + self.limits.agent_s
-
-    @property
-    def id(self) -> str:
-        """Its id, which can be a file name."""
-        return self._named(self.setup.half)
-
-    @property
-    def pair(self) -> str:
-        """Name that both halves of a pair share; empty for a task with one half."""
-        return self._named("pair") if self.task.second else ""
-
-    def _named(self, half: str) -> str:
-        """Readable words, then a digest of everything else."""
-        setup, conditions = self.setup, self.setup.conditions
-        exactly = (
-            setup.task, half, setup.agent, setup.model, conditions.geo, f"s{setup.seed}", f"r{self.repeat}",
-            setup.scenario or "own",
-            *(["held_out"] if setup.held_out else []),
-            *replace(conditions, geo=GeoInput.FULL).tags,
-        )  # fmt: skip
-        words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
-        return f"{words[:150]}-{digest(exactly)[:8]}"
-
-
 def languages_in_words(codes: Iterable[str]) -> str:
     """For example ``French and German``; English, which every task has, is left out if there are others."""
     *others, last = [Language(code).words for code in codes if code != Language.ENGLISH] or ["English"]
     return f"{', '.join(others)} and {last}" if others else last
-
-
-def digest(value: object) -> str:
-    """A digest of plain values."""
-    return hashlib.sha256(canonical(value)).hexdigest()
 
 
 def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]:
@@ -350,6 +274,25 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
             raise UnknownNameError("task, pattern or tag", word, known, "automotive-cosim tasks list")
         chosen |= named
     return tuple(task_id for task_id in CATALOGUE if task_id in chosen)
+
+
+def families_named(asked: Iterable[str]) -> tuple[str, ...]:
+    """Ids of the families of drives that any of the words selects, in their order.
+
+    Raises:
+        UnknownNameError: a word selects none.
+    """
+    chosen: set[str] = set()
+    for word in asked:
+        named = {
+            family.id
+            for family in FAMILIES.values()
+            if word in ("all", family.scenario, family.season) or fnmatchcase(family.id, word)
+        }
+        if not named:
+            raise UnknownNameError("family of drives", word, FAMILIES, "automotive-cosim drive --list")
+        chosen |= named
+    return tuple(family for family in FAMILIES if family in chosen)
 
 
 def _words(task: Task) -> frozenset[str]:

@@ -24,7 +24,7 @@ from PIL import Image
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot
 from automotive_cosim.run.versions import installed
 
 OURS = ("episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html")
@@ -62,7 +62,7 @@ def check_folder(folder: Path, *, force: bool) -> None:
         ) from error
 
 
-class Recorder(Watcher):
+class Recorder(EpisodeObserver):
     """Writes the record of an episode while it runs."""
 
     def __init__(self, folder: Path, setup: EpisodeSetup, arguments: Json) -> None:

@@ -1,15 +1,19 @@
-"""Judges stored episodes again by the current checks."""
+"""Judges stored trials again by the current checks."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 
+from automotive_cosim.drives.score import Score
 from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.run.drive import JudgedDrive
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.moments import Judged, read_judged
-from automotive_cosim.run.store import read_evaluation, read_rows
+from automotive_cosim.run.moments import Judged, judged_file, read_judged, read_value
+from automotive_cosim.run.rows import read_trials
+from automotive_cosim.run.store import read_evaluation
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import Verdict, judge
 from automotive_cosim.tasks import CATALOGUE
@@ -28,7 +32,7 @@ class Change:
 
 @dataclass(frozen=True, slots=True)
 class Regraded:
-    """One stored episode, judged again."""
+    """One stored trial, judged again."""
 
     episode: str
     before: bool
@@ -45,16 +49,20 @@ class Regraded:
 
 
 def regrade(folder: Path) -> Iterator[Regraded]:
-    """Judges every episode of an evaluation that has a verdict again; nothing is written.
+    """Judges every trial of an evaluation that has a verdict again; nothing is written.
 
     Raises:
         UserError: it is not an evaluation's folder, or is damaged.
     """
     read_evaluation(folder)
-    rows = read_rows(folder, EpisodeRow)
+    rows = read_trials(folder)
     for name in sorted(rows):
-        if (held := rows[name].parts) is not None:
-            yield _regraded(folder, rows[name], held)
+        row = rows[name]
+        if isinstance(row, DriveTrialRow):
+            if row.score is not None:
+                yield _drive_regraded(folder, row, row.score)
+        elif isinstance(row, EpisodeRow) and row.parts is not None:
+            yield _regraded(folder, row, row.parts)
 
 
 def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
@@ -91,3 +99,20 @@ def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
         if (now := verdict.parts[name]).ok is not before
     )
     return Regraded(row.id, row.has_succeeded, verdict.success, changes)
+
+
+def _drive_regraded(folder: Path, row: DriveTrialRow, held: Score) -> Regraded:
+    try:
+        stored = read_value(judged_file(folder, row.id), JudgedDrive)
+        events, acts, score = stored.judgement()
+    except CosimError as error:
+        return Regraded(row.id, row.has_succeeded, None, problem=str(error))
+    now = replace(row, events=events, acts=acts, score=score, value=score.value)
+    changes = tuple(
+        Change(f"{before.kind} at {before.observable_s:.0f} s", before.outcome.counts, after.outcome.counts, why)
+        for before, after in zip(row.events, events, strict=False)
+        if (why := f"{after.outcome} instead of {before.outcome}") and after.outcome is not before.outcome
+    )
+    if not changes and (score != held or acts != row.acts or events != row.events):
+        changes = (Change("score", True, False, f"{score.value:.1f} instead of {held.value:.1f}"),)
+    return Regraded(row.id, row.has_succeeded, now.has_succeeded, changes)

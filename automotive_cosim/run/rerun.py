@@ -1,19 +1,21 @@
-"""Repeats a stored episode's actions and compares the traces."""
+"""Repeats a stored trial's actions and compares the traces."""
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Sequence
+from collections.abc import Callable, Collection, Sequence
 from contextlib import closing
 from dataclasses import dataclass
 from itertools import zip_longest
 from pathlib import Path
+from typing import cast
 
 from automotive_cosim.agents import PROFILES, AgentSettings, NativeAgent, make_agent
 from automotive_cosim.agents.settings import parts
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.drives.families import family_named
 from automotive_cosim.errors import (
     ActionError,
     AgentError,
@@ -25,13 +27,19 @@ from automotive_cosim.formats import files
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import HASHED, canonical
 from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.coverage import unit_of
+from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, read_setup, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.jobs import DriveJob, EpisodeJob
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.nursery import Nursery
-from automotive_cosim.run.plan import EpisodeJob, make_plan
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.row import from_json
+from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.script import ScriptedAgent
-from automotive_cosim.run.store import read_evaluation, read_rows, read_trace
+from automotive_cosim.run.store import read_evaluation, read_trace
 from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations
 
@@ -52,32 +60,40 @@ class Compared:
     """The parts of the step that differ, from ``trace.HASHED``, or ``"length"`` if one run has no such step."""
 
 
-def rerun(folder: Path, episode: str = "") -> list[Compared]:
-    """Plays the actions of a stored episode in the same setup and compares step by step.
+def rerun(folder: Path, trial: str = "") -> list[Compared]:
+    """Plays the actions of a stored trial in the same setup and compares step by step.
 
     Args:
-        folder: an evaluation's, or that of a single run.
-        episode: an id of the evaluation, or its unique beginning; a single run has none.
+        folder: an evaluation's, or that of a single run or drive.
+        trial: an id of the evaluation, or its unique beginning; a single run has none.
 
     Raises:
-        UserError: no such episode, several of them, or its trace cannot be read.
+        UserError: no such trial, several of them, or its trace cannot be read.
         InfrastructureError: the simulation failed.
     """
     if (folder / "episode.json").is_file():
-        return _single(folder, episode)
+        return _single(folder, trial)
+    if (folder / "row.json").is_file():
+        return _single_drive(folder, trial)
     manifest = read_evaluation(folder)
-    rows = read_rows(folder, EpisodeRow)
-    name = the_one(rows, episode, folder, "episode")
+    rows = read_trials(folder)
+    name = the_one(rows, trial, folder, unit_of(manifest["plan"]))
     plan = make_plan(manifest["plan"])
     job = next((job for job in plan.jobs() if job.id == name), None)
+    row = rows[name]
     if job is None:
         raise UserError(
-            f"the plan in {folder / 'manifest.json'} has no episode {name}; the plan was changed after it ran"
+            f"the plan in {folder / 'manifest.json'} has no {unit_of(manifest['plan'])} {name}; the plan was "
+            "changed after it ran"
         )
+    if row.error is not None:
+        raise UserError(f"{name} ended in an error and has no trace: {row.error}")
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
+    if isinstance(job, DriveJob):
+        return _drive_again(cast("DriveTrialRow", row), job, stored)
     with closing(Nursery()) as nursery, agent_of(job, nursery) as agent:
         channels = frozenset(agent.channels)
-    again = played(job, stored, channels, rows[job.id].agent_error)
+    again = played(job, stored, channels, row.agent_error)
     return compare(stored, [line for line in again.lines if "step" in line])
 
 
@@ -110,6 +126,29 @@ def _single(folder: Path, episode: str) -> list[Compared]:
     setup = read_setup(record["manifest"]["setup"], str(folder / "episode.json"))
     collector, _ = _again(setup, steps, _channels(setup), record["agent_error"])
     return compare(steps, collector.steps)
+
+
+def _single_drive(folder: Path, drive: str) -> list[Compared]:
+    """The same for the record of a single drive."""
+    if drive:
+        raise UserError(f"{folder} holds a single drive; omit {drive!r}")
+    try:
+        row = from_json(DriveTrialRow, files.read_json(folder / "row.json"))
+        steps = [files.parse_json(line) for line in (folder / "steps.jsonl").read_bytes().splitlines()]
+    except (OSError, ValueError) as error:
+        raise UserError(f"cannot read the drive in {folder}: {error}") from error
+    own = family_named(row.family).scenario
+    scenario = "" if row.scenario == own else row.scenario
+    setup = DriveSetup(row.family, row.seed, row.agent, row.model, row.conditions, scenario)
+    return _drive_again(row, DriveJob(setup, row.repeat), steps)
+
+
+def _drive_again(row: DriveTrialRow, job: DriveJob, steps: Sequence[Json]) -> list[Compared]:
+    if not all("sha256" in step for step in steps):
+        raise UserError(
+            f"the trace of drive {row.id} has no hashes: it was stored by an earlier version; rerun the drive"
+        )
+    return compare_drives(steps, driven(job, row, steps).steps)
 
 
 def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
@@ -171,17 +210,54 @@ def played(
     return PlayedAgain(collector.trace(result), collector.row(job, result), collector.judged())
 
 
+def driven(
+    job: DriveJob, row: DriveTrialRow, stored: Sequence[Json], simulations: Simulations | None = None
+) -> DriveRecord:
+    """Plays the actions of a stored drive in the same setup.
+
+    Args:
+        job: the drive.
+        row: its row, which says what its agent was given and how its side failed.
+        stored: the steps of its trace.
+        simulations: warm simulations to use; by default its own.
+
+    Raises:
+        UserError: something in the setup does not exist.
+        InfrastructureError: the simulation failed.
+    """
+    player = Player(stored[1:], frozenset(row.channels), row.agent_error)
+    return run_drive(job.planned(), job.setup, player, simulations=simulations)
+
+
 def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
-    """Two traces, step by step."""
+    """Two traces of episodes, step by step."""
+
+    def differs(before: Json, now: Json) -> tuple[str, ...]:
+        return tuple(name for name in HASHED if canonical(before[name]) != canonical(now[name]))
+
+    return _side_by_side(stored, again, differs, lambda step: {name: step[name] for name in HASHED})
+
+
+def compare_drives(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
+    """Two traces of drives, which hold hashes of the states, step by step."""
+
+    def differs(before: Json, now: Json) -> tuple[str, ...]:
+        states = tuple(name for name, digest in before["sha256"].items() if now["sha256"][name] != digest)
+        return (*states, *(name for name in ("action", "feedback") if before[name] != now[name]))
+
+    return _side_by_side(stored, again, differs, lambda step: [step["sha256"], step["action"]])
+
+
+def _side_by_side(
+    stored: Sequence[Json],
+    again: Sequence[Json],
+    differs: Callable[[Json, Json], tuple[str, ...]],
+    hashed: Callable[[Json], object],
+) -> list[Compared]:
     compared = []
     for number, (before, now) in enumerate(zip_longest(stored, again, fillvalue=MISSING)):
-        if before and now:
-            differs = tuple(name for name in HASHED if canonical(before[name]) != canonical(now[name]))
-        else:
-            differs = ("length",)
-        shown = now or before
-        digest = hashlib.sha256(canonical({name: shown[name] for name in HASHED})).hexdigest()
-        compared.append(Compared(number, digest, differs))
+        digest = hashlib.sha256(canonical(hashed(now or before))).hexdigest()
+        compared.append(Compared(number, digest, differs(before, now) if before and now else ("length",)))
     return compared
 
 

@@ -31,7 +31,7 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.formats.files import open_file
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot
 from automotive_cosim.run.road import FORMAT, NAME
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.base import Traffic
@@ -44,7 +44,7 @@ AHEAD_M = 200.0
 """Lanes come into sight this much before they can have a vehicle on them; new ones are sought as often."""
 
 
-class RoadRecorder(Watcher):
+class RoadRecorder(EpisodeObserver):
     """Writes the road of an episode into its record's folder while it runs."""
 
     looks = True

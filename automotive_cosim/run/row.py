@@ -16,7 +16,7 @@ from typing import Annotated, Any, Generic, TypeVar, get_type_hints
 from pydantic import AliasChoices, Field, TypeAdapter, ValidationError
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.run.former import line_of, with_conditions
+from automotive_cosim.run.former import present, with_conditions
 
 T = TypeVar("T")
 R = TypeVar("R", bound="JobRow")
@@ -78,22 +78,15 @@ def from_line(kind: type[R], line: bytes) -> R:
     Raises:
         ValueError: the line is not JSON, or a field is missing or of another type; the message gives the first.
     """
-    read = _form(kind).adapter.validate_json
+    form = _form(kind)
+    if "conditions" in form.marks and b'"conditions":' not in line:
+        line = present(line)
     try:
-        return read(line, strict=True)
+        return form.adapter.validate_json(line, strict=True)
     except ValidationError as error:
-        refused = error
-    try:  # an earlier version may have written it
-        former = line_of(line)
-        if former is not None:
-            return read(former, strict=True)
-    except ValidationError as error:
-        refused = error
-    except ValueError:  # it is not even JSON
-        pass
-    first = refused.errors(include_url=False)[0]
-    where = ".".join(map(str, first["loc"]))
-    raise ValueError(f"{where}: {first['msg']}" if where else first["msg"]) from refused
+        first = error.errors(include_url=False)[0]
+        where = ".".join(map(str, first["loc"]))
+        raise ValueError(f"{where}: {first['msg']}" if where else first["msg"]) from error
 
 
 def from_json(kind: type[T], values: Json) -> T:

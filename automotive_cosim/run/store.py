@@ -17,7 +17,7 @@ import platform
 import subprocess
 import sys
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
@@ -37,6 +37,10 @@ FORMAT = 1
 ALSO_STAMPED = ("openai", "pyproj", "shapely")
 LOOK_S = 0.05
 """Longer than a page takes to see whether a folder is locked."""
+
+
+RowKind = type[R] | Callable[[bytes], type[R]]
+"""A kind of row, or what tells it from a line."""
 
 
 class Store(Generic[R]):
@@ -68,7 +72,7 @@ class Store(Generic[R]):
 def opened(
     folder: Path,
     plan: Json,
-    kind: type[R],
+    kind: RowKind[R],
     parts: Sequence[str] = ("traces", "pictures"),
     *,
     planned: int | None = None,
@@ -122,12 +126,12 @@ def cannot_write(folder: Path, error: OSError) -> UserError:
     return UserError(f"cannot write to {folder}: {why}; its contents are intact; rerun the command to resume")
 
 
-def read_rows(folder: Path, kind: type[R]) -> dict[str, R]:
+def read_rows(folder: Path, kind: RowKind[R]) -> dict[str, R]:
     """The newest row of each job by its id; a last line that a kill cut short is ignored.
 
     Args:
         folder: of an evaluation, a study or proofs; without any line, it has no rows.
-        kind: kind of its rows.
+        kind: kind of its rows, or what tells it from a line.
 
     Raises:
         UserError: another line cannot be read.
@@ -140,7 +144,8 @@ def read_rows(folder: Path, kind: type[R]) -> dict[str, R]:
         *lines, _cut = file.read().split(b"\n")
     for number, line in enumerate(lines, start=1):
         try:
-            row = from_line(kind, line)
+            of: type[R] = kind if isinstance(kind, type) else kind(line)
+            row = from_line(of, line)
         except ValueError as error:
             raise UserError(
                 f"{path}, line {number} cannot be read: {error}; read it with the version that wrote it, or remove "

@@ -1,47 +1,55 @@
-"""Runs an evaluation's episodes in a worker, which share its warm simulations."""
+"""Runs an evaluation's trials in a worker, which share its warm simulations."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import shutil
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import AbstractContextManager, closing, contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
+from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
-from automotive_cosim.run.collect import Collector, Pictures, failed
-from automotive_cosim.run.episode import Watcher, run_episode
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.drive import DriveObserver, JudgedDrive, run_drive
+from automotive_cosim.run.drive_recorder import DriveRecorder
+from automotive_cosim.run.episode import EpisodeObserver, run_episode
 from automotive_cosim.run.executor import Runner
+from automotive_cosim.run.jobs import DriveJob, EpisodeJob, Limits, TrialJob, failed
 from automotive_cosim.run.meter import Metered, MeterHandle
-from automotive_cosim.run.moments import write_judged
+from automotive_cosim.run.moments import Judged, judged_file, write_judged, write_value
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import OutsideAgent, is_outside
-from automotive_cosim.run.plan import EpisodeJob, Limits
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.store import write_trace
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
 WARM = 2
 """Warm simulations that a worker keeps; the episodes come sorted, so one is in use and one may be used again."""
 
 
+class TrialObserver(EpisodeObserver, DriveObserver):
+    """Observes a trial of either kind."""
+
+
 @contextmanager
-def episodes(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[EpisodeJob, EpisodeRow]]:
+def trials(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[TrialJob, TrialRow]]:
     """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share."""
     with closing(Simulations(count_limit=WARM)) as simulations, closing(Nursery()) as nursery:
         yield lambda job, folder: run_job(job, folder, pictures, simulations, nursery, meter)
 
 
 def run_job(
-    job: EpisodeJob,
+    job: TrialJob,
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
     nursery: Nursery,
     meter: MeterHandle | None = None,
-) -> EpisodeRow:
-    """Runs one episode with its agent, as ``run_with`` does.
+) -> TrialRow:
+    """Runs one trial with its agent, as ``run_with`` does.
 
     Raises:
         OSError: trace or pictures cannot be written.
@@ -51,13 +59,13 @@ def run_job(
 
 def run_with(
     agent: AbstractContextManager[Agent],
-    job: EpisodeJob,
+    job: TrialJob,
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
-    watchers: Sequence[Watcher] = (),
-) -> EpisodeRow:
-    """Runs one episode, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
+    observers: Sequence[TrialObserver] = (),
+) -> TrialRow:
+    """Runs one trial, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
     Args:
         agent: who acts.
@@ -65,34 +73,87 @@ def run_with(
         folder: the evaluation's.
         pictures: whether to keep screenshots and road.
         simulations: warm simulations to use.
-        watchers: notified before anything is kept.
+        observers: notified before anything is kept.
 
     Raises:
         OSError: trace or pictures cannot be written.
     """
-    collector = Collector(pictures)
-    road = RoadRecorder(folder / "pictures" / job.id, job.setup)
-    watchers = (*watchers, collector, *(() if pictures is Pictures.NONE else (road,)))
     try:
-        with closing(road), agent as acting:
-            result = run_episode(job.setup, acting, watchers, simulations=simulations)
+        with agent as acting:
+            if isinstance(job, DriveJob):
+                kept = _driven(acting, job, folder, pictures, simulations, observers)
+            else:
+                kept = _played(acting, job, folder, pictures, simulations, observers)
     except CosimError as error:
         return failed(job, type(error).__name__, str(error))
     except Exception as error:
         # A fault in this package must not end the evaluation; it is counted and listed.
         return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
-    if lines := collector.trace(result):
-        write_trace(folder, job.id, lines)
-        if judged := collector.judged():
-            write_judged(folder, job.id, judged)
+    if kept.lines:
+        write_trace(folder, job.id, kept.lines)
+        if isinstance(kept.judged, Judged):
+            write_judged(folder, job.id, kept.judged)
+        elif kept.judged is not None:
+            write_value(judged_file(folder, job.id), kept.judged)
+        kept.keep_pictures()
+    return kept.row
+
+
+@dataclass(frozen=True, slots=True)
+class _Kept:
+    """What is kept of a trial."""
+
+    row: TrialRow
+    lines: Sequence[Json]
+    """Its trace, with the result as its last line."""
+    judged: Judged | JudgedDrive | None
+    keep_pictures: Callable[[], None]
+
+
+def _played(
+    agent: Agent,
+    job: EpisodeJob,
+    folder: Path,
+    pictures: Pictures,
+    simulations: Simulations,
+    observers: Sequence[TrialObserver],
+) -> _Kept:
+    collector = Collector(pictures)
+    road = RoadRecorder(folder / "pictures" / job.id, job.setup)
+    everyone = (*observers, collector, *(() if pictures is Pictures.NONE else (road,)))
+    with closing(road):
+        result = run_episode(job.setup, agent, everyone, simulations=simulations)
+
+    def keep() -> None:
         if collector.keeps_pictures_of(result):
             collector.keep_pictures(folder / "pictures" / job.id)
         else:
             road.discard()
-    return collector.row(job, result)
+
+    return _Kept(collector.row(job, result), collector.trace(result), collector.judged(), keep)
 
 
-def agent_of(job: EpisodeJob, nursery: Nursery, meter: MeterHandle | None = None) -> AbstractContextManager[Agent]:
+def _driven(
+    agent: Agent,
+    job: DriveJob,
+    folder: Path,
+    pictures: Pictures,
+    simulations: Simulations,
+    observers: Sequence[TrialObserver],
+) -> _Kept:
+    recorder = DriveRecorder(folder / "pictures" / job.id, job.setup, agent)
+    everyone = (*observers, *(() if pictures is Pictures.NONE else (recorder,)))
+    with closing(recorder):
+        record = run_drive(job.planned(), job.setup, agent, simulations=simulations, observers=everyone)
+
+    def keep() -> None:
+        if pictures is Pictures.FAILURES and record.row.has_succeeded:
+            shutil.rmtree(recorder.folder, ignore_errors=True)
+
+    return _Kept(record.row, record.lines, record.judged, keep)
+
+
+def agent_of(job: TrialJob, nursery: Nursery, meter: MeterHandle | None = None) -> AbstractContextManager[Agent]:
     """The agent of a job; see ``agent_for``."""
     setup = job.setup
     settings = AgentSettings(setup.conditions, seed=setup.seed)

@@ -15,15 +15,17 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json, read_json
 from automotive_cosim.report.page import PARTS, element
+from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_recorder import SHOWN as DRIVE_STEPS
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.former import with_conditions
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.road import NAME as ROAD
 from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.run.row import from_json
+from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
-from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.run.words import action_in_words
 from automotive_cosim.serve.decisions import decision_map, decisions, drives_under_way
 from automotive_cosim.serve.shelf import NotHereError, Shelf, ShelfEntry
@@ -131,7 +133,8 @@ class Content:
             return self._drives(entry, manifest)
         if kind != "evaluation":
             raise NotHereError(f"{entry.folder.name} holds no agents' episodes")
-        rows = read_rows(entry.folder, EpisodeRow)
+        trials = read_trials(entry.folder).values()
+        rows = [row for row in trials if isinstance(row, EpisodeRow)]
         return {
             "id": entry.id,
             "kind": kind,
@@ -148,8 +151,9 @@ class Content:
                     "missing": row.missing,
                     "has_trace": (entry.folder / "traces" / f"{row.id}.jsonl.gz").is_file(),
                 }
-                for row in rows.values()
+                for row in rows
             ],
+            "drives": self._drive_rows(entry, [row for row in trials if isinstance(row, DriveTrialRow)]),
         }
 
     def reference(self, task: str) -> Json:
@@ -240,9 +244,9 @@ class Content:
         if entry.is_evaluation:
             plan = read_manifest(entry.folder)["plan"]
             is_told = _kind(plan) == "evaluation" and "oracle" in plan["agents"]
-            for row in read_rows(entry.folder, EpisodeRow).values() if is_told else ():
-                is_solved = (row.task, row.agent, row.success) == (task, "oracle", True)
-                if is_solved and _has_picture(self.shelf, entry, row.id, 0):
+            for row in read_trials(entry.folder).values() if is_told else ():
+                is_solved = (row.subject, row.agent, row.outcome) == (task, "oracle", True)
+                if is_solved and isinstance(row, EpisodeRow) and _has_picture(self.shelf, entry, row.id, 0):
                     solved.append((row.half, row.id))
         elif not entry.is_drive and (entry.folder / "episode.json").is_file():
             path = entry.folder / "episode.json"
@@ -259,27 +263,30 @@ class Content:
 
     def _drives(self, entry: ShelfEntry, manifest: Json) -> Json:
         """The plan and the rows of an evaluation of drives."""
-        rows = read_rows(entry.folder, WatchRow)
-        names = ("id", "family", "scenario", "season", "agent", "model", "seed", "repeat",
-                 "value", "error", "error_kind", "end", "steps")  # fmt: skip
+        rows = read_rows(entry.folder, DriveTrialRow)
         return {
             "id": entry.id,
             "kind": "drives",
             "name": entry.folder.name,
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
-            "rows": [
-                {name: getattr(row, name) for name in names}
-                | {
-                    "conditions": row.conditions.labels,
-                    "met": row.score and row.score.met,
-                    "events": row.score and row.score.events,
-                    "nuisances": row.score and row.score.nuisances,
-                    "has_road": self._drive_in(entry, row.id) is not None,
-                }
-                for row in rows.values()
-            ],
+            "rows": self._drive_rows(entry, rows.values()),
         }
+
+    def _drive_rows(self, entry: ShelfEntry, rows: Iterable[DriveTrialRow]) -> list[Json]:
+        names = ("id", "family", "scenario", "season", "agent", "model", "seed", "repeat",
+                 "value", "error", "error_kind", "end", "steps")  # fmt: skip
+        return [
+            {name: getattr(row, name) for name in names}
+            | {
+                "conditions": row.conditions.labels,
+                "met": row.score and row.score.met,
+                "events": row.score and row.score.events,
+                "nuisances": row.score and row.score.nuisances,
+                "has_road": self._drive_in(entry, row.id) is not None,
+            }
+            for row in rows
+        ]
 
     def _drive_in(self, entry: ShelfEntry, episode: str | None) -> tuple[str, ...] | None:
         """Where in a record the drive is; None if it is not a drive."""
@@ -366,8 +373,11 @@ class Content:
 
 def _kind(plan: Json) -> str:
     """The kind of a folder with rows, by its plan."""
-    marks = {"study": "study", "drives": "drives", "agents": "evaluation"}
-    return next((kind for mark, kind in marks.items() if mark in plan), "other")
+    if "study" in plan:
+        return "study"
+    if unit_of(plan) == "drive":
+        return "drives"
+    return "evaluation" if "agents" in plan else "other"
 
 
 def _span(event: Json) -> Json:

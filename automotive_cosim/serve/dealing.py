@@ -18,7 +18,8 @@ from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import read_toml
-from automotive_cosim.run.plan import EpisodeJob, Plan, choose
+from automotive_cosim.run.jobs import EpisodeJob
+from automotive_cosim.run.plan import Plan, choose
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.serve.played import check_code_name, people_plan
 
@@ -54,8 +55,8 @@ class PeoplePlan:
         if self.scenario is not None:
             open_scenario(self.scenario)
         plan = people_plan(choose(self.tasks), self.people, sorted(set(self.seeds)), scenario=self.scenario)
-        units = {_unit(job) for job in plan.jobs()}
-        if len(units) < 2 and any(job.task.second for job in plan.jobs()):
+        units = {_unit(job) for job in plan.episodes()}
+        if len(units) < 2 and any(job.task.second for job in plan.episodes()):
             raise UserError("a single pair would be dealt with both halves in a row; add another task or seed")
         if not units:
             raise UserError(f"none of these tasks runs in {self.scenario}; choose other tasks or another scenario")

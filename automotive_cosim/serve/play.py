@@ -16,6 +16,7 @@ from datetime import datetime
 from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import numpy.typing as npt
@@ -32,15 +33,13 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
 from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.drive import DriveSetup, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher, run_episode
-from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.plan import HUMAN, NO_MODEL, EpisodeJob
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, run_episode
+from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, TrialJob
 from automotive_cosim.run.record import Recorder, default_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
-from automotive_cosim.run.watch import WatchRecord, WatchSetup, WatchWatcher, run_watch
-from automotive_cosim.run.watches import WatchJob
-from automotive_cosim.run.worker import run_with
+from automotive_cosim.run.worker import TrialObserver, run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
 from automotive_cosim.serve.played import (
     DRIVES,
@@ -102,7 +101,7 @@ class PlayScene:
     """Simulated seconds per second."""
 
 
-class Game(Watcher, WatchWatcher):
+class Game(TrialObserver):
     """One person's episodes, one at a time. Any method may be called from any thread."""
 
     def __init__(self, folder: Path, scenario: str | None = None, simulations: Simulations | None = None) -> None:
@@ -175,19 +174,16 @@ class Game(Watcher, WatchWatcher):
         if name or not practice:
             check_code_name(name)
         if practice:
-            setup = WatchSetup(family, seed, HUMAN, name or NO_MODEL)
+            setup = DriveSetup(family, seed, HUMAN, name or NO_MODEL)
             stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
             folder = self._folder / f"{stamp}-{family}-{HUMAN}-seed{seed}"
             person = Person(setup.model)
-            self._begin(person, lambda: self._watch(WatchJob(setup), folder, person, None))
+            self._begin(person, lambda: self._practise_drive(DriveJob(setup), folder, person))
             return
-        job = self._drives.drive(family, seed, name)
-        counting = Person(name, counts=True)
-        folder = self._drives.folder / PICTURES / job.id
-        self._begin(counting, lambda: self._watch(job, folder, counting, self._drives.keep))
+        self.begin(self._drives.drive(family, seed, name), self._drives.folder, self._drives.keep)
 
-    def begin(self, job: EpisodeJob, folder: Path, keep: Callable[[EpisodeRow], None]) -> None:
-        """Begins an episode that counts.
+    def begin(self, job: TrialJob, folder: Path, keep: Callable[[Any], None]) -> None:
+        """Begins a trial that counts.
 
         Args:
             job: what to play.
@@ -357,21 +353,15 @@ class Game(Watcher, WatchWatcher):
             write_page(folder)
         self._tell(state=PlayState.OVER, folder=folder)
 
-    def _watch(
-        self, job: WatchJob, folder: Path, person: Person, keep: Callable[[WatchRecord], None] | None
-    ) -> None:
-        """Plays a drive and records it; ``keep`` takes what counts."""
+    def _practise_drive(self, job: DriveJob, folder: Path, person: Person) -> None:
+        """Plays a drive and records it as ``drive`` does."""
         recorder = DriveRecorder(folder, job.setup, person)
         with suppress(PersonLeftError), closing(recorder):
-            record = run_watch(job.id, job.setup, person, simulations=self._simulations, watchers=(self, recorder))
-            if keep is not None:
-                keep(record)
-                self._tell(state=PlayState.OVER, folder=self._drives.folder, episode=job.id)
-                return
+            run_drive(job.planned(), job.setup, person, simulations=self._simulations, observers=(self, recorder))
         self._tell(state=PlayState.OVER, folder=folder)
 
-    def _count(self, job: EpisodeJob, folder: Path, keep: Callable[[EpisodeRow], None]) -> None:
-        """Plays an episode and keeps its row."""
+    def _count(self, job: TrialJob, folder: Path, keep: Callable[[Any], None]) -> None:
+        """Plays a trial and keeps its row."""
         assert self._simulations is not None
         row = run_with(nullcontext(self._person), job, folder, Pictures.ALL, self._simulations, (self,))
         keep(row)

@@ -19,13 +19,13 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Clock
 from automotive_cosim.episode.conditions import Conditions, with_conditions
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.plan import ALL_SUITES, HUMAN, EpisodeJob, Limits, Plan
+from automotive_cosim.run.jobs import HUMAN, DriveJob, EpisodeJob, Limits
+from automotive_cosim.run.plan import ALL_SUITES, Plan
 from automotive_cosim.run.row import R
 from automotive_cosim.run.store import Store, opened, read_rows, replan
-from automotive_cosim.run.watch import WatchRecord, WatchSetup
-from automotive_cosim.run.watch_row import WatchRow
-from automotive_cosim.run.watches import TIMELINES, WatchJob, WatchPlan, keep_watch
 
 FOLDER, DRIVES = "people", "people-drives"
 """Folders of the played episodes and drives, in the first of the folders shown."""
@@ -141,8 +141,8 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
         Raises:
             UserError: there is no such task or half, or another process writes here.
         """
-        jobs = people_plan((task,), (name,), (seed,), scenario=self._scenario).jobs()
-        found = next((job for job in jobs if job.setup.half == half), None)
+        jobs = people_plan((task,), (name,), (seed,), scenario=self._scenario).episodes()
+        found = next((job for job in jobs if isinstance(job, EpisodeJob) and job.setup.half == half), None)
         if found is None:
             raise UserError(f"task {task!r} has no half {half!r} that runs in {self._scenario or 'any scenario'}")
         return replace(found, repeat=self._first(lambda repeat: replace(found, repeat=repeat).id))
@@ -166,36 +166,34 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
         ).as_json()
 
 
-class PlayedDrives(PlayedRows[WatchRow]):
+class PlayedDrives(PlayedRows[DriveTrialRow]):
     """Drives that a person played."""
 
-    kind = WatchRow
-    parts = ("traces", TIMELINES, "pictures")
+    kind = DriveTrialRow
 
-    def drive(self, family: str, seed: int, name: str) -> WatchJob:
+    def drive(self, family: str, seed: int, name: str) -> DriveJob:
         """The next drive of a person.
 
         Raises:
             UserError: another process writes here.
         """
 
-        def at(repeat: int) -> WatchJob:
-            return WatchJob(WatchSetup(family, seed, HUMAN, name, CONDITIONS, repeat))
+        def at(repeat: int) -> DriveJob:
+            return DriveJob(DriveSetup(family, seed, HUMAN, name, CONDITIONS), repeat)
 
         return at(self._first(lambda repeat: at(repeat).id))
 
-    def keep(self, record: WatchRecord) -> None:
+    def keep(self, row: DriveTrialRow) -> None:
         """Adds a drive.
 
         Raises:
             UserError: it cannot be written.
         """
-        keep_watch(record, self.folder, record.row.id)
-        self._append(record.row)
+        self._append(row)
 
-    def plan_of(self, rows: Sequence[WatchRow]) -> Json:
+    def plan_of(self, rows: Sequence[DriveTrialRow]) -> Json:
         """See ``PlayedRows.plan_of``."""
-        plan = WatchPlan(
+        plan = Plan(
             drives=tuple(sorted({row.family for row in rows})),
             agents=(HUMAN,),
             models=tuple(sorted({row.model for row in rows})),

@@ -28,7 +28,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.store import opened
 from automotive_cosim.serve.dealing import PeoplePlan, deal
 from automotive_cosim.serve.play import Game
@@ -70,7 +70,7 @@ class PeopleStudy:
             UserError: the plan does not fit, or the folder belongs to something else or is in use.
         """
         whole = plan.plan
-        jobs = whole.jobs()
+        jobs = whole.episodes()
         self.name = folder.name
         self.folder = folder
         self._orders = deal(jobs, plan.people, plan.order_seed)

@@ -8,7 +8,6 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.report.results import read_results
-from automotive_cosim.run.collect import planned
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.scenarios import load
@@ -69,7 +68,7 @@ def test_a_folder_of_an_earlier_version_is_read_unless_it_has_monitoring(cli, tm
     job = make_plan({name: value for name, value in plan.items() if name != "modes"}).jobs()[0]
     manifest = {"format": 1, "plan": plan, "starts": []}
     (tmp_path / "manifest.json").write_text(json.dumps(manifest))
-    (tmp_path / "episodes.jsonl").write_text(json.dumps(as_json(planned(job)) | {"mode": "prompted"}) + "\n")
+    (tmp_path / "episodes.jsonl").write_text(json.dumps(as_json(job.planned()) | {"mode": "prompted"}) + "\n")
     found = read_results(tmp_path)
     assert not found.coverage.problem
     assert [row.id for row in found.rows] == [job.id]

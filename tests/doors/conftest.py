@@ -5,11 +5,11 @@ import pytest
 from automotive_cosim.agents import make_agent
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
-from automotive_cosim.run.episode import EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, Shot, run_episode
 from automotive_cosim.traffic.fork import Simulations
 
 
-class Actions(Watcher):
+class Actions(EpisodeObserver):
     def __init__(self) -> None:
         self.played: list[Json] = []
 

@@ -15,7 +15,8 @@ from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.errors import TrafficError, UserError
 from automotive_cosim.interface.observe import ALL
 from automotive_cosim.report.drives import FIGURES, LEAST_DRIVES, WITH_INTERVAL, interval
-from automotive_cosim.run.watch import WatchRecord, WatchSetup, run_watch
+from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
+from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.service import EpisodeService
 from automotive_cosim.tasking.verdict import PARTS
 from automotive_cosim.tasks import CATALOGUE
@@ -28,7 +29,7 @@ from inspect_ai.log import EvalLog
 from inspect_ai.model import ModelOutput, ModelUsage, get_model
 from inspect_ai.scorer import SampleScore, Score
 
-from automotive_cosim.doors import inspect_drives, inspect_play, inspect_tasks, shared
+from automotive_cosim.doors import inspect_play, inspect_tasks, shared
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 
@@ -149,9 +150,10 @@ class Seeing(RulePerfect):
 
 
 @pytest.fixture
-def watched(short: str, simulations: Simulations) -> WatchRecord:
+def watched(short: str, simulations: Simulations) -> DriveRecord:
     """The rule-perfect watcher's drive on the command line."""
-    return run_watch("rule-perfect", WatchSetup(short, 43), Seeing(), simulations=simulations)
+    setup = DriveSetup(short, 43, "rule-perfect")
+    return run_drive(DriveJob(setup).planned(), setup, Seeing(), simulations=simulations)
 
 
 def test_the_rule_perfect_watchers_acts_give_the_command_lines_drive(inspect, short, watched) -> None:
@@ -164,7 +166,7 @@ def test_the_rule_perfect_watchers_acts_give_the_command_lines_drive(inspect, sh
     assert score.metadata["trace_sha256"] == row.trace_sha256
     assert score.metadata["end"] == "watch_over"
     assert list(score.value.values()) == [figure([row]) for _, figure, _ in FIGURES[:WITH_INTERVAL]]
-    assert [each.name for each in log.results.scores] == list(inspect_drives.SCORES)
+    assert [each.name for each in log.results.scores] == list(inspect_tasks.SCORES)
     assert [next(iter(each.metrics.values())).value for each in log.results.scores] == list(score.value.values())
     assert not {"event", "obliged_s", "lookalike"} & set(sample.messages[1].content[0].text.split('"'))
 
@@ -206,8 +208,8 @@ def test_figures_of_several_drives_are_the_reports_with_its_intervals(inspect, s
             replace(watched.row, seed=seed, score=replace(watched.row.score, nuisances=seed % 3))
             for seed in range(count)
         ]
-        for name, figure in inspect_drives.SCORES.items():
-            found = inspect_drives.figure(name)([of(seed) for seed in range(count)])
+        for name, figure in inspect_tasks.SCORES.items():
+            found = inspect_tasks.figure(name)([of(seed) for seed in range(count)])
             bounds = interval(rows, figure)
             assert found["value"] == figure(rows)
             assert (found.get("low"), found.get("high")) == ((bounds.low, bounds.high) if bounds else (None, None))

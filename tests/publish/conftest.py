@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.publish.bundle import write_bundle
-from automotive_cosim.run.collect import Pictures, failed
+from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened

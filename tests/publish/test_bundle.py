@@ -14,7 +14,6 @@ from automotive_cosim.publish import archive
 from automotive_cosim.publish.bundle import cleaned, write_bundle
 from automotive_cosim.publish.contents import read_contents
 from automotive_cosim.publish.verify import verify
-from automotive_cosim.run.collect import planned
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened, read_rows, read_trace, write_trace
@@ -101,7 +100,7 @@ def test_a_plan_with_an_absolute_path_and_an_empty_folder_are_refused(tmp_path):
     with opened(tmp_path / "e", plan.as_json(), EpisodeRow) as store:
         with pytest.raises(UserError, match="no episodes yet"):
             write_bundle(tmp_path / "e", tmp_path / "b.bundle")
-        store.append(planned(plan.jobs()[0]))
+        store.append(plan.jobs()[0].planned())
     with pytest.raises(UserError, match="absolute path"):
         write_bundle(tmp_path / "e", tmp_path / "b.bundle")
 

@@ -16,7 +16,8 @@ import pytest
 from automotive_cosim.errors import UserError
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import NAME, file_sha256, read_contents
-from automotive_cosim.publish.episodes import BY_REPLAY, ON_TRUST, ROWS, check_episode
+from automotive_cosim.publish.episodes import BY_REPLAY, ON_TRUST, check_trial
+from automotive_cosim.publish.problems import ROWS
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.publish.verify import PLAN_ON_TRUST, STARTS_ON_TRUST, hash_problems, verify
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -132,7 +133,7 @@ def problems_of_row(folder, job, values):
         row = from_line(EpisodeRow, json.dumps(values).encode())
     except ValueError:
         return ["refused"]
-    return check_episode(folder, job, row)
+    return check_trial(folder, job, row)
 
 
 @pytest.mark.slow
@@ -159,13 +160,13 @@ def test_every_field_of_a_trace_is_found_or_on_the_list(folder):
     missed = set()
     for steps in kinds(lines):
         write_trace(folder, row.id, changed(lines, steps))
-        found = check_episode(folder, job, row)
+        found = check_trial(folder, job, row)
         assert all(row.id in str(problem) for problem in found)
         if not found:
             missed.add(f"result {steps[2]}" if steps[1] == "result" else f"step {steps[1]}")
     assert missed <= BY_REPLAY | ON_TRUST
     write_trace(folder, row.id, lines)
-    assert not check_episode(folder, job, row)
+    assert not check_trial(folder, job, row)
 
 
 def renewed(folder: Path, out: Path) -> Path:
@@ -297,7 +298,7 @@ def test_a_replay_finds_what_nothing_else_can(ran, simulations):
     assert list(replay(ran, job, row, simulations)) == []
     assert row.speed_compliance is not None
     forged = replace(row, speed_compliance=row.speed_compliance - 0.5)
-    assert not check_episode(ran, job, forged)
+    assert not check_trial(ran, job, forged)
     (problem,) = replay(ran, job, forged, simulations)
     assert problem.field == f"{row.id} speed_compliance"
 

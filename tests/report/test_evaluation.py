@@ -21,9 +21,9 @@ from automotive_cosim.report.findings import classes
 from automotive_cosim.report.results import Contestant, load_results, pairs, read_results, standings
 from automotive_cosim.report.summary import held_out, main, safety
 from automotive_cosim.report.tables import Cell, Table
-from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import DriveFigures
+from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.rerun import compare
 from automotive_cosim.run.store import opened, write_trace
@@ -59,7 +59,7 @@ def folder(tmp_path_factory, episode):
             success = succeeds(job)
             parts = PartsHeld(goal=success, clean=True, safe=True, in_time=True, declared=True)
             row = replace(
-                planned(job), country="FR", success=success, reward=float(success), end=End.DECLARED, parts=parts,
+                job.planned(), country="FR", success=success, reward=float(success), end=End.DECLARED, parts=parts,
                 alerts=int(job.setup.agent == "always-alert"), steps=3, speed_compliance=0.9,
                 min_time_to_collision_s=4.0, interaction_s=2.0, within_guideline=True, tokens_in=900,
                 prompt_tokens=(400, 500), drive=DRIVE, baseline_drive=DRIVE, tokens_out=40,
@@ -171,7 +171,7 @@ def test_pairs_need_both_halves_and_alarms_are_counted(folder):
 
 
 def test_an_error_in_a_half_is_one_of_the_pair_unless_the_other_is_lost():
-    half = next(planned(job) for job in PLAN.jobs() if job.pair)
+    half = next(job.planned() for job in PLAN.jobs() if job.pair)
 
     def outcome(first, second):
         return pairs([replace(half, success=success) for success in (first, second)])[0][0].success

@@ -14,10 +14,10 @@ from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction,
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.failures import FailureClass, failure_class
-from automotive_cosim.run.collect import Collector, Pictures, planned
+from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.episode_row import PartsHeld
-from automotive_cosim.run.plan import EpisodeJob, Limits
+from automotive_cosim.run.jobs import EpisodeJob, Limits
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -157,6 +157,6 @@ def test_doing_nothing_is_of_no_class():
     step = {"step": 0, "elements": [], "action": None, "feedback": {"code": "none"}, "thought": ""}
     wait = step | {"step": 1, "action": {"action_type": "wait"}, "feedback": {"code": "ok"}}
     parts = PartsHeld(goal=False, clean=True, safe=True, in_time=False, declared=False)
-    row = replace(planned(EpisodeJob(EpisodeSetup(FAN), 0, Limits())), success=False, parts=parts)
+    row = replace(EpisodeJob(EpisodeSetup(FAN), 0, Limits()).planned(), success=False, parts=parts)
     assert failure_class(row, [step, wait, {"result": {}}]) is FailureClass.UNCLASSIFIED
     assert failure_class(replace(row, task="gone"), [step]) is FailureClass.UNCLASSIFIED

@@ -11,8 +11,8 @@ from automotive_cosim.contracts.given import Clock
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.regression import as_json, changes, junit, markdown
-from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 
@@ -28,7 +28,7 @@ def write(folder, lost=(), errors=(), agent="asurada", **changed):
                 row = failed(job, "WorkerDied", "the worker died")
             else:
                 won = number not in lost
-                row = replace(planned(job), success=won, parts=PartsHeld(won, True, True, True, True))
+                row = replace(job.planned(), success=won, parts=PartsHeld(won, True, True, True, True))
             store.append(replace(row, agent=agent, **changed))
     return folder
 

@@ -9,11 +9,11 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.main import app
 from automotive_cosim.report.evaluation import all_tables, write_report
 from automotive_cosim.report.regression import changes, markdown
-from automotive_cosim.report.results import instance, read_results, standings
+from automotive_cosim.report.results import read_results, standings
 from automotive_cosim.report.summary import main, progress, rate_of
 from automotive_cosim.report.tables import Cell
-from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 
@@ -31,7 +31,7 @@ def write(folder, ran, errors=(), plan=PLAN, count=True):
             if number in errors:
                 store.append(failed(jobs[number], "WorkerDied", "gone"))
             else:
-                store.append(replace(planned(jobs[number]), success=True, parts=WON))
+                store.append(replace(jobs[number].planned(), success=True, parts=WON))
     return folder
 
 
@@ -70,10 +70,10 @@ def test_a_rate_is_over_planned_episodes_with_what_was_not_judged_beside(tmp_pat
 @pytest.mark.parametrize("cut", range(1, len(JOBS)))
 def test_contestants_stand_side_by_side_on_what_all_of_them_ran(tmp_path, cut):
     found = read_results(write(tmp_path / "e", range(cut), errors={0, 3}))
-    instances = [{instance(row) for row in found.shared().of(each)} for each in found.contestants]
+    instances = [{row.instance for row in found.shared().of(each)} for each in found.contestants]
     assert instances[0] == instances[1] == instances[2]
     assert len(instances[0]) == found.coverage.shared_instances
-    ran = [{instance(row) for row in found.of(each)} for each in found.contestants]
+    ran = [{row.instance for row in found.of(each)} for each in found.contestants]
     assert instances[0] == ran[0] & ran[1] & ran[2]
     overview, *others, last = all_tables(found, {})
     assert (overview.name, last.name) == ("progress", "errors")

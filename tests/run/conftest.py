@@ -8,7 +8,7 @@ import pytest
 
 from automotive_cosim.agents import Agent, make_agent
 from automotive_cosim.episode.conditions import TABLE, Conditions
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, Watcher, run_episode
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot, run_episode
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
 
@@ -16,7 +16,7 @@ TASK = "hvac_fan_max"
 
 
 @dataclass
-class Memory(Watcher):
+class Memory(EpisodeObserver):
     """Keeps what it was told."""
 
     shots: list[Shot] = field(default_factory=list)

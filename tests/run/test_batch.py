@@ -13,9 +13,10 @@ import pytest
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.trace import sha256
 from automotive_cosim.run.batch import run_jobs, run_plan
-from automotive_cosim.run.collect import Pictures, failed
+from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
+from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
@@ -24,7 +25,7 @@ from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.road import read_record
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import opened, read_rows, read_trace, trace_file
-from automotive_cosim.run.worker import episodes, run_job
+from automotive_cosim.run.worker import run_job, trials
 
 TROUBLE = """
 import gc, os, pathlib, sys, time
@@ -180,7 +181,7 @@ def test_what_an_agent_does_is_its_own_failure_and_nobody_elses_error(trouble):
     with pytest.raises(UserError, match="ModelError"):
         wanted.check()
     with opened(trouble / "e", wanted.as_json(), EpisodeRow) as store:
-        end = run_jobs(wanted.jobs(), store, partial(episodes, Pictures.NONE), failed)
+        end = run_jobs(wanted.jobs(), store, partial(trials, Pictures.NONE), failed)
     assert (end.judged, end.successes, end.errors) == (5, 1, 0)
     assert tries(trouble) == 3, "none was tried twice"
     ends = {row.agent: (row.end, row.agent_error) for row in read_rows(trouble / "e", EpisodeRow).values()}

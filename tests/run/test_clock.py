@@ -11,7 +11,6 @@ from automotive_cosim.contracts.given import Clock
 from automotive_cosim.models import ModelReply
 from automotive_cosim.report.findings import by_condition
 from automotive_cosim.report.results import Results, contestant
-from automotive_cosim.run.collect import planned
 from automotive_cosim.run.coverage import Coverage
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.rerun import Player, compare
@@ -79,7 +78,7 @@ def test_whoever_thinks_beyond_the_deadline_is_too_late_and_nobody_waits_for_mor
 
 def _planned(**values):
     plan = make_plan({"agents": ["oracle"], "tasks": ["hvac_fan_max"]} | values)
-    return [planned(job) for job in plan.jobs()]
+    return [job.planned() for job in plan.jobs()]
 
 
 def test_each_latency_is_an_episode_of_its_own():

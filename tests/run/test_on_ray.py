@@ -16,14 +16,13 @@ import pytest
 from automotive_cosim.errors import SetupError, UserError
 from automotive_cosim.run.batch import SPENT, run_plan
 from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.meter import Budget
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows, stamp
-from automotive_cosim.run.watch_row import WatchRow
-from automotive_cosim.run.watches import make_watch_plan, run_watch_plan
 
 pytest.importorskip("ray", reason="the extra `ray` is not installed")
 on_ray = pytest.importorskip("automotive_cosim.run.on_ray")  # before Ray, whose environment it sets
@@ -154,16 +153,16 @@ def test_the_rows_and_files_are_those_of_a_local_run(cluster, tmp_path):
 
 
 def test_drives_on_ray_are_those_of_a_local_run(cluster, tmp_path):
-    wanted = make_watch_plan({"drives": ["grid_january"], "agents": ["rule-perfect"], "seeds": [4]})
+    wanted = make_plan({"drives": ["grid_january"], "agents": ["rule-perfect"], "seeds": [4]})
     with OnRay(cluster.address) as executor:
-        end = run_watch_plan(wanted, tmp_path / "far", executor=executor)
+        end = run_plan(wanted, tmp_path / "far", executor=executor)
     assert end.done == end.planned == end.judged == 1
-    run_watch_plan(wanted, tmp_path / "near", executor=Processes(1))
-    far, near = (read_rows(tmp_path / name, WatchRow) for name in ("far", "near"))
+    run_plan(wanted, tmp_path / "near", executor=Processes(1))
+    far, near = (read_rows(tmp_path / name, DriveTrialRow) for name in ("far", "near"))
     assert {name: steady_part(row) for name, row in far.items()} == {
         name: steady_part(row) for name, row in near.items()
     }
-    for part in ("traces", "timelines"):
+    for part in ("traces",):
         assert files(tmp_path / "far" / part) == files(tmp_path / "near" / part)
 
 

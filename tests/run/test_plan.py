@@ -4,7 +4,8 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.run.plan import Limits, choose, make_plan, read_plan, with_preset
+from automotive_cosim.run.jobs import Limits
+from automotive_cosim.run.plan import choose, make_plan, read_plan, with_preset
 from automotive_cosim.tasking.split import Split, split_of
 from automotive_cosim.tasking.task import Subset, Suite
 from automotive_cosim.tasks import CATALOGUE
@@ -247,7 +248,7 @@ def test_a_broken_file_is_told(tmp_path):
 
 def test_a_plan_of_more_than_can_be_run_is_refused_at_once():
     plan = make_plan({"agents": ["oracle"], "seeds": list(range(1000)), "repeats": 1000})
-    with pytest.raises(UserError, match="000,000 runs of tasks; give fewer seeds"):
+    with pytest.raises(UserError, match="000,000 runs; give fewer seeds"):
         plan.jobs()
 
 

@@ -10,9 +10,9 @@ import pytest
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.proof.prover import Proof
-from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import DriveFigures
+from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import JobRow, as_json, columns, from_json, from_line, steady
 from automotive_cosim.run.store import opened, read_rows
@@ -34,7 +34,7 @@ OLD: dict[str, Any] = {
 JOB = make_plan({"agents": ["oracle"], "tasks": ["road_speed_80_in_50"]}).jobs()[0]
 DRIVE = DriveFigures(1.5, None, 60.0, 9.0)
 EPISODE = replace(
-    planned(JOB), success=False, parts=PartsHeld(True, True, True, False, True), parameters={"x": 3}, drive=DRIVE,
+    JOB.planned(), success=False, parts=PartsHeld(True, True, True, False, True), parameters={"x": 3}, drive=DRIVE,
     baseline_drive=DRIVE, prompt_tokens=(400, 500), attempts=2, failed_attempts=("WorkerDied: gone",),
 )  # fmt: skip
 NEWS = News(age_s=0.0, stay_s=100.0, delay_s=40.0, offered_s=None, branch=None)
@@ -68,7 +68,7 @@ def test_a_row_comes_back_from_its_line_equal_and_typed(row):
 @pytest.mark.parametrize(
     ("kind", "required"),
     [
-        (EpisodeRow, "id task half pair dimension module scenario agent model seed repeat"),
+        (EpisodeRow, "id task half pair dimension module scenario agent model seed"),
         (DriveRow, "id scenario share seed departure_s trip"),
         (Proof, "id task seed"),
     ],
@@ -129,7 +129,7 @@ def test_a_data_frame_has_a_column_for_each_part_and_figure():
         False, 1.5, "driving_alignment",
     )  # fmt: skip
     assert not {"parts", "drive", "baseline_drive"} & made.keys()
-    assert "part_goal" not in columns(planned(JOB))
+    assert "part_goal" not in columns(JOB.planned())
 
 
 VERDICT = Verdict(

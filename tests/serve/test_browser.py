@@ -18,7 +18,7 @@ import pytest
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.run.episode import Shot, Watcher
+from automotive_cosim.run.episode import EpisodeObserver, Shot
 from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
@@ -312,7 +312,7 @@ def test_a_person_practises_by_keyboard_alone(
     simulations: Simulations,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("automotive_cosim.serve.play.Film", lambda folder: Watcher())  # it takes seconds
+    monkeypatch.setattr("automotive_cosim.serve.play.Film", lambda folder: EpisodeObserver())  # it takes seconds
     page = opened(serving(tmp_path, game=Game(tmp_path, "grid", simulations)), "#/play?task=hvac_fan_max")
     page.get_by_role("checkbox").focus()
     page.keyboard.press("Space")

@@ -18,13 +18,12 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, Observation
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.errors import AgentError, UserError
-from automotive_cosim.report.drives import write_drives
 from automotive_cosim.report.evaluation import write_report
 from automotive_cosim.report.results import read_results
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.rerun import rerun
 from automotive_cosim.run.road import read_record
 from automotive_cosim.run.store import read_rows
-from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.serve.person import WAITING, Person, Preview
 from automotive_cosim.serve.play import Game
 from automotive_cosim.traffic.fork import Simulations
@@ -239,7 +238,7 @@ def test_a_drive_is_played_and_its_row_is_kept(
     while scene["state"] not in ("over", "failed"):
         scene = browser(f"/api/play?seen={scene['version']}").json
     assert scene["error"] == ""
-    (row,) = read_rows(tmp_path / "people-drives", WatchRow).values()
+    (row,) = read_rows(tmp_path / "people-drives", DriveTrialRow).values()
     assert (row.agent, row.model, row.end) == ("human", "heron", "watch_over")
     assert row.score is not None
     results = browser(f"/api/evaluations/{scene['record']}").json
@@ -250,4 +249,4 @@ def test_a_drive_is_played_and_its_row_is_kept(
     assert len(steps) == row.steps + 1
     picture = f"/api/runs/{scene['record']}/episodes/{row.id}/pictures/{steps[-1]['picture']}"
     assert browser(picture).headers["Content-Type"] == "image/jpeg"
-    write_drives(tmp_path / "people-drives")
+    write_report(tmp_path / "people-drives")

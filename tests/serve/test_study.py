@@ -14,9 +14,8 @@ import pytest
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.results import read_results
-from automotive_cosim.run.collect import failed, planned
 from automotive_cosim.run.episode_row import PartsHeld
-from automotive_cosim.run.plan import EpisodeJob
+from automotive_cosim.run.jobs import EpisodeJob, failed
 from automotive_cosim.serve import play
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.study import LOG, QUESTIONS, PeopleStudy
@@ -36,7 +35,9 @@ def at_once(monkeypatch: pytest.MonkeyPatch) -> None:
         if job.setup.task == "hvac_fan_max" and job.setup.model == "fox":
             keep(failed(job, "TrafficError", "it broke"))
         else:
-            keep(replace(planned(job), success=won, parts=PartsHeld(won, True, True, True, True), trace_sha256="0"))
+            keep(
+                replace(job.planned(), success=won, parts=PartsHeld(won, True, True, True, True), trace_sha256="0")
+            )
 
     monkeypatch.setattr(play.Game, "begin", begin)
 

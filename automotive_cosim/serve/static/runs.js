@@ -100,22 +100,24 @@ export async function resultsPage(query, id) {
   return {
     title: results.name,
     content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices, beside), count,
-      h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), table))],
+      h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), table)),
+      results.drives?.length ? [h("h2", {}, "Drives"), drivesTable(id, results.drives)] : null].flat(),
     leave: () => clearInterval(timer),
     ready: fill,
   };
 }
 
-function drivesPage(id, results) {
+function drivesTable(id, rows) {
   const head = ["Drive", "Seed", "Agent", "Score", "Events met", "Nuisances", "Steps", ""].map((name) => h("th", { scope: "col" }, name));
   const figure = (value) => (value === null ? "" : String(Math.round(value)));
-  return {
-    title: results.name,
-    content: [h("h1", {}, results.name), h("p", { class: "muted" }, results.planned ? `${results.rows.length} of ${counted(results.planned, "drive")} are done` : counted(results.rows.length, "drive")),
-      h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Drives" }, h("table", {}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, results.rows.map((row) => h("tr", {},
-        h("td", {}, row.has_road ? h("a", { href: `#/run/${id}/${encodeURIComponent(row.id)}` }, row.family) : row.family), h("td", {}, `${row.seed}${row.repeat ? ` · ${row.repeat + 1}` : ""}`), h("td", {}, [row.agent, row.model !== "none" && row.model].filter(Boolean).join(", ")),
-        h("td", {}, figure(row.value)), h("td", {}, row.events === null ? "" : `${row.met} of ${row.events}`), h("td", {}, figure(row.nuisances)), h("td", {}, String(row.steps)), h("td", { class: "muted" }, row.error ? `${row.error_kind}: ${row.error}` : plain(row.end)))))))],
-  };
+  return h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Drives" }, h("table", {}, h("thead", {}, h("tr", {}, head)), h("tbody", {}, rows.map((row) => h("tr", {},
+    h("td", {}, row.has_road ? h("a", { href: `#/run/${id}/${encodeURIComponent(row.id)}` }, row.family) : row.family), h("td", {}, `${row.seed}${row.repeat ? ` · ${row.repeat + 1}` : ""}`), h("td", {}, [row.agent, row.model !== "none" && row.model, ...row.conditions].filter(Boolean).join(", ")),
+    h("td", {}, figure(row.value)), h("td", {}, row.events === null ? "" : `${row.met} of ${row.events}`), h("td", {}, figure(row.nuisances)), h("td", {}, String(row.steps)), h("td", { class: "muted" }, row.error ? `${row.error_kind}: ${row.error}` : plain(row.end)))))));
+}
+
+function drivesPage(id, results) {
+  const done = results.planned ? `${results.rows.length} of ${counted(results.planned, "drive")} are done` : counted(results.rows.length, "drive");
+  return { title: results.name, content: [h("h1", {}, results.name), h("p", { class: "muted" }, done), drivesTable(id, results.rows)] };
 }
 
 function episode(id, row) {

@@ -1,6 +1,7 @@
 """Evaluations of drives: the plan, the rows, resuming, and the report."""
 
 import json
+import shutil
 import subprocess
 import sys
 from collections.abc import Callable
@@ -20,17 +21,26 @@ from automotive_cosim.drives.score import together
 from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
-from automotive_cosim.report.drives import LEAST_DRIVES, grouped, interval, tables, told, write_drives
-from automotive_cosim.run.batch import Progress
+from automotive_cosim.publish.bundle import write_bundle
+from automotive_cosim.publish.leaderboard import write_leaderboard
+from automotive_cosim.publish.verify import verify
+from automotive_cosim.report.drives import LEAST_DRIVES, grouped, interval, tables, told
+from automotive_cosim.report.evaluation import write_report
+from automotive_cosim.report.regression import changes
+from automotive_cosim.run.batch import Progress, run_plan
+from automotive_cosim.run.coverage import unit_of
+from automotive_cosim.run.drive import DriveSetup, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
+from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.jobs import DriveJob
+from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.rewatch import compare, rewatch, watched
+from automotive_cosim.run.regrade import regrade
+from automotive_cosim.run.rerun import compare_drives, driven, rerun
 from automotive_cosim.run.road import read_road
-from automotive_cosim.run.row import as_json, from_json, steady
+from automotive_cosim.run.row import as_json, from_json, from_line, steady
+from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.store import read_rows, read_trace
-from automotive_cosim.run.watch import WatchSetup, run_watch
-from automotive_cosim.run.watch_row import WatchRow
-from automotive_cosim.run.watches import families_named, make_watch_plan, run_watch_plan
 from automotive_cosim.traffic.fork import Simulations
 
 
@@ -45,19 +55,19 @@ def test_families_are_named_by_id_pattern_scenario_or_season() -> None:
     [
         ({"drives": ["grid_jun"], "agents": ["silent"]}, "grid_june"),
         ({"drives": ["all"]}, "--agents"),
-        ({"drives": [], "agents": ["silent"]}, "drives"),
         ({"drives": ["all"], "agents": ["human"]}, "human"),
+        ({"drives": ["grid_june"], "agents": ["silent"], "language": ["en", "de"]}, "in English, not in German"),
         ({"drives": ["all"], "agents": ["rule-perfct"]}, "rule-perfect"),
         ({"drives": ["all"], "agents": ["silent"], "latency": [-1.0]}, "latency"),
     ],
 )
 def test_a_wrong_plan_is_refused_by_name(values: dict[str, object], named: str) -> None:
     with pytest.raises(UserError, match=named):
-        make_watch_plan(values).check()
+        make_plan(values).check()
 
 
 def test_every_drive_has_its_own_id_and_is_run_with_others_of_its_traffic() -> None:
-    plan = make_watch_plan(
+    plan = make_plan(
         {"drives": ["grid"], "agents": ["silent", "asurada"], "seeds": [0, 1], "latency": [0.0, 3.0], "repeats": 2}
     )
     jobs = plan.jobs()
@@ -66,11 +76,46 @@ def test_every_drive_has_its_own_id_and_is_run_with_others_of_its_traffic() -> N
     assert len([1 for before, now in pairwise(order) if before != now]) == len(set(order)) - 1
 
 
-def test_drives_take_nothing_that_belongs_to_tasks() -> None:
-    given = ["eval", "--drives", "all", "--agents", "silent", "--tasks", "hvac_fan_max"]
-    result = CliRunner().invoke(app, given)
-    assert isinstance(result.exception, UserError)
-    assert "tasks" in str(result.exception)
+def test_tasks_and_drives_are_planned_together_and_apart() -> None:
+    tasks, drives = (
+        {"tasks": ["hvac_fan_max"], "agents": ["silent"]},
+        {"drives": ["grid_june"], "agents": ["silent"]},
+    )
+    both = {job.id for job in make_plan(tasks | drives).jobs()}
+    apart = [{job.id for job in make_plan(values).jobs()} for values in (tasks, drives)]
+    assert both == set.union(*apart)
+    assert list(map(len, apart)) == [1, 1]
+    plans = map(make_plan, (tasks, drives, tasks | drives))
+    assert [unit_of(plan.as_json()) for plan in plans] == ["episode", "drive", "trial"]
+
+
+def test_a_drive_belongs_to_the_set_of_its_seed() -> None:
+    values = {"drives": ["grid_june"], "agents": ["silent"], "seeds": list(range(40))}
+    whole, dev, test = (
+        {job.setup.seed for job in make_plan(values | {"split": split}).jobs()} for split in ("both", "dev", "test")
+    )
+    assert dev | test == whole
+    assert dev
+    assert test
+    assert not dev & test
+
+
+def test_the_plan_of_a_folder_of_drives_of_0_2_is_read() -> None:
+    old = {
+        **{"drives": ["grid_june"], "scenarios": [], "agents": ["silent"], "models": ["rules"], "seeds": [0]},
+        **{"geo": ["full"], "clock": "fixed", "latency": [0.0], "repeats": 1, "see": ["both"], "wall_s": 60.0},
+        **{"feedback": ["quiet"], "screen": ["1280x720"]},
+    }
+    (job,) = make_plan(old).jobs()
+    assert isinstance(job, DriveJob)
+    assert job.wall_s == 60.0
+    line = json.dumps({
+        **{"id": job.id, "family": "grid_june", "seed": 0, "scenario": "grid", "season": "summer"},
+        **{"agent": "silent", "model": "none", "geo": "full", "latency_s": 3.0, "see": "tree", "feedback": "quiet"},
+    }).encode()  # fmt: skip
+    row = from_line(kind_of(line), line)
+    assert isinstance(row, DriveTrialRow)
+    assert row.conditions.labels == ("latency 3 s", "tree alone")
 
 
 # --- on a drive ----------------------------------------------------------------------------------------------
@@ -82,13 +127,13 @@ PLAN = {"drives": ["grid_january"], "agents": ["rule-perfect", "silent"], "seeds
 def folder(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """An evaluation of one drive by two watchers."""
     made = tmp_path_factory.mktemp("drives") / "made"
-    end = run_watch_plan(make_watch_plan(PLAN), made, executor=Processes(1), retries=0)
+    end = run_plan(make_plan(PLAN), made, executor=Processes(1), retries=0)
     assert (end.judged, end.errors) == (2, 0)
     return made
 
 
-def rows_of(folder: Path) -> dict[str, WatchRow]:
-    return {row.agent: row for row in read_rows(folder, WatchRow).values()}
+def rows_of(folder: Path) -> dict[str, DriveTrialRow]:
+    return {row.agent: row for row in read_rows(folder, DriveTrialRow).values()}
 
 
 @pytest.mark.slow
@@ -100,13 +145,13 @@ def test_rows_tell_who_watched_better_and_are_read_back(folder: Path) -> None:
     assert perfect.value > 60.0
     assert silent.harm == silent.baseline_harm
     assert perfect.baseline_harm == silent.harm
-    assert from_json(WatchRow, json.loads(json.dumps(as_json(perfect)))) == perfect
+    assert from_json(DriveTrialRow, json.loads(json.dumps(as_json(perfect)))) == perfect
 
 
 @pytest.mark.slow
 def test_a_finished_drive_is_not_run_again(folder: Path) -> None:
     before = (folder / "episodes.jsonl").read_bytes()
-    end = run_watch_plan(make_watch_plan(PLAN), folder, executor=Processes(1), retries=0)
+    end = run_plan(make_plan(PLAN), folder, executor=Processes(1), retries=0)
     assert (end.ran, end.done) == (0, 2)
     assert (folder / "episodes.jsonl").read_bytes() == before
 
@@ -115,15 +160,15 @@ def test_a_finished_drive_is_not_run_again(folder: Path) -> None:
 def test_what_is_left_when_a_run_is_broken_off_is_made_up_for(folder: Path, tmp_path: Path) -> None:
     """And the same plan gives the same rows."""
 
-    def break_off(progress: Progress[WatchRow]) -> None:
+    def break_off(progress: Progress[DriveTrialRow]) -> None:
         if progress.done == 1:
             raise KeyboardInterrupt
 
-    wanted = make_watch_plan(PLAN)
+    wanted = make_plan(PLAN)
     with pytest.raises(KeyboardInterrupt):
-        run_watch_plan(wanted, tmp_path / "e", executor=Processes(1), retries=0, tell=break_off)
-    assert len(read_rows(tmp_path / "e", WatchRow)) == 1
-    end = run_watch_plan(wanted, tmp_path / "e", executor=Processes(1), retries=0)
+        run_plan(wanted, tmp_path / "e", executor=Processes(1), retries=0, tell=break_off)
+    assert len(read_rows(tmp_path / "e", DriveTrialRow)) == 1
+    end = run_plan(wanted, tmp_path / "e", executor=Processes(1), retries=0)
     assert (end.ran, end.done) == (1, 2)
     assert {name: steady(row) for name, row in rows_of(tmp_path / "e").items()} == {
         name: steady(row) for name, row in rows_of(folder).items()
@@ -205,16 +250,16 @@ def test_an_evaluation_killed_in_the_middle_of_a_drive_resumes_to_the_same_rows_
     assert acts() == [*whole, whole[0], acts()[3], whole[1]], "the finished drive was made again"
     assert acts()[3] < whole[1]
     assert lines().startswith(kept)
-    assert all(row.events for row in read_rows(tmp_path / "whole", WatchRow).values())
-    rows, again = (read_rows(tmp_path / name, WatchRow) for name in ("whole", "killed"))
+    assert all(row.events for row in read_rows(tmp_path / "whole", DriveTrialRow).values())
+    rows, again = (read_rows(tmp_path / name, DriveTrialRow) for name in ("whole", "killed"))
     assert {id_: steady(row) for id_, row in again.items()} == {id_: steady(row) for id_, row in rows.items()}
     assert len({row.trace_sha256 for row in rows.values()}) == 2
-    for part in ("traces", "timelines"):
+    for part in ("traces",):
         files, others = (
             {path.name: path.read_bytes() for path in (tmp_path / name / part).iterdir()}
             for name in ("whole", "killed")
         )
-        assert len(files) == 2
+        assert len(files) == 4
         assert others == files
 
 
@@ -224,12 +269,13 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
     replayed = CliRunner().invoke(app, ["replay", str(folder), row.id])
     assert replayed.exit_code == 0, replayed.output
     assert f"all {row.steps + 1} steps are the same" in replayed.output
-    steps = read_trace(folder, row.id)
+    *steps, _ = read_trace(folder, row.id)
+    job = DriveJob(DriveSetup(row.family, row.seed, row.agent, row.model))
     quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
-    different = compare(steps, watched(row, quiet).steps)
+    different = compare_drives(steps, driven(job, row, quiet).steps)
     assert "action" in next(step for step in different if step.differs).differs
     with pytest.raises(UserError, match="no drive in"):
-        rewatch(folder, "grid_december")
+        rerun(folder, "grid_december")
 
 
 @pytest.mark.slow
@@ -248,16 +294,17 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
         def answer_s(self) -> float:
             return 0.4 + 1.7 * (len(self._told) % 4)
 
-    setup = WatchSetup("grid_june", 1, "slow", conditions=Conditions(clock=Clock.MODEL, latency_s=0.5))
+    setup = DriveSetup("grid_june", 1, "slow", conditions=Conditions(clock=Clock.MODEL, latency_s=0.5))
     agent = Slow()
     with (
         closing(Simulations()) as simulations,
         closing(DriveRecorder(tmp_path / "drive", setup, agent)) as recorder,
     ):
-        first = run_watch("slow", setup, agent, simulations=simulations, watchers=(recorder,))
-        again = watched(first.row, first.steps, simulations)
+        job = DriveJob(setup)
+        first = run_drive(job.planned(), setup, agent, simulations=simulations, observers=(recorder,))
+        again = driven(job, first.row, first.steps, simulations)
     assert len({step["thought_s"] for step in first.steps}) > 2
-    assert not [step for step in compare(first.steps, again.steps) if step.differs]
+    assert not [step for step in compare_drives(first.steps, again.steps) if step.differs]
     assert again.row.trace_sha256 == first.row.trace_sha256
     assert (again.row.events, again.row.acts, again.row.score) == (
         first.row.events,
@@ -277,19 +324,57 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
 @pytest.mark.slow
 def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None:
     values = PLAN | {"agents": ["rule-perfect"]}
-    jobs = make_watch_plan(values | {"latency": [0, 1, 3, 10]}).jobs()
+    jobs = make_plan(values | {"latency": [0, 1, 3, 10]}).jobs()
     assert {job.setup.conditions.latency_s for job in jobs} == {0, 1, 3, 10}
-    two = make_watch_plan(values | {"latency": [0, 10]})
-    assert run_watch_plan(two, tmp_path / "e", executor=Processes(1), retries=0).judged == 2
-    rows = read_rows(tmp_path / "e", WatchRow).values()
+    two = make_plan(values | {"latency": [0, 10]})
+    assert run_plan(two, tmp_path / "e", executor=Processes(1), retries=0).judged == 2
+    rows = read_rows(tmp_path / "e", DriveTrialRow).values()
     scores = {each.conditions.latency_s: mine[0].value for each, mine in grouped(rows).items()}
     assert scores[10.0] < scores[0.0]  # type: ignore[operator]
-    assert "latency 10 s" in write_drives(tmp_path / "e").read_text("utf-8")
+    assert "latency 10 s" in write_report(tmp_path / "e").read_text("utf-8")
+
+
+@pytest.mark.slow
+def test_drives_are_graded_again_compared_bundled_verified_and_ranked(folder: Path, tmp_path: Path) -> None:
+    assert [each.differs for each in regrade(folder)] == [False, False]
+    assert not [each.problem for each in regrade(folder) if each.problem]
+    found = changes(folder, folder)
+    assert {(each.unit, each.outcome(0.0)) for each in found} == {("drives", "as good")}
+    (tmp_path / "bundles").mkdir()
+    contents = write_bundle(folder, tmp_path / "bundles" / "drives.zip")
+    assert contents.counts.judged == 2
+    checked = verify(tmp_path / "bundles" / "drives.zip", replays=1)
+    assert checked.problems == ()
+    assert write_leaderboard(tmp_path / "bundles", tmp_path / "page.html") == []
+    page = (tmp_path / "page.html").read_text("utf-8")
+    assert page.index("rule-perfect") < page.index("silent")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("changed", "named"),
+    [
+        ({"value": 100.0}, "value"),
+        ({"seed": 5}, "seed"),
+        ({"waits": 1}, "waits"),
+        ({"distraction_s": 900.0}, "distraction_s"),
+        ({"end": "declared"}, "end"),
+    ],
+)
+def test_a_changed_row_of_a_drive_is_found(
+    folder: Path, tmp_path: Path, changed: dict[str, object], named: str
+) -> None:
+    copy = tmp_path / "copy"
+    shutil.copytree(folder, copy)
+    path = copy / "episodes.jsonl"
+    first, *others = path.read_text("utf-8").splitlines()
+    path.write_text("\n".join([json.dumps(json.loads(first) | changed), *others]) + "\n", "utf-8")
+    assert any(named in problem.field for problem in verify(copy).problems)
 
 
 @pytest.mark.slow
 def test_the_report_has_a_timeline_of_each_drive(folder: Path) -> None:
-    page = write_drives(folder).read_text("utf-8")
+    page = write_report(folder).read_text("utf-8")
     rows = rows_of(folder)
     assert {path.stem for path in (folder / "plots").iterdir()} == {row.id for row in rows.values()}
     assert "rule-perfect" in page
@@ -301,7 +386,7 @@ def test_the_report_has_a_timeline_of_each_drive(folder: Path) -> None:
 def test_intervals_come_from_whole_drives(folder: Path) -> None:
     perfect, silent = (rows_of(folder)[name] for name in ("rule-perfect", "silent"))
 
-    def value(rows: list[WatchRow]) -> float:
+    def value(rows: list[DriveTrialRow]) -> float:
         return together([row.score for row in rows if row.score is not None]).value
 
     few = [replace(perfect, id=str(number), seed=number) for number in range(LEAST_DRIVES - 1)]

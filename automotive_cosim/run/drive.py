@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, fields, replace
 from typing import Any
@@ -13,8 +13,11 @@ from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Element, Json
 from automotive_cosim.contracts.given import Clock
 from automotive_cosim.drives.elsewhere import elsewhere
+from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.result import DriveResult, result_of
+from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, facts_of, judge
+from automotive_cosim.drives.result import DriveResult, judged_since, result_of
+from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
@@ -26,13 +29,13 @@ from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.models.base import ModelReply
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import Replayed, Timed
-from automotive_cosim.run.watch_row import WatchRow
 from automotive_cosim.traffic.fork import Simulations
 
 
 @dataclass(frozen=True, slots=True)
-class WatchSetup:
+class DriveSetup:
     """One drive to run, by name."""
 
     family: str
@@ -40,23 +43,78 @@ class WatchSetup:
     agent: str = ""
     model: str = "none"
     conditions: Conditions = Conditions()  # noqa: RUF009, frozen
-    repeat: int = 0
     scenario: str = ""
     """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
 
 
 @dataclass(frozen=True, slots=True)
-class WatchRecord:
+class JudgedDrive:
+    """The input of a drive's judgement; times are simulation times."""
+
+    events: tuple[DriveEvent, ...]
+    acts: tuple[WatchAct, ...]
+    due_anyway: Mapping[int, float | None]
+    """By number of an event, when its obligation arose in its do-nothing copy."""
+    commands: Mapping[str, Any]
+    """What was commanded at departure."""
+    facts: tuple[tuple[str, float, str | None], ...]
+    """What speaks against an act at its time, by kind of event; None for nothing."""
+    untouched: tuple[DriveEvent, ...]
+    """Events of the do-nothing run, if an act of the agent holds something back."""
+    begun_s: float
+    seconds: float
+    """Duration of the drive."""
+
+    def judgement(self) -> tuple[tuple[JudgedEvent, ...], tuple[JudgedAct, ...], Score]:
+        """Events, acts and score by the current checks; their times are seconds since departure."""
+        facts = {(kind, time_s): fact for kind, time_s, fact in self.facts}
+        judged = judge(
+            KINDS,
+            self.events,
+            self.acts,
+            self.due_anyway,
+            lambda kind, time_s: facts[kind.name, time_s],
+            self.commands,
+            self.untouched,
+        )
+        return judged_since(judged, self.begun_s, self.seconds)
+
+    @classmethod
+    def of(cls, watch: Watch) -> JudgedDrive:
+        """The input of a drive's judgement that is over."""
+        against = facts_of(watch.moments)
+        times_s = sorted({act.time_s for act in watch.acts})
+        return cls(
+            tuple(watch.events),
+            tuple(watch.acts),
+            dict(watch.due_anyway),
+            watch.moments[0].commands,
+            tuple((kind.name, time_s, against(kind, time_s)) for kind in KINDS.values() for time_s in times_s),
+            watch.untouched,
+            watch.moments[0].time_s,
+            watch.seconds,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class DriveRecord:
     """What is kept of a drive."""
 
-    row: WatchRow
+    row: DriveTrialRow
     timeline: Json
     """Speed, limit and the do-nothing run's speed, one value per second."""
     steps: tuple[Json, ...]
     """Action, thinking time and result of each step, with hashes of the state that followed."""
+    judged: JudgedDrive
+    """The judge's input."""
+
+    @property
+    def lines(self) -> list[Json]:
+        """Its trace: the steps, then the result."""
+        return [*self.steps, {"result": {"timeline": self.timeline}}]
 
 
-class WatchWatcher(Listener):
+class DriveObserver(Listener):
     """Sees a drive while it runs, e.g. to show or record it. It changes nothing."""
 
     def departed(self, watch: Watch) -> None:
@@ -65,29 +123,13 @@ class WatchWatcher(Listener):
     def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
         """The agent has acted on a screen with these elements."""
 
-    def arrived(self, watch: Watch, record: WatchRecord) -> None:
+    def arrived(self, watch: Watch, record: DriveRecord) -> None:
         """The drive is over, and judged."""
 
 
-def planned_row(job_id: str, setup: WatchSetup) -> WatchRow:
-    """The row of a drive before it has run."""
-    family = family_named(setup.family)
-    return WatchRow(
-        id=job_id,
-        family=family.id,
-        seed=setup.seed,
-        scenario=setup.scenario or family.scenario,
-        season=family.season,
-        agent=setup.agent,
-        model=setup.model,
-        conditions=setup.conditions,
-        repeat=setup.repeat,
-    )
-
-
 def judged_row(
-    planned: WatchRow, end: End, channels: tuple[Channel, ...], result: DriveResult, **totals: Any
-) -> WatchRow:
+    planned: DriveTrialRow, end: End, channels: tuple[Channel, ...], result: DriveResult, **totals: Any
+) -> DriveTrialRow:
     """The row of a drive that is over.
 
     Args:
@@ -101,31 +143,30 @@ def judged_row(
     return replace(planned, end=end, channels=channels, **found, **totals)
 
 
-def run_watch(
-    job_id: str,
-    setup: WatchSetup,
+def run_drive(
+    planned: DriveTrialRow,
+    setup: DriveSetup,
     agent: Agent,
     *,
     simulations: Simulations | None = None,
-    watchers: Sequence[WatchWatcher] = (),
+    observers: Sequence[DriveObserver] = (),
     plan: DriveScript | None = None,
-) -> WatchRecord:
+) -> DriveRecord:
     """Runs a drive to its end and judges it.
 
     Args:
-        job_id: id of its row.
+        planned: its row before it has run.
         setup: what to run.
         agent: the agent that watches.
         simulations: warm simulations to use; by default its own, closed with the drive.
-        watchers: notified of everything as it happens.
+        observers: notified of everything as it happens.
         plan: used instead of the family's plan for the seed.
 
     Raises:
         UserError: something in the setup does not exist.
         InfrastructureError: traffic or model failed.
     """
-    planned = planned_row(job_id, setup)
-    listener = Listeners(watchers)
+    listener = Listeners(observers)
     if setup.scenario and plan is None:
         plan = elsewhere(family_named(setup.family).draw(setup.seed), setup.scenario)
     spec = DriveSpec(setup.family, setup.seed, setup.conditions)
@@ -135,23 +176,25 @@ def run_watch(
         ends.callback(watch.close)
         meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
         agent.reset(watch.goal)
-        for watcher in watchers:
-            watcher.departed(watch)
-        end = play(watch, agent, (meter.stepped, *(watcher.acted for watcher in watchers)), meter.thought_s)
-        record = WatchRecord(
-            row=judged_row(planned, end, channels, result_of(watch), **meter.totals()),
+        for observer in observers:
+            observer.departed(watch)
+        end = play(watch, agent, (meter.stepped, *(observer.acted for observer in observers)), meter.thought_s)
+        result = result_of(watch)
+        record = DriveRecord(
+            row=judged_row(planned, end, channels, result, **meter.totals()),
             timeline=timeline(watch),
             steps=tuple(_steps(watch)),
+            judged=JudgedDrive.of(watch),
         )
-        for watcher in watchers:
-            watcher.arrived(watch, record)
+        for observer in observers:
+            observer.arrived(watch, record)
         return record
 
 
 class _Meter:
     """What the agent's answers cost."""
 
-    def __init__(self, setup: WatchSetup, agent: Agent) -> None:
+    def __init__(self, setup: DriveSetup, agent: Agent) -> None:
         self._setup, self._agent = setup, agent
         self._replies: list[ModelReply] = []
         self._thought_s = 0.0

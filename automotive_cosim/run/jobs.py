@@ -1,0 +1,273 @@
+"""The jobs of a plan: one trial each, on a task's half or on a drive."""
+
+from __future__ import annotations
+
+import hashlib
+import re
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le
+
+from automotive_cosim.contracts.given import GeoInput
+from automotive_cosim.drives.families import family_named
+from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.interface.trace import canonical
+from automotive_cosim.run.drive import DriveSetup
+from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.outside import EPISODE_S, STEP_S
+from automotive_cosim.tasking.split import Split, split_of, split_of_seed
+from automotive_cosim.tasking.task import Suite, Task
+from automotive_cosim.tasks import CATALOGUE
+
+NO_MODEL = "none"
+HUMAN = "human"
+"""The agent that is a person; a code name replaces the model."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """Limits of one episode."""
+
+    steps: Annotated[int, Ge(1), Le(100_000)] = Suite.STANDARD.max_steps
+    """Number of actions, including unreadable ones."""
+    hard_steps: Annotated[int, Ge(1), Le(100_000)] = Suite.HARD.max_steps
+    """The same for the tasks of the hard suite."""
+    sim_s: Annotated[float, Gt(0)] = 600.0
+    """Simulated seconds from the hand-over, after which the episode is judged as it is."""
+    wall_s: Annotated[float, Gt(0)] = 900.0
+    """Wall seconds of all but the agent's process, warm-up and model included; exceeding them is an infrastructure
+    error."""
+    agent_s: Annotated[float, Gt(0)] = EPISODE_S
+    """Wall seconds that the agent's process may take; exceeding them is a failure of the agent."""
+    agent_step_s: Annotated[float, Gt(0)] = STEP_S
+    """The same for one step."""
+    tokens: Annotated[int, Ge(1)] = 2_000_000
+    """Tokens to and from the model, after which the episode is judged as it is."""
+    drive_wall_s: Annotated[float, Gt(0)] = 7200.0
+    """``wall_s`` of a drive, which lasts ten to thirty simulated minutes."""
+    drive_agent_s: Annotated[float, Gt(0)] = 7200.0
+    """``agent_s`` of a drive."""
+    drive_tokens: Annotated[int, Ge(1)] = 20_000_000
+    """``tokens`` of a drive."""
+
+    @property
+    def of_drives(self) -> Limits:
+        """The limits of a drive; its steps and its time end with the drive."""
+        return replace(self, wall_s=self.drive_wall_s, agent_s=self.drive_agent_s, tokens=self.drive_tokens)
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeJob:
+    """One episode of a plan."""
+
+    setup: EpisodeSetup
+    repeat: int
+    limits: Limits
+
+    @property
+    def model(self) -> str:
+        """The agent, as given to ``make_agent``."""
+        return "rules" if self.setup.model == NO_MODEL else self.setup.model
+
+    @property
+    def scenario(self) -> str:
+        """Name or folder of its scenario."""
+        return self.setup.scenario or self.task.half(self.setup.half).start.scenario
+
+    @property
+    def task(self) -> Task:
+        """The catalogue's entry."""
+        return CATALOGUE[self.setup.task]
+
+    @property
+    def split(self) -> Split:
+        """The set that it belongs to, by its seed and its phrasing."""
+        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out)
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """The warm simulation that it starts from: scenario and seed."""
+        return self.scenario, self.setup.seed
+
+    @property
+    def kind(self) -> Hashable:
+        """The agent and its model, which determine how long it takes."""
+        return self.setup.agent, self.setup.model
+
+    @property
+    def situation(self) -> Hashable:
+        """The drive up to the hand-over, on which no agent acts."""
+        return replace(
+            self.setup,
+            agent="",
+            model="",
+            without=(),
+            conditions=Conditions(language=self.setup.conditions.language),
+        )
+
+    @property
+    def instance(self) -> Hashable:
+        """What an instance is identified by; the same for every contestant."""
+        return self.setup.task, self.setup.half, self.scenario, self.setup.seed, self.repeat
+
+    @property
+    def wall_s(self) -> float:
+        """Limit of its wall time."""
+        return self.limits.wall_s + self.limits.agent_s
+
+    @property
+    def id(self) -> str:
+        """Its id, which can be a file name."""
+        return self._named(self.setup.half)
+
+    @property
+    def pair(self) -> str:
+        """Name that both halves of a pair share; empty for a task with one half."""
+        return self._named("pair") if self.task.second else ""
+
+    def planned(self) -> EpisodeRow:
+        """What is known about it before it runs."""
+        setup, task = self.setup, self.task
+        half = task.half(setup.half)
+        return EpisodeRow(
+            id=self.id,
+            task=task.id,
+            half=setup.half,
+            pair=self.pair,
+            dimension=task.dimension,
+            module=task.module,
+            basis=half.basis,
+            suite=task.suite,
+            tags=tuple(sorted(task.tags)),
+            skills=tuple(sorted(task.skills)),
+            declines=not half.moves,
+            scenario=self.scenario,
+            agent=setup.agent,
+            model=setup.model,
+            conditions=setup.conditions,
+            seed=setup.seed,
+            repeat=self.repeat,
+            held_out=setup.held_out,
+            split=self.split,
+        )
+
+    def _named(self, half: str) -> str:
+        """Readable words, then a digest of everything else."""
+        setup, conditions = self.setup, self.setup.conditions
+        exactly = (
+            setup.task, half, setup.agent, setup.model, conditions.geo, f"s{setup.seed}", f"r{self.repeat}",
+            setup.scenario or "own",
+            *(["held_out"] if setup.held_out else []),
+            *replace(conditions, geo=GeoInput.FULL).tags,
+        )  # fmt: skip
+        return file_name(exactly)
+
+
+@dataclass(frozen=True, slots=True)
+class DriveJob:
+    """One drive of a plan."""
+
+    setup: DriveSetup
+    repeat: int = 0
+    limits: Limits = field(default_factory=lambda: Limits().of_drives)
+
+    @property
+    def model(self) -> str:
+        """The model, as given to ``make_agent``."""
+        return "rules" if self.setup.model == NO_MODEL else self.setup.model
+
+    @property
+    def scenario(self) -> str:
+        """Name or folder of its scenario."""
+        return self.setup.scenario or family_named(self.setup.family).scenario
+
+    @property
+    def split(self) -> Split:
+        """The set that it belongs to, by its seed."""
+        return split_of_seed(self.setup.seed)
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """The warm simulation that it starts from: scenario and seed."""
+        return self.scenario, self.setup.seed
+
+    @property
+    def situation(self) -> Hashable:
+        """A drive always begins."""
+        return self.id
+
+    @property
+    def kind(self) -> Hashable:
+        """Agent and model, which determine how long it takes."""
+        return "drive", self.setup.agent, self.setup.model
+
+    @property
+    def instance(self) -> Hashable:
+        """What an instance is identified by; the same for every contestant."""
+        return self.setup.family, self.scenario, self.setup.seed, self.repeat
+
+    @property
+    def wall_s(self) -> float:
+        """Limit of its wall time."""
+        return self.limits.wall_s
+
+    @property
+    def id(self) -> str:
+        """Its id, which can be a file name."""
+        setup = self.setup
+        return file_name(
+            (
+                *(
+                    setup.family,
+                    setup.agent,
+                    setup.model,
+                    setup.conditions.geo,
+                    f"s{setup.seed}",
+                    f"r{self.repeat}",
+                ),
+                *([setup.scenario] if setup.scenario else []),
+                *replace(setup.conditions, geo=GeoInput.FULL).tags,
+            )
+        )
+
+    def planned(self) -> DriveTrialRow:
+        """What is known about it before it runs."""
+        setup = self.setup
+        return DriveTrialRow(
+            id=self.id,
+            family=setup.family,
+            season=family_named(setup.family).season,
+            scenario=self.scenario,
+            agent=setup.agent,
+            model=setup.model,
+            conditions=setup.conditions,
+            seed=setup.seed,
+            repeat=self.repeat,
+            split=self.split,
+        )
+
+
+TrialJob = EpisodeJob | DriveJob
+"""One trial of a plan."""
+
+
+def failed(job: TrialJob, kind: str, why: str) -> EpisodeRow | DriveTrialRow:
+    """The row of a trial that ended in an infrastructure error."""
+    return replace(job.planned(), error=why, error_kind=kind)
+
+
+def file_name(exactly: Iterable[str]) -> str:
+    """Readable words, then a digest of everything."""
+    exactly = tuple(exactly)
+    words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
+    return f"{words[:150]}-{digest(exactly)[:8]}"
+
+
+def digest(value: object) -> str:
+    """A digest of plain values."""
+    return hashlib.sha256(canonical(value)).hexdigest()

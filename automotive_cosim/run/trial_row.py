@@ -1,0 +1,69 @@
+"""What the rows of all trials share."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable
+from dataclasses import dataclass
+from typing import Annotated
+
+from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.specification import End
+from automotive_cosim.run.row import InColumns, JobRow, Volatile
+from automotive_cosim.tasking.split import Split
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class TrialRow(JobRow):
+    """One trial: an agent's run of a task's half or of a drive. An error leaves most fields at their defaults."""
+
+    scenario: str
+    agent: str
+    model: str
+    seed: int
+    repeat: int = 0
+    conditions: Annotated[Conditions, InColumns("")] = Conditions()  # noqa: RUF009, frozen
+    """What the agent was given, and at what speed."""
+    split: Split | None = None
+    """The set that it belongs to; None in rows from before there were sets."""
+    end: End = End.ERROR
+    agent_error: str | None = None
+    """How the agent's side failed, if it did: a failure like any other, never an error."""
+    steps: int = 0
+    thought_s: float = 0.0
+    """Simulated seconds that all answers took."""
+    tokens_in: int = 0
+    tokens_out: int = 0
+    cost_usd: float = 0.0
+    trace_sha256: str | None = None
+    model_seconds: Volatile[float] = 0.0
+    """Total wait for the model."""
+
+    @property
+    def subject(self) -> str:
+        """The task, or the family of drives."""
+        raise NotImplementedError
+
+    @property
+    def instance(self) -> tuple[Hashable, ...]:
+        """What two contestants must share to be compared."""
+        raise NotImplementedError
+
+    @property
+    def outcome(self) -> bool | None:
+        """Whether it is a success; None without a judgement."""
+        raise NotImplementedError
+
+    @property
+    def missing(self) -> tuple[str, ...]:
+        """What a success lacks, in words."""
+        raise NotImplementedError
+
+    @property
+    def has_succeeded(self) -> bool:
+        """Whether it was judged a success."""
+        return self.outcome is True
+
+    @property
+    def has_run(self) -> bool:
+        """Whether it was judged or ended in an error; false for one that is only planned."""
+        return self.outcome is not None or self.error is not None
