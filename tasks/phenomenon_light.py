@@ -389,13 +389,13 @@ TASKS = (
             "Could you put the {lamps} on for this stretch?",
         ),
         _on(
-            _at("london", "euston", ITALY, replace(MIST_120, visibility=400.0)),
+            _at("london", "euston", ITALY, replace(MIST_120, temperature_2m=14.0, visibility=400.0)),
             "IT.front_fog",
             LIGHTS.FRONT_FOG,
             FRONT_FOG,
         ),
         decline(
-            _at("london", "euston", BRITAIN, replace(MIST_120, visibility=400.0)),
+            _at("london", "euston", BRITAIN, replace(MIST_120, temperature_2m=14.0, visibility=400.0)),
             SOON,
             IN_SIGHT,
             Basis.LAW,

@@ -21,8 +21,8 @@ SNOW_UP_TO_C = 3.0
 FOG_FROM_HUMIDITY_PCT = 95.0
 """Fog is saturated air; gauges read a little less."""
 LIFTS_BELOW_M, FOG_BELOW_SUN_DEG = 300.0, 25.0
-"""Fog of less sight than that has lifted under a higher sun, except over water: our choice. Radiation fog goes within
-hours of sunrise (WMO-No. 407), and a sun that stands higher has shone for that long."""
+"""Fog of less sight than that has lifted under a higher sun, except over water: our choice. Radiation fog goes
+within hours of sunrise (WMO-No. 407), and a sun that stands higher has shone for that long."""
 REACTION_S, BRAKING_MPS2 = 1.0, 5.0
 SIGHTS_TO_STOP = 2.0
 """Stopping distances of more than twice the sight are driven by nobody: our choice. Drivers in fog outdrive their
