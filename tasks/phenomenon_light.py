@@ -74,8 +74,8 @@ def lit_by_law(
 def _at(
     scenario: str, trip: str, origin: tuple[float, float], weather: Weather, signals: dict[str, object] = BEAM
 ) -> Start:
-    """A drive by day, in one country or another; fog is of the morning."""
-    at = FOGGY if weather.weather_code == MIST_120.weather_code else NOON
+    """A drive by day, in one country or another; fog is of the morning, haze lasts."""
+    at = FOGGY if weather.visibility < 300.0 else NOON
     return Start(scenario, trip, origin, start=at, weather=weather, signals=signals, sign_camera=False)
 
 
@@ -389,13 +389,13 @@ TASKS = (
             "Could you put the {lamps} on for this stretch?",
         ),
         _on(
-            _at("london", "euston", ITALY, replace(MIST_120, visibility=400.0)),
+            _at("london", "euston", ITALY, replace(MIST_120, temperature_2m=14.0, visibility=400.0)),
             "IT.front_fog",
             LIGHTS.FRONT_FOG,
             FRONT_FOG,
         ),
         decline(
-            _at("london", "euston", BRITAIN, replace(MIST_120, visibility=400.0)),
+            _at("london", "euston", BRITAIN, replace(MIST_120, temperature_2m=14.0, visibility=400.0)),
             SOON,
             IN_SIGHT,
             Basis.LAW,

@@ -20,9 +20,9 @@ SIGMAS = 5.0
 SNOW_UP_TO_C = 3.0
 FOG_FROM_HUMIDITY_PCT = 95.0
 """Fog is saturated air; gauges read a little less."""
-FOG_BELOW_SUN_DEG = 25.0
-"""Sun above which fog of less than a kilometre has lifted, except over water: our choice. Radiation fog goes within
-hours of sunrise (WMO-No. 407), and a sun that stands higher has shone for that long."""
+LIFTS_BELOW_M, FOG_BELOW_SUN_DEG = 300.0, 25.0
+"""Fog of less sight than that has lifted under a higher sun, except over water: our choice. Radiation fog goes
+within hours of sunrise (WMO-No. 407), and a sun that stands higher has shone for that long."""
 REACTION_S, BRAKING_MPS2 = 1.0, 5.0
 SIGHTS_TO_STOP = 2.0
 """Stopping distances of more than twice the sight are driven by nobody: our choice. Drivers in fog outdrive their
@@ -55,7 +55,7 @@ def implausible(moment: Moment) -> Iterator[str]:
 def _driven(moment: Moment) -> Iterator[str]:
     weather, speed_mps = moment.weather, moment.driving.speed_mps
     sun_deg = moment.surroundings.sun_elevation_deg
-    is_foggy = "fog" in phenomena(weather) and weather.visibility < 1000
+    is_foggy = "fog" in phenomena(weather) and weather.visibility < LIFTS_BELOW_M
     if is_foggy and sun_deg is not None and sun_deg > FOG_BELOW_SUN_DEG:
         yield f"{weather.visibility:.0f} m of sight in fog with the sun at {sun_deg:.0f} degrees"
     stop_m = speed_mps * REACTION_S + speed_mps**2 / (2 * BRAKING_MPS2)
