@@ -27,7 +27,7 @@ class Where(Enum):
     STORE = "in the launcher, while it is installed"
 
 
-class Page(NamedTuple):
+class AppPage(NamedTuple):
     """A screen."""
 
     made: Callable[[State], tuple[Widget, ...]]
@@ -49,7 +49,7 @@ class App:
     icon: Icon
     order: int
     """Its place among the apps."""
-    pages: Mapping[str, Page]
+    pages: Mapping[str, AppPage]
     """Its screens by name; the one with the app's name is shown when it is opened."""
     where: Where = Where.LAUNCHER
     short: str = ""

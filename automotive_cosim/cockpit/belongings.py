@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.apps.calendar.state import Agenda, Appointment
 from automotive_cosim.cockpit.apps.memo.state import Memos
 from automotive_cosim.cockpit.apps.phone.state import Contact, Directory, Phone, Thread
 from automotive_cosim.cockpit.apps.store.state import Installed
-from automotive_cosim.cockpit.apps.trip.state import FROM_HERE, Trip, TripMeter
+from automotive_cosim.cockpit.apps.trip.state import FROM_HERE, TripMeter, TripMeters
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.cockpit.state import State
@@ -46,7 +46,7 @@ def bring(state: State, brought: Belongings) -> None:
         UnknownNameError: there is no place of a name.
     """
     people = _with_people(state.of(Directory), brought)
-    memos, trip = state.of(Memos), state.of(Trip)
+    memos, trip = state.of(Memos), state.of(TripMeters)
     state.keep(
         _with_details(state.of(Gazetteer), brought.details),
         people,

@@ -7,7 +7,7 @@ from functools import cache
 from importlib import import_module
 from importlib.resources import files
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 
 _PACKAGE = "automotive_cosim.cockpit.apps"
 
@@ -41,7 +41,7 @@ def apps_in(where: Where) -> tuple[App, ...]:
 
 
 @cache
-def pages() -> Mapping[str, Page]:
+def pages() -> Mapping[str, AppPage]:
     """Every screen by its name."""
     return {name: page for app in apps().values() for name, page in app.pages.items()}
 

@@ -40,6 +40,7 @@ CASES = {
     "default_limits": Smallest(("limits.json",)),
     "drives": Smallest(("--minutes", "0")),
     "eta": Smallest(("grid", "--seeds", "1", "--at", "5", "--step", "1")),
+    "faults": Smallest(("--parts", "resets", "--resets", "1")),
     "futures": Smallest(
         (
             "--scenario",
@@ -64,6 +65,7 @@ CASES = {
     "ppo_flat": Smallest(("--steps", "64", "--rounds", "1"), needs=("torch", "stable_baselines3")),
     "studies": Smallest(("--studies", "2")),
     "towns": Smallest(("4",)),
+    "watch_tables": Smallest(("--help",)),
 }
 
 

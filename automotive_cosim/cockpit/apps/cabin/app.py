@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page
+from automotive_cosim.cockpit.app import App, AppPage
 from automotive_cosim.cockpit.apps.cabin.screens import cabin
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts.text import say
@@ -12,5 +12,5 @@ APP = App(
     title=say("Cabin"),
     icon=Icon.CONTACTS,
     order=17,
-    pages={"cabin": Page(cabin)},
+    pages={"cabin": AppPage(cabin)},
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.charging.screens import charging
 from automotive_cosim.cockpit.apps.charging.state import ChargingSchedule
 from automotive_cosim.cockpit.theme import Icon
@@ -15,6 +15,6 @@ APP = App(
     order=11,
     where=Where.STORE,
     about=say("Charge limit, times and stations nearby"),
-    pages={"charging": Page(charging)},
+    pages={"charging": AppPage(charging)},
     starts=lambda state, rng: (ChargingSchedule(),),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.home.screens import home
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.theme import Icon
@@ -15,5 +15,5 @@ APP = App(
     icon=Icon.HOME,
     order=1,
     where=Where.DOCK,
-    pages={"home": Page(home, Room.WHOLE)},
+    pages={"home": AppPage(home, Room.WHOLE)},
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.launcher.screens import launcher
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.theme import Icon
@@ -14,5 +14,5 @@ APP = App(
     icon=Icon.APPS,
     order=9,
     where=Where.DOCK,
-    pages={"apps": Page(launcher, Room.ONE)},
+    pages={"apps": AppPage(launcher, Room.ONE)},
 )

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.manual.screens import manual
-from automotive_cosim.cockpit.apps.manual.state import Film
+from automotive_cosim.cockpit.apps.manual.state import ManualFilm
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts.text import say
 
@@ -15,7 +15,7 @@ APP = App(
     order=13,
     where=Where.STORE,
     about=say("The owner's handbook, to search in"),
-    pages={"manual": Page(manual)},
+    pages={"manual": AppPage(manual)},
     picked={"manual": "0"},
-    starts=lambda state, rng: (Film(),),
+    starts=lambda state, rng: (ManualFilm(),),
 )

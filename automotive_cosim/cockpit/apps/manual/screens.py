@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.apps.manual.state import FILM_S, TOPICS, Film
+from automotive_cosim.cockpit.apps.manual.state import FILM_S, TOPICS, ManualFilm
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
@@ -17,9 +17,9 @@ from automotive_cosim.contracts.text import say
 
 def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...]:
     """The topic's video: its picture, its progress while it plays, and the button."""
-    film, button = state.of(Film), rect.bottom_part(64).left(320)
+    film, button = state.of(ManualFilm), rect.bottom_part(64).left(320)
     if film.topic != topic:
-        start = Put(Film(topic, state.time_s), say("The video plays"))
+        start = Put(ManualFilm(topic, state.time_s), say("The video plays"))
         return (
             Button(
                 rect=button,
@@ -55,7 +55,7 @@ def _film(rect: Rect, topic: int, icon: Icon, state: State) -> tuple[Widget, ...
             key="manual.film",
             text=say("Stop the video"),
             icon=Icon.STOP,
-            on_tap=Put(Film(), say("The video is stopped")),
+            on_tap=Put(ManualFilm(), say("The video is stopped")),
         ),
     )
 

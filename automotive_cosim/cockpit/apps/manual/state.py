@@ -90,7 +90,7 @@ FILM_S = 40.0
 
 
 @dataclass(frozen=True, slots=True)
-class Film(AppData):
+class ManualFilm(AppData):
     """The topic whose video plays, and since when; None without."""
 
     topic: int | None = None
@@ -104,4 +104,4 @@ class Film(AppData):
         """The video ends at its end, or when the car leaves park."""
         over = Restriction.NO_VIDEO in state.restrictions or state.time_s - self.since_s >= FILM_S
         if self.topic is not None and over:
-            state.keep(Film())
+            state.keep(ManualFilm())

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.map.screens import map_screen
 from automotive_cosim.cockpit.apps.map.state import Navigation, Viewpoint
 from automotive_cosim.cockpit.apps.map.way import explore, place, route
@@ -30,10 +30,10 @@ APP = App(
     order=2,
     where=Where.DOCK,
     pages={
-        "map": Page(map_screen, Room.WHOLE),
-        "explore": Page(explore, Room.WHOLE),
-        "place": Page(place, Room.WHOLE),
-        "route": Page(route, Room.WHOLE),
+        "map": AppPage(map_screen, Room.WHOLE),
+        "explore": AppPage(explore, Room.WHOLE),
+        "place": AppPage(place, Room.WHOLE),
+        "route": AppPage(route, Room.WHOLE),
     },
     aliases={"maps": "", "navigation": ""},
     picked={"map.list": "saved", "explore": "all", "route": "turns"},

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.memo.screens import memo, memo_note
 from automotive_cosim.cockpit.apps.memo.state import Memos
 from automotive_cosim.cockpit.size import Room
@@ -16,7 +16,7 @@ APP = App(
     order=14,
     where=Where.STORE,
     about=say("Spoken notes"),
-    pages={"memo": Page(memo), "note": Page(memo_note, Room.ONE)},
+    pages={"memo": AppPage(memo), "note": AppPage(memo_note, Room.ONE)},
     aliases={"memos": ""},
     starts=lambda state, rng: (Memos(),),
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.notifications.screens import notifications
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.theme import Icon
@@ -14,5 +14,5 @@ APP = App(
     icon=Icon.BELL,
     order=19,
     where=Where.STATUS,
-    pages={"notifications": Page(notifications, Room.ONE)},
+    pages={"notifications": AppPage(notifications, Room.ONE)},
 )

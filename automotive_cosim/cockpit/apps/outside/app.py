@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.outside.screens import outside
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts.text import say
@@ -13,7 +13,7 @@ APP = App(
     icon=Icon.OUTSIDE,
     order=6,
     where=Where.DOCK,
-    pages={"outside": Page(outside)},
+    pages={"outside": AppPage(outside)},
     aliases={"weather": "", "phenomenon": ""},
     picked={"outside": "rain"},
 )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.parking.screens import parking
 from automotive_cosim.cockpit.apps.parking.state import Parking
 from automotive_cosim.cockpit.theme import Icon
@@ -15,6 +15,6 @@ APP = App(
     order=12,
     where=Where.STORE,
     about=say("Pay for a parking space from the car"),
-    pages={"parking": Page(parking)},
+    pages={"parking": AppPage(parking)},
     starts=lambda state, rng: (Parking(),),
 )

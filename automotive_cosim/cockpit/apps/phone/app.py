@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.phone.figure import figure
 from automotive_cosim.cockpit.apps.phone.person import contact, thread
 from automotive_cosim.cockpit.apps.phone.screens import phone
@@ -29,7 +29,12 @@ APP = App(
     icon=Icon.PHONE,
     order=8,
     where=Where.DOCK,
-    pages={"phone": Page(phone), "contact": Page(contact), "thread": Page(thread), "figure": Page(figure)},
+    pages={
+        "phone": AppPage(phone),
+        "contact": AppPage(contact),
+        "thread": AppPage(thread),
+        "figure": AppPage(figure),
+    },
     aliases={"comms": "", "messages": "messages"},
     picked={"phone": "favourites"},
     starts=starts,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.safety.screens import emergency, safety
 from automotive_cosim.cockpit.apps.safety.state import AlertDraft, Alerts
 from automotive_cosim.cockpit.size import Room
@@ -16,7 +16,7 @@ APP = App(
     icon=Icon.SAFETY,
     order=4,
     where=Where.DOCK,
-    pages={"safety": Page(safety), "emergency": Page(emergency, Room.ONE)},
+    pages={"safety": AppPage(safety), "emergency": AppPage(emergency, Room.ONE)},
     aliases={"safety centre": ""},
     starts=lambda state, rng: (AlertDraft(), Alerts()),
 )

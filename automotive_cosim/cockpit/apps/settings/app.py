@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.settings.screens import (
     connections,
     language,
@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.apps.settings.screens import (
     sound,
 )
 from automotive_cosim.cockpit.apps.settings.state import Connections, profiles
-from automotive_cosim.cockpit.apps.vehicle.state import Car
+from automotive_cosim.cockpit.apps.vehicle.state import CarMemory
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts.text import say, say_in
 
@@ -24,14 +24,14 @@ APP = App(
     order=10,
     where=Where.DOCK,
     pages={
-        "settings": Page(settings),
-        "sound": Page(sound),
-        "connections": Page(connections),
-        "language": Page(language),
-        "privacy": Page(privacy),
-        "profiles": Page(profile_list),
+        "settings": AppPage(settings),
+        "sound": AppPage(sound),
+        "connections": AppPage(connections),
+        "language": AppPage(language),
+        "privacy": AppPage(privacy),
+        "profiles": AppPage(profile_list),
     },
     aliases={"system": ""},
-    starts=lambda state, rng: (Connections(), profiles(state.of(Car))),
+    starts=lambda state, rng: (Connections(), profiles(state.of(CarMemory))),
     turn=6,
 )

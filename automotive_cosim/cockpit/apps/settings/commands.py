@@ -12,7 +12,7 @@ from automotive_cosim.contracts.text import say
 
 
 @dataclass(frozen=True, slots=True)
-class Drive(Command):
+class SwitchProfile(Command):
     """Switch to a driver's profile."""
 
     profile: str

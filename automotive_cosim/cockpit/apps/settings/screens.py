@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.settings.commands import Drive
+from automotive_cosim.cockpit.apps.settings.commands import SwitchProfile
 from automotive_cosim.cockpit.apps.settings.state import NETWORKS, PHONES, TABLET, Connections, Profiles
 from automotive_cosim.cockpit.commands import Put, Set, SetAll
 from automotive_cosim.cockpit.geometry import Rect
@@ -432,7 +432,7 @@ def profile_list(state: State) -> tuple[Widget, ...]:
                         icon=Icon.ACCOUNT,
                         selected=profile.name == now.driver,
                         locked=locked,
-                        on_tap=Drive(profile.name),
+                        on_tap=SwitchProfile(profile.name),
                     )
                     for at, (line, profile) in enumerate(zip(lines, now.known, strict=True))
                 ),

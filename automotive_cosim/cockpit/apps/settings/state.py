@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, Car
+from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, CarMemory
 from automotive_cosim.cockpit.signals import HMI, HVAC, LINK, Signal
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.contracts.text import say
@@ -62,7 +62,7 @@ def wifi(state: State) -> str:
     return state.of(Connections).network if state.signals[LINK.WIFI] else ""
 
 
-def profiles(car: Car) -> Profiles:
+def profiles(car: CarMemory) -> Profiles:
     """A profile for each seat that the car remembers."""
     return Profiles(tuple(_profile(name, seat) for name, seat in zip(PROFILES, car.memory, strict=True)))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.store.screens import store
 from automotive_cosim.cockpit.apps.store.state import Installed
 from automotive_cosim.cockpit.registry import apps_in
@@ -15,6 +15,6 @@ APP = App(
     title=say("Store"),
     icon=Icon.STORE,
     order=18,
-    pages={"store": Page(store, Room.ONE)},
+    pages={"store": AppPage(store, Room.ONE)},
     starts=lambda state, rng: (Installed(tuple(app.name for app in apps_in(Where.STORE) if app.preinstalled)),),
 )

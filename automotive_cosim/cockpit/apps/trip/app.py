@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.trip.screens import trip, trip_b
-from automotive_cosim.cockpit.apps.trip.state import Trip
+from automotive_cosim.cockpit.apps.trip.state import TripMeters
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts.text import say
@@ -16,6 +16,6 @@ APP = App(
     order=15,
     where=Where.STORE,
     about=say("Distance, time and consumption"),
-    pages={"trip": Page(trip, Room.ONE), "trip_b": Page(trip_b, Room.ONE)},
-    starts=lambda state, rng: (Trip(),),
+    pages={"trip": AppPage(trip, Room.ONE), "trip_b": AppPage(trip_b, Room.ONE)},
+    starts=lambda state, rng: (TripMeters(),),
 )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal
 
-from automotive_cosim.cockpit.apps.trip.state import Trip, TripMeter, odometer
+from automotive_cosim.cockpit.apps.trip.state import TripMeter, TripMeters, odometer
 from automotive_cosim.cockpit.state import Command, State
 from automotive_cosim.contracts import Feedback, FeedbackCode
 from automotive_cosim.contracts.text import say
@@ -23,7 +23,7 @@ class ResetTrip(Command):
 
     def perform(self, state: State) -> Feedback:
         """The meter at zero."""
-        trip, here = state.of(Trip), odometer(state)
+        trip, here = state.of(TripMeters), odometer(state)
         if self.meter == "a":
             state.keep(replace(trip, resets=trip.resets + 1, since=here))
             return Feedback(FeedbackCode.OK, say("the trip computer is reset"))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.apps.trip.commands import ResetTrip
-from automotive_cosim.cockpit.apps.trip.state import Trip, odometer
+from automotive_cosim.cockpit.apps.trip.state import TripMeters, odometer
 from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Show
 from automotive_cosim.cockpit.parts import content, distance, fact, minutes, speed, speed_unit, title
@@ -21,7 +21,7 @@ def trip(state: State) -> tuple[Widget, ...]:
     head, _, body, _, acts = column(area.inset(32, 24), 40, 20, 312, REST, 72)
     reset, _, other = row(acts, 320, REST, 320)
     metres, seconds, level = odometer(state)
-    from_m, from_s, from_level = state.of(Trip).since
+    from_m, from_s, from_level = state.of(TripMeters).since
     driven_m, took_s, used_pct = max(0.0, metres - from_m), seconds - from_s, max(0.0, from_level - level)
     mean_kmh = 3.6 * driven_m / took_s if took_s > 0 else 0.0
     used_kwh = used_pct / 100 * BATTERY_KWH
@@ -68,7 +68,7 @@ def trip_b(state: State) -> tuple[Widget, ...]:
     """Distance, time and energy of trip B; the mean is left to the reader."""
     area = content(state)
     head, _, body, _, buttons = column(area.inset(32, 24), 40, 20, 3 * 64, REST, 72)
-    driven_m, took_s, used_kwh = state.of(Trip).b.at(odometer(state), BATTERY_KWH)
+    driven_m, took_s, used_kwh = state.of(TripMeters).b.at(odometer(state), BATTERY_KWH)
     facts = (
         ("trip_b.distance", say("Distance"), distance(state.signals, driven_m)),
         ("trip_b.time", say("Driving time"), minutes(took_s)),

@@ -42,7 +42,7 @@ FROM_HERE = TripMeter()
 
 
 @dataclass(frozen=True, slots=True)
-class Trip(AppData):
+class TripMeters(AppData):
     """Trip A counts from its reset, trip B keeps counting when A is reset."""
 
     resets: int = 0

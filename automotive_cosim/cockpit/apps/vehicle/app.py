@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import App, Page, Where
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.vehicle.body import doors, driving, interior, mirrors, seats
 from automotive_cosim.cockpit.apps.vehicle.screens import assistance, vehicle
 from automotive_cosim.cockpit.apps.vehicle.state import car
@@ -17,13 +17,13 @@ APP = App(
     order=5,
     where=Where.DOCK,
     pages={
-        "vehicle": Page(vehicle),
-        "assistance": Page(assistance),
-        "driving": Page(driving),
-        "doors": Page(doors),
-        "seats": Page(seats),
-        "mirrors": Page(mirrors),
-        "interior": Page(interior),
+        "vehicle": AppPage(vehicle),
+        "assistance": AppPage(assistance),
+        "driving": AppPage(driving),
+        "doors": AppPage(doors),
+        "seats": AppPage(seats),
+        "mirrors": AppPage(mirrors),
+        "interior": AppPage(interior),
     },
     aliases={"road": ""},
     picked={"seats": "driver"},

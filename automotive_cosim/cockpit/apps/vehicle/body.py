@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.apps.vehicle.commands import Honk
 from automotive_cosim.cockpit.apps.vehicle.screens import car_card, right_side, tabs
-from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, Car
+from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, CarMemory
 from automotive_cosim.cockpit.camera import scene
 from automotive_cosim.cockpit.commands import Put, Set, SetAll
 from automotive_cosim.cockpit.geometry import Rect
@@ -340,10 +340,10 @@ def _memory(rect: Rect, state: State) -> Widget:
     children: list[Widget] = [heading(inner.top(30), say("Driver's memory"))]
     for slot, line in enumerate(lines):
         recall: Message = SetAll(
-            tuple(zip(REMEMBERED, state.of(Car).memory[slot], strict=True)),
+            tuple(zip(REMEMBERED, state.of(CarMemory).memory[slot], strict=True)),
             say("seat and mirrors are set as in {position}", position=slot + 1),
         )
-        same = state.of(Car).memory[slot] == now
+        same = state.of(CarMemory).memory[slot] == now
         children += [
             Choice(
                 rect=line.left(line.width - 84),
@@ -361,7 +361,7 @@ def _memory(rect: Rect, state: State) -> Widget:
                 description=say("Store the seat as position {position}", position=slot + 1),
                 icon=Icon.SAVE,
                 on_tap=Put(
-                    state.of(Car).with_memory(slot, state.signals),
+                    state.of(CarMemory).with_memory(slot, state.signals),
                     say("Position {position} is stored", position=slot + 1),
                 ),
                 disabled=say("The seat is already in this position") if same else "",

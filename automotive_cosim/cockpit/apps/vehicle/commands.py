@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from automotive_cosim.cockpit.apps.vehicle.state import Car
+from automotive_cosim.cockpit.apps.vehicle.state import CarMemory
 from automotive_cosim.cockpit.signals import BODY, DRIVE
 from automotive_cosim.cockpit.state import Command, State
 from automotive_cosim.cockpit.theme import Icon
@@ -25,7 +25,7 @@ class Honk(Command):
 
     def perform(self, state: State) -> Feedback:
         """The sound, until the next second."""
-        car = state.of(Car)
+        car = state.of(CarMemory)
         state.keep(replace(car, horns=car.horns + 1))
         state.signals[DRIVE.HORN] = True
         return Feedback(FeedbackCode.OK, say("the horn sounds"))
@@ -41,7 +41,7 @@ class Wash(Command):
 
     def perform(self, state: State) -> Feedback:
         """The wash, if there is fluid."""
-        left, car = state.signals[BODY.WASHER_FLUID], state.of(Car)
+        left, car = state.signals[BODY.WASHER_FLUID], state.of(CarMemory)
         if left < WASH_PCT:
             return state.refused(say("The washer's tank is empty"))
         state.signals[BODY.WASHER_FLUID] = left - WASH_PCT

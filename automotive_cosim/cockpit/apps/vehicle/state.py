@@ -26,7 +26,7 @@ REMEMBERED: tuple[Signal[float], ...] = (
 
 
 @dataclass(frozen=True, slots=True)
-class Car(AppData):
+class CarMemory(AppData):
     """Seat memories, and what cannot be taken back."""
 
     memory: tuple[tuple[float, ...], ...]
@@ -34,7 +34,7 @@ class Car(AppData):
     horns: int = 0
     washes: int = 0
 
-    def with_memory(self, slot: int, signals: Signals) -> Car:
+    def with_memory(self, slot: int, signals: Signals) -> CarMemory:
         """With the present seat position stored in a memory slot."""
         values = tuple(signals[signal] for signal in REMEMBERED)
         return replace(self, memory=(*self.memory[:slot], values, *self.memory[slot + 1 :]))
@@ -48,9 +48,9 @@ class Car(AppData):
         }
 
 
-def car(rng: np.random.Generator) -> Car:
+def car(rng: np.random.Generator) -> CarMemory:
     """Draws the seat positions stored earlier."""
-    return Car(tuple(_seat(rng) for _ in range(SLOTS)))
+    return CarMemory(tuple(_seat(rng) for _ in range(SLOTS)))
 
 
 def _seat(rng: np.random.Generator) -> tuple[float, ...]:
