@@ -23,7 +23,7 @@ NOT_MEASURED = "not measured since the situation last changed"
 
 app = typer.Typer(help="List, show and export tasks.", no_args_is_help=True)
 
-Words = Annotated[
+TaskNames = Annotated[
     str,
     typer.Option(
         "--tasks",
@@ -34,7 +34,7 @@ Words = Annotated[
 
 @app.command("list")
 def list_(
-    tasks: Words = "all",
+    tasks: TaskNames = "all",
     suite: SuiteName = "standard",
     subset: Annotated[
         str | None,
@@ -65,7 +65,7 @@ def list_(
 @app.command()
 def export(
     path: Annotated[Path, typer.Argument(help="A .json or .csv file.", show_default=False)],
-    tasks: Words = "all",
+    tasks: TaskNames = "all",
     suite: SuiteName = "standard",
     tasks_from: TasksFrom = None,
 ) -> None:

@@ -71,12 +71,12 @@ TYRES = {
 
 Drive = Sequence[Moment]
 """The moments of a drive so far, one per second."""
-Change = Callable[[Drive], Hashable]
+WakeReader = Callable[[Drive], Hashable]
 """What wakes when it changes to something other than None."""
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class Nearness:
     """How near something is, in steps that only go up while it is there: it wakes at each new one."""
 
     what: Hashable
@@ -92,7 +92,7 @@ class Wake:
     name: str
     about: str
     """When it wakes."""
-    reads: Change
+    reads: WakeReader
     words: Callable[[Drive], str]
     """Quantity, limit and trend; empty while there is nothing to read."""
     hold_s: float = 0.0
@@ -230,7 +230,7 @@ def _next_limit(drive: Drive) -> Hashable:
         return None
     mps, right_mps = now.driving.speed_mps, (limit.kmh + margin_kmh(limit.kmh)) / KMH_PER_MPS
     coasting_m = max(0.0, (mps**2 - right_mps**2) / (2 * COASTING_MPS2)) + mps * REACTION_S
-    return Step(limit.kmh, _steps(away_m, coasting_m, now))
+    return Nearness(limit.kmh, _steps(away_m, coasting_m, now))
 
 
 def _next_limit_words(drive: Drive) -> str:
@@ -248,7 +248,7 @@ def _ahead(name: str, away_m: Callable[[Moment], float | None], about: str) -> W
         far_m = away_m(drive[-1])
         if far_m is None or far_m <= 0:
             return None
-        return Step(name, _steps(far_m, DUE_S[name] * drive[-1].driving.speed_mps, drive[-1]))
+        return Nearness(name, _steps(far_m, DUE_S[name] * drive[-1].driving.speed_mps, drive[-1]))
 
     def words(drive: Drive) -> str:
         far_m = away_m(drive[-1])
@@ -399,7 +399,7 @@ def _place_words(drive: Drive) -> str:
     return f"{now.context.country}, signs in {now.context.speed_unit}, the car shows {shown}"
 
 
-def _of(read: Callable[[Moment], Hashable]) -> Change:
+def _of(read: Callable[[Moment], Hashable]) -> WakeReader:
     return lambda drive: read(drive[-1])
 
 
@@ -595,13 +595,13 @@ class Alarm:
                 told.differs_since_s = now_s
             if now_s - told.differs_since_s >= wake.hold_s:
                 told.reading, told.differs_since_s = reading, None
-                if not isinstance(reading, Step) or reading.number:
+                if not isinstance(reading, Nearness) or reading.number:
                     found.append(Noticed(wake.name, wakes=reading is not None))
         return tuple(found)
 
 
 def _risen(reading: Hashable, told: Hashable) -> Hashable:
     """A reading; the step of what was told before if it is no nearer, as in a queue."""
-    if isinstance(reading, Step) and isinstance(told, Step) and reading.what == told.what:
+    if isinstance(reading, Nearness) and isinstance(told, Nearness) and reading.what == told.what:
         return told if reading.number <= told.number else reading
     return reading

@@ -81,7 +81,7 @@ COUNTRY_ROAD = Situation(
 
 
 @dataclass(frozen=True, slots=True)
-class Condition:
+class RuleCondition:
     """One word of the ``when`` language.
 
     ``takes`` is the type of the word's value, the argument of ``holds``; ``expects`` describes it in words.
@@ -235,31 +235,31 @@ def _within(distance_m: float | None, metres: float) -> bool:
     return distance_m is not None and distance_m <= metres
 
 
-CONDITIONS: dict[str, Condition] = {
-    "built_up": Condition("true or false", bool, _same("built_up"), fixed=True),
-    "motorway": Condition("true or false", bool, _same("motorway"), fixed=True),
-    "dual_carriageway": Condition("true or false", bool, _same("dual_carriageway"), fixed=True),
-    "expressway": Condition("true or false", bool, _same("expressway"), fixed=True),
-    "centre_line": Condition("true or false", bool, _same("centre_line"), fixed=True),
-    "lanes_at_least": Condition("a number", float, lambda now, lanes: now.lanes >= lanes, fixed=True),
-    "lanes_at_most": Condition("a number", float, lambda now, lanes: now.lanes <= lanes, fixed=True),
-    "road_classes": Condition("a list of OSM highway values", _TEXTS, _on_class, fixed=True),
-    "streets": Condition("a list of street names, * for any text", _STREETS, _on_street, fixed=True),
-    "inside": Condition("a list of [lon, lat] corners", AreaPolygon, _inside, fixed=True),
-    "season": Condition('["MM-DD", "MM-DD"], both included', tuple[_DAY, _DAY], _in_season, fixed=True),
-    "since": Condition("a date", date, lambda now, day: now.local_time.date() >= day, fixed=True),
-    "weekdays": Condition(
+CONDITIONS: dict[str, RuleCondition] = {
+    "built_up": RuleCondition("true or false", bool, _same("built_up"), fixed=True),
+    "motorway": RuleCondition("true or false", bool, _same("motorway"), fixed=True),
+    "dual_carriageway": RuleCondition("true or false", bool, _same("dual_carriageway"), fixed=True),
+    "expressway": RuleCondition("true or false", bool, _same("expressway"), fixed=True),
+    "centre_line": RuleCondition("true or false", bool, _same("centre_line"), fixed=True),
+    "lanes_at_least": RuleCondition("a number", float, lambda now, lanes: now.lanes >= lanes, fixed=True),
+    "lanes_at_most": RuleCondition("a number", float, lambda now, lanes: now.lanes <= lanes, fixed=True),
+    "road_classes": RuleCondition("a list of OSM highway values", _TEXTS, _on_class, fixed=True),
+    "streets": RuleCondition("a list of street names, * for any text", _STREETS, _on_street, fixed=True),
+    "inside": RuleCondition("a list of [lon, lat] corners", AreaPolygon, _inside, fixed=True),
+    "season": RuleCondition('["MM-DD", "MM-DD"], both included', tuple[_DAY, _DAY], _in_season, fixed=True),
+    "since": RuleCondition("a date", date, lambda now, day: now.local_time.date() >= day, fixed=True),
+    "weekdays": RuleCondition(
         "a list of 1 (Monday) to 7", _WEEKDAYS, lambda now, days: now.local_time.isoweekday() in days
     ),
-    "hours": Condition('["HH:MM", "HH:MM"], the last excluded', tuple[_HOUR, _HOUR], _in_hours),
-    "lit": Condition("true or false", bool, _same("lit")),
-    "tunnel": Condition("true or false", bool, _same("tunnel")),
-    "after_sunset": Condition("true or false", bool, _same("after_sunset")),
-    "standing": Condition("true or false", bool, _same("standing")),
-    "weather": Condition(f"a list of {', '.join(sorted(PHENOMENA))}", _PHENOMENA, _in_weather),
-    "visibility_below_m": Condition("a number of metres", float, _sees_less),
-    "speed_above_kmh": Condition("a number of km/h", float, lambda now, kmh: now.speed_kmh > kmh),
-    "oncoming_within_m": Condition("a number of metres", float, lambda now, m: _within(now.oncoming_m, m)),
-    "leader_within_m": Condition("a number of metres", float, lambda now, m: _within(now.leader_m, m)),
+    "hours": RuleCondition('["HH:MM", "HH:MM"], the last excluded', tuple[_HOUR, _HOUR], _in_hours),
+    "lit": RuleCondition("true or false", bool, _same("lit")),
+    "tunnel": RuleCondition("true or false", bool, _same("tunnel")),
+    "after_sunset": RuleCondition("true or false", bool, _same("after_sunset")),
+    "standing": RuleCondition("true or false", bool, _same("standing")),
+    "weather": RuleCondition(f"a list of {', '.join(sorted(PHENOMENA))}", _PHENOMENA, _in_weather),
+    "visibility_below_m": RuleCondition("a number of metres", float, _sees_less),
+    "speed_above_kmh": RuleCondition("a number of km/h", float, lambda now, kmh: now.speed_kmh > kmh),
+    "oncoming_within_m": RuleCondition("a number of metres", float, lambda now, m: _within(now.oncoming_m, m)),
+    "leader_within_m": RuleCondition("a number of metres", float, lambda now, m: _within(now.leader_m, m)),
 }
 """Every word that a ``when`` table may have."""

@@ -53,7 +53,7 @@ class Journey:
 
 
 @dataclass(frozen=True, slots=True)
-class Route:
+class DrawnRoute:
     """The fastest route of a trip on empty roads."""
 
     way: tuple[Edge, ...]
@@ -70,7 +70,7 @@ class Demand:
 
     journeys: tuple[Journey, ...]
     """In order of departure."""
-    routes: tuple[Route, ...]
+    routes: tuple[DrawnRoute, ...]
     """Those of a sample of such trips."""
 
 
@@ -99,7 +99,7 @@ def draw(
     """
     ends = _Ends(built)
     sample = [(built.edges[start], built.edges[goal]) for start, goal in ends.pairs(SAMPLES, rng).tolist()]
-    routes = tuple(Route(way) for way in fastest_ways(sample, built.network, net_file, scratch) if way)
+    routes = tuple(DrawnRoute(way) for way in fastest_ways(sample, built.network, net_file, scratch) if way)
     if not routes:
         raise ImportMapError("no two roads of this map are connected; give a larger extract")
     travel_time_s = float(np.mean([sum(edge.length_m / edge.speed_mps for edge in route.way) for route in routes]))

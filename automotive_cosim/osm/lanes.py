@@ -25,7 +25,7 @@ SIDES = {"forward": "right", "backward": "left"}
 
 
 @dataclass(frozen=True, slots=True)
-class Lanes:
+class LaneCounts:
     """The lanes of a road; None where its tags do not tell the number."""
 
     forward: int | None = None
@@ -39,7 +39,7 @@ class Lanes:
         return self.backward if edge_id.startswith("-") else self.forward
 
 
-def lanes_of(tags: Mapping[str, str], may: Directions, *, left_hand: bool = False) -> Lanes:
+def lanes_of(tags: Mapping[str, str], may: Directions, *, left_hand: bool = False) -> LaneCounts:
     """The lanes that the tags of a way give to each direction in which cars may drive."""
     total, forward, backward = (_count(tags, key) for key in ("lanes", "lanes:forward", "lanes:backward"))
     both = _count(tags, "lanes:both_ways") or 0
@@ -67,7 +67,7 @@ def lanes_of(tags: Mapping[str, str], may: Directions, *, left_hand: bool = Fals
             count = max(1, (total or 0) // 2) if halves else USUAL.get(tags.get("highway", ""), 1) + taken
         counts.append(count)
         buses.append(min(taken, (count or 1) - 1))
-    return Lanes(counts[0], counts[1], buses[0], buses[1])
+    return LaneCounts(counts[0], counts[1], buses[0], buses[1])
 
 
 def for_netconvert(tags: Mapping[str, str], may: Directions, *, left_hand: bool = False) -> dict[str, str]:

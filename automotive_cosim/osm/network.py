@@ -18,7 +18,7 @@ from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, Position
 from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
-from automotive_cosim.osm.turns import Turns, read_turns
+from automotive_cosim.osm.turns import BannedTurns, read_turns
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
@@ -62,7 +62,7 @@ class Built:
     roundabouts: int
     cut: Cut
     """The roads, and the barriers at which they were cut."""
-    turns: Turns
+    turns: BannedTurns
     """The turn restrictions, as read for cars."""
     opened: tuple[str, ...] = ()
     """Edges with a lane that was opened to cars, so that none is trapped beside it."""
@@ -162,7 +162,9 @@ def _id_of(piece: Piece) -> str:
     return id_of(piece.way.way_id, piece.part)
 
 
-def write_osm(extract: Extract, barred: Cut, turns: Turns, roads: Mapping[int, MappedRoad], target: Path) -> None:
+def write_osm(
+    extract: Extract, barred: Cut, turns: BannedTurns, roads: Mapping[int, MappedRoad], target: Path
+) -> None:
     """Writes the roads as OSM XML for netconvert (``MappedRoad.for_netconvert``), numbered from
     ``FIRST_NUMBER``."""
     osmium = import_module("osmium")

@@ -9,7 +9,7 @@ from itertools import chain, count
 
 import numpy as np
 
-from automotive_cosim.osm.demand import Route
+from automotive_cosim.osm.demand import DrawnRoute
 from automotive_cosim.scenarios import Trip
 
 TRIPS = 4
@@ -20,7 +20,7 @@ MIN_END_M = 20.0
 """Preferred minimum length of a trip's first and last edge: room to start and to stop."""
 
 
-def pick(routes: Sequence[Route], rng: np.random.Generator) -> tuple[Trip, ...]:
+def pick(routes: Sequence[DrawnRoute], rng: np.random.Generator) -> tuple[Trip, ...]:
     """Up to four long routes that share as few roads as possible, one of them through a tunnel if possible."""
     roomy = [route for route in routes if min(route.way[end].length_m for end in (0, -1)) >= MIN_END_M]
     by_length = sorted(roomy or routes, key=lambda route: -route.length_m)
@@ -38,7 +38,7 @@ def pick(routes: Sequence[Route], rng: np.random.Generator) -> tuple[Trip, ...]:
     return tuple(trips)
 
 
-def _shared(route: Route, used: set[str]) -> float:
+def _shared(route: DrawnRoute, used: set[str]) -> float:
     return sum(edge.length_m for edge in route.way if edge.edge_id in used) / route.length_m
 
 
@@ -47,7 +47,7 @@ def slug(text: str) -> str:
     return re.sub(r"[\W_]+", "-", unicodedata.normalize("NFKC", text).lower()).strip("-")
 
 
-def _trip(route: Route, taken: Sequence[str]) -> Trip:
+def _trip(route: DrawnRoute, taken: Sequence[str]) -> Trip:
     names = [edge.name for edge in route.way if edge.name] or ["unnamed road"]
     ends = slug(names[0]) or "start", slug(names[-1]) or "goal"
     plain = f"along-{ends[0]}" if ends[0] == ends[1] else "-to-".join(ends)

@@ -39,7 +39,7 @@ class Ban(NamedTuple):
 
 
 @dataclass(slots=True)
-class Turns:
+class BannedTurns:
     """What the restrictions of a map say for cars."""
 
     bans: dict[Ban, int] = field(default_factory=dict)
@@ -72,7 +72,7 @@ def is_at_times(tags: Mapping[str, str]) -> bool:
     return kind == "restriction" and (not whom or whom in CARS) and any(key in tags for key in keys)
 
 
-class Network:
+class RoadGraph:
     """The pieces of roads that meet at each node, and the directions open on them."""
 
     def __init__(self, pieces: Sequence[Piece], may: Sequence[Directions]) -> None:
@@ -117,7 +117,7 @@ class Network:
 
 def read_turns(
     restrictions: Iterable[TurnRestriction], pieces: Sequence[Piece], may: Sequence[Directions]
-) -> Turns:
+) -> BannedTurns:
     """The bans for cars that the restrictions of a map state.
 
     Args:
@@ -125,7 +125,7 @@ def read_turns(
         pieces: the roads, cut at barriers.
         may: the directions open on each.
     """
-    network, turns = Network(pieces, may), Turns()
+    network, turns = RoadGraph(pieces, may), BannedTurns()
     for relation in restrictions:
         if is_at_times(relation.tags):
             turns.at_times.append(relation.relation_id)
@@ -143,7 +143,7 @@ def read_turns(
     return turns
 
 
-def _add(relation: TurnRestriction, is_only: bool, network: Network, turns: Turns) -> None:
+def _add(relation: TurnRestriction, is_only: bool, network: RoadGraph, turns: BannedTurns) -> None:
     """Adds the bans of one relation; one with a member that is no road for cars bars nothing more."""
     froms, tos = (
         [ref for kind, ref, role in relation.members if (kind, role) == ("w", end)] for end in ("from", "to")
@@ -177,7 +177,7 @@ def _add(relation: TurnRestriction, is_only: bool, network: Network, turns: Turn
             (turns.only if alone else turns.bans).setdefault(ban, relation.relation_id)
 
 
-def _at_node(froms: Sequence[int], via: int, tos: Sequence[int], network: Network) -> list[Ban]:
+def _at_node(froms: Sequence[int], via: int, tos: Sequence[int], network: RoadGraph) -> list[Ban]:
     """The turns of a relation over a node."""
     starts, goals = (
         [piece for way in ways for piece in network.at(way, via) if network.is_clear(piece, via)]
@@ -186,7 +186,7 @@ def _at_node(froms: Sequence[int], via: int, tos: Sequence[int], network: Networ
     return [Ban(start, via, goal) for start, goal in product(starts, goals)]
 
 
-def _others(only: Sequence[Ban], network: Network) -> list[Ban]:
+def _others(only: Sequence[Ban], network: RoadGraph) -> list[Ban]:
     """Every turn beside those that are the only ones allowed."""
     allowed = set(only)
     return [
@@ -198,7 +198,7 @@ def _others(only: Sequence[Ban], network: Network) -> list[Ban]:
 
 
 def _over_ways(
-    froms: Sequence[int], vias: Sequence[int], tos: Sequence[int], network: Network
+    froms: Sequence[int], vias: Sequence[int], tos: Sequence[int], network: RoadGraph
 ) -> tuple[list[Ban], list[Ban]] | None:
     """The turns onto a way over which a relation leads, and off it. What it bars is the latter, if cars come onto
     that way from its ``from`` alone; None if they do not, because SUMO knows no turn over several junctions."""

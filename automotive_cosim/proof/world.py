@@ -32,13 +32,18 @@ COLD_C, COLDER_THAN_OUTSIDE_C = 18.0, 5.0
 
 
 def implausible(moment: Moment) -> Iterator[str]:
+    """What is out of this world at a moment, in words: its weather, how it is driven in, what the car shows."""
+    yield from out_of_season(moment)
+    yield from _driven(moment)
+
+
+def out_of_season(moment: Moment) -> Iterator[str]:
     """What the weather of a moment contradicts, in words: itself, or the climate of its place, month and hour.
 
     A place without a station within 250 km is only held against itself.
     """
     weather, driving = moment.weather, moment.driving
     yield from _contradictions(weather)
-    yield from _driven(moment)
     if driving.lon_deg is None or driving.lat_deg is None:
         return
     norm = climate_norm(driving.lon_deg, driving.lat_deg, moment.local_time.month, STATION_WITHIN_KM)

@@ -15,7 +15,7 @@ from automotive_cosim.run.store import opened
 from automotive_cosim.studies.drive import planned, run_drive
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.live import LIVE, WATCHED
-from automotive_cosim.studies.plan import DriveJob, StudyPlan
+from automotive_cosim.studies.plan import StudyJob, StudyPlan
 from automotive_cosim.studies.policies import PolicyRule
 from automotive_cosim.studies.results import choices
 from automotive_cosim.studies.rows import DriveRow
@@ -83,7 +83,7 @@ def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
 
 
 @contextmanager
-def drives() -> Iterator[Runner[DriveJob, DriveRow]]:
+def drives() -> Iterator[Runner[StudyJob, DriveRow]]:
     """Makes the runner of the drives in a worker."""
     warm = _Warm()
     try:
@@ -92,7 +92,7 @@ def drives() -> Iterator[Runner[DriveJob, DriveRow]]:
         warm.close()
 
 
-def failed(job: DriveJob, kind: str, why: str) -> DriveRow:
+def failed(job: StudyJob, kind: str, why: str) -> DriveRow:
     """The row of a drive that ended in an infrastructure error."""
     return replace(planned(job), error=why, error_kind=kind)
 
@@ -106,7 +106,7 @@ class _Warm:
         self._now_s = 0.0
         self._pulses: list[Pulse] = []
 
-    def run(self, job: DriveJob, folder: Path) -> DriveRow:
+    def run(self, job: StudyJob, folder: Path) -> DriveRow:
         """Runs a drive; an error becomes a row too. Tracks, if wanted, and what is watched are also kept."""
         try:
             return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None, folder)
@@ -124,7 +124,7 @@ class _Warm:
             self._simulation.close()
         self._simulation = self._key = None
 
-    def _at(self, job: DriveJob) -> tuple[Forked, Sequence[Pulse]]:
+    def _at(self, job: StudyJob) -> tuple[Forked, Sequence[Pulse]]:
         """The traffic at the departure, and its measurements so far."""
         if self._simulation is None or self._key != job.simulation or job.departure_s < self._now_s:
             self.close()

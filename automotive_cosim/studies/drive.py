@@ -24,7 +24,7 @@ from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.futures import Futures, close_all, ended
 from automotive_cosim.studies.live import LiveDrive
 from automotive_cosim.studies.looks import drive_on
-from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.plan import StudyJob
 from automotive_cosim.studies.points import Diverted, Point, Shut, compared
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Decision, DriveRow, News
@@ -45,7 +45,7 @@ AT_ONCE = os.cpu_count() or 1
 """Decisions whose branches may run while the drive continues; each takes some 50 MB per branch."""
 
 
-def planned(job: DriveJob) -> DriveRow:
+def planned(job: StudyJob) -> DriveRow:
     """What is known about a drive before it runs."""
     return DriveRow(
         id=job.id,
@@ -58,7 +58,7 @@ def planned(job: DriveJob) -> DriveRow:
 
 
 def run_drive(
-    job: DriveJob,
+    job: StudyJob,
     simulation: Forked,
     history: Sequence[Pulse],
     tracks: Path | None = None,
@@ -108,7 +108,7 @@ def run_drive(
     )
 
 
-def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
+def depart(job: StudyJob, simulation: Forked) -> RemoteTraffic:
     """Starts the ego in the scenario's weather, or the one drawn for its place and month."""
     scenario = job.plan.scene(job.share)
     seed = int(np.random.default_rng([*job.entropy, 0]).integers(2**31))
@@ -131,7 +131,7 @@ def depart(job: DriveJob, simulation: Forked) -> RemoteTraffic:
 class _Drive:
     """The drive on its own route, up to its last decision."""
 
-    def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked, live: LiveDrive) -> None:
+    def __init__(self, job: StudyJob, traffic: RemoteTraffic, simulation: Forked, live: LiveDrive) -> None:
         self.job = job
         self.traffic = traffic
         self._live = live

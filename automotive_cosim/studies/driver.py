@@ -14,14 +14,14 @@ from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.studies.plan import DriveJob, named
+from automotive_cosim.studies.plan import StudyJob, named
 from automotive_cosim.traffic.base import Traffic
 
 GOAL = "There's a lot of traffic ahead. Can we get there faster?"
 """What the driver says."""
 
 
-def decided(agent: str, job: DriveJob, traffic: Traffic) -> None:
+def decided(agent: str, job: StudyJob, traffic: Traffic) -> None:
     """Lets an agent act in a branch until it declares an end, has no actions left, or the ego arrives.
 
     The map takes some seconds to find other routes; meanwhile, and while the agent acts, the ego drives on.
@@ -44,7 +44,7 @@ def decided(agent: str, job: DriveJob, traffic: Traffic) -> None:
     play(Session.begin(world, GOAL, SessionSetup(player.channels, max_steps=job.plan.agent_steps), drive), player)
 
 
-def _coupled(job: DriveJob, traffic: Traffic) -> CoSimulation:
+def _coupled(job: StudyJob, traffic: Traffic) -> CoSimulation:
     """A cockpit that is switched on at this instant."""
     scenario = job.plan.scene(job.share)
     cockpit_rng, gps_rng = (np.random.default_rng([*job.entropy, number]) for number in (2, 3))

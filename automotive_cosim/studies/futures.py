@@ -8,7 +8,7 @@ from contextlib import ExitStack, closing
 import numpy as np
 
 from automotive_cosim.studies.compare import Future
-from automotive_cosim.studies.plan import AHEAD, DriveJob
+from automotive_cosim.studies.plan import AHEAD, StudyJob
 from automotive_cosim.studies.points import Diverted, Drawn, Shut, shows_signs
 from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
 from automotive_cosim.traffic.divert import Edges
@@ -18,7 +18,7 @@ from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 class Futures:
     """The possible futures of a drive at the current decision; nothing here changes the drive itself."""
 
-    def __init__(self, job: DriveJob, traffic: RemoteTraffic, simulation: Forked) -> None:
+    def __init__(self, job: StudyJob, traffic: RemoteTraffic, simulation: Forked) -> None:
         self._job = job
         self._traffic = traffic
         self._simulation = simulation

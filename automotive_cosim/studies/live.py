@@ -23,7 +23,7 @@ from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.data import choosers
 from automotive_cosim.studies.decisions import told
-from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.plan import StudyJob
 from automotive_cosim.studies.rows import Decision
 from automotive_cosim.traffic.fork import RemoteTraffic
 
@@ -37,7 +37,7 @@ KEEPS = "keeps its route"
 class LiveDrive:
     """Shows one drive to those who watch it."""
 
-    def __init__(self, job: DriveJob, traffic: RemoteTraffic, folder: Path | None) -> None:
+    def __init__(self, job: StudyJob, traffic: RemoteTraffic, folder: Path | None) -> None:
         """Writes nothing yet.
 
         Args:

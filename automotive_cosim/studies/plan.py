@@ -192,19 +192,19 @@ class StudyPlan:
         """
         return _opened(self.scenario, self.from_place, self.to_place)
 
-    def jobs(self) -> tuple[DriveJob, ...]:
+    def jobs(self) -> tuple[StudyJob, ...]:
         """Every drive, grouped by simulation and ordered by departure."""
         scenario = self.opened
         shares = self.shares or (scenario.sumo.background_rerouting,)
         trips = [trip for trip in scenario.ego.trips if not self.trips or trip.name in self.trips]
         return tuple(
-            DriveJob(self, share, seed, departure_s, trip)
+            StudyJob(self, share, seed, departure_s, trip)
             for seed, share, departure_s, trip in product(self.seeds, shares, sorted(self.departures_s), trips)
         )
 
 
 @dataclass(frozen=True, slots=True)
-class DriveJob:
+class StudyJob:
     """One drive of a study, with all its decisions."""
 
     plan: StudyPlan

@@ -17,7 +17,7 @@ from automotive_cosim.contracts import DrivingState, Reroute
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.looks import drive_on
-from automotive_cosim.studies.plan import DriveJob
+from automotive_cosim.studies.plan import StudyJob
 from automotive_cosim.studies.points import branched, exclusion
 from automotive_cosim.studies.policies import Policy, PolicyRule, parse_policy
 from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, WholeDrive
@@ -30,7 +30,7 @@ SAME = Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)
 
 
 def whole_drives(
-    job: DriveJob, traffic: RemoteTraffic, fresh: Fresh | None, history: Sequence[Pulse]
+    job: StudyJob, traffic: RemoteTraffic, fresh: Fresh | None, history: Sequence[Pulse]
 ) -> tuple[WholeDrive, ...]:
     """Drives every policy but ``never`` and ``best`` from the departure to the destination.
 
@@ -51,7 +51,7 @@ def whole_drives(
 
 
 def _drawn(
-    job: DriveJob,
+    job: StudyJob,
     policies: Sequence[Policy],
     traffic: RemoteTraffic,
     fresh: Fresh | None,
@@ -91,12 +91,12 @@ def _drawn(
     return drives
 
 
-def _left(job: DriveJob, traffic: RemoteTraffic, group: Sequence[str]) -> Future:
+def _left(job: StudyJob, traffic: RemoteTraffic, group: Sequence[str]) -> Future:
     settled = traffic.settle([group], job.plan.arrived, job.plan.limit_s)
     return Future(traffic.state, settled)
 
 
-def _follow(job: DriveJob, policy: Policy, compliance: float, traffic: RemoteTraffic, draw: int) -> int:
+def _follow(job: StudyJob, policy: Policy, compliance: float, traffic: RemoteTraffic, draw: int) -> int:
     """Drives under a policy with the newest news of the plan; returns how often it left its route."""
     draws = np.random.default_rng((*job.entropy, 6, draw))
     reroutings = 0

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Mapping
 
-from automotive_cosim.traffic.street_names import ENGLISH, LANGUAGES, Names
+from automotive_cosim.traffic.street_names import ENGLISH, LANGUAGES, StreetWords
 
 _KINDS = (
     ("Motorway", frozenset({"motorway"})),
@@ -41,7 +41,7 @@ def local_names(streets: Iterable[tuple[str, str]], language: str) -> Mapping[st
     return given
 
 
-def _street(words: Names, number: int) -> str:
+def _street(words: StreetWords, number: int) -> str:
     """The street of a number: neighbours differ in both parts of the name, and none comes twice."""
     again, index = divmod(number, len(words.kinds) * len(words.names))
     turn, at = divmod(index, len(words.names))

@@ -12,7 +12,7 @@ ENGLISH = "en"
 
 
 @dataclass(frozen=True, slots=True)
-class Names:
+class StreetWords:
     """What streets are called in one language, as in "Mill Lane"."""
 
     kinds: tuple[str, ...]
@@ -25,8 +25,8 @@ def _names(text: str) -> tuple[str, ...]:
     return tuple(" ".join(name.split()) for name in text.split(","))
 
 
-LANGUAGES: Mapping[str, Names] = {
-    ENGLISH: Names(
+LANGUAGES: Mapping[str, StreetWords] = {
+    ENGLISH: StreetWords(
         ("{} Street", "{} Lane", "{} Drive", "{} Close"),
         _names(
             """
@@ -37,7 +37,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "fr": Names(
+    "fr": StreetWords(
         ("Rue {}", "Allée {}", "Chemin {}", "Impasse {}"),
         _names(
             """
@@ -50,7 +50,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "de": Names(
+    "de": StreetWords(
         ("{}straße", "{}weg", "{}gasse", "{}ring"),
         _names(
             """
@@ -61,7 +61,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "es": Names(
+    "es": StreetWords(
         ("Calle {}", "Travesía {}", "Camino {}", "Pasaje {}"),
         _names(
             """
@@ -75,7 +75,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "it": Names(
+    "it": StreetWords(
         ("Via {}", "Vicolo {}", "Strada {}", "Largo {}"),
         _names(
             """
@@ -87,7 +87,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "pt": Names(
+    "pt": StreetWords(
         ("Rua {}", "Travessa {}", "Largo {}", "Beco {}"),
         _names(
             """
@@ -100,7 +100,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "nl": Names(
+    "nl": StreetWords(
         ("{}straat", "{}laan", "{}pad", "{}hof"),
         _names(
             """
@@ -112,7 +112,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "pl": Names(
+    "pl": StreetWords(
         ("Ulica {}", "Zaułek {}", "Droga {}", "Plac {}"),
         _names(
             """
@@ -124,7 +124,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "tr": Names(
+    "tr": StreetWords(
         ("{} Sokağı", "{} Caddesi", "{} Yolu", "{} Çıkmazı"),
         _names(
             """
@@ -136,7 +136,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "sv": Names(
+    "sv": StreetWords(
         ("{}gatan", "{}vägen", "{}stigen", "{}gränd"),
         _names(
             """
@@ -147,7 +147,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "ja": Names(
+    "ja": StreetWords(
         ("{} Dori", "{} Michi", "{} Koji", "{} Zaka"),
         _names(
             """
@@ -158,7 +158,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "zh": Names(
+    "zh": StreetWords(
         ("{} Lu", "{} Jie", "{} Xiang", "{} Hutong"),
         _names(
             """
@@ -170,7 +170,7 @@ LANGUAGES: Mapping[str, Names] = {
             """
         ),
     ),
-    "ar": Names(
+    "ar": StreetWords(
         ("Shari {}", "Zuqaq {}", "Darb {}", "Nahj {}"),
         _names(
             """

@@ -45,7 +45,7 @@ NAMING = TRAVELLERS.union(INPUTS, OUTPUTS, ("ride", "transport", "stop"))
 """Elements of which an attribute may have to change."""
 
 
-class Listener(Protocol):
+class ElementHandler(Protocol):
     """Reads a file while it is checked."""
 
     def start(self, name: str, attributes: dict[str, str]) -> None:
@@ -57,7 +57,7 @@ class Listener(Protocol):
         ...
 
 
-def vet(path: Path, also: Listener | None = None, what: str = "a SUMO file") -> None:
+def vet(path: Path, also: ElementHandler | None = None, what: str = "a SUMO file") -> None:
     """Checks a network, a route file or an additional file, also packed, and the files that it names.
 
     Args:
@@ -73,7 +73,7 @@ def vet(path: Path, also: Listener | None = None, what: str = "a SUMO file") -> 
 
 
 def copy_vetted(
-    path: Path, folder: Path, name: str, also: Listener | None = None, what: str = "a SUMO file"
+    path: Path, folder: Path, name: str, also: ElementHandler | None = None, what: str = "a SUMO file"
 ) -> str:
     """Checks like ``vet`` and writes what SUMO may read, unpacked, into a folder.
 
@@ -109,7 +109,7 @@ def _vet(
     name: str,
     through: tuple[Path, ...],
     what: str = "a SUMO file",
-    also: Listener | None = None,
+    also: ElementHandler | None = None,
 ) -> str:
     if path.resolve() in through:
         raise ScenarioError(f"{path} includes itself")
@@ -126,7 +126,7 @@ def _vet(
     return f"{name}.xml"
 
 
-def _both(reader: _Reader, also: Listener) -> tuple[OnStart, Callable[[str], None]]:
+def _both(reader: _Reader, also: ElementHandler) -> tuple[OnStart, Callable[[str], None]]:
     def start(name: str, attributes: dict[str, str], line: int) -> None:
         also.start(name, attributes)
         reader.start(name, attributes, line)

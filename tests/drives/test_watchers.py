@@ -29,6 +29,7 @@ CAR = {
     "is_rear_fog_on": False,
     "range_km": 250.0,
 }
+ALSACE, BADEN = (7.3, 48.2), (7.9, 48.2)
 IRELAND, ULSTER, SWEDEN, MANHATTAN = (-7.5, 53.3), (-6.5, 54.25), (20.2, 67.8), (-73.97, 40.77)
 FOG = {"visibility": 40.0, "weather_code": 45, "kmh": 10.0, "limit": limit(90)}
 NIGHT = NOON.replace(hour=23, minute=30)
@@ -50,14 +51,18 @@ def watched(drive: Sequence[Moment], **car: Any) -> list[Action]:
     return acts
 
 
-def test_a_border_is_told_in_words_that_settle_it() -> None:
-    places = [IRELAND] * 3 + [ULSTER] * 10 + [IRELAND] * 10 + [ULSTER] * 10
+@pytest.mark.parametrize(
+    ("before", "beyond", "settled"), [(IRELAND, ULSTER, (True, False)), (ALSACE, BADEN, (False, True))]
+)
+def test_a_border_is_told_in_words_that_settle_it(
+    before: tuple[float, float], beyond: tuple[float, float], settled: tuple[bool, bool]
+) -> None:
+    places = [before] * 3 + [beyond] * 10 + [before] * 10 + [beyond] * 10
     drive = [moment(float(second), position=position) for second, position in enumerate(places)]
     acts = [(at, act.text or "") for at, act in enumerate(watched(drive)) if act.action_type is ActionType.ANSWER]
     units, law = KINDS["limit_units"], KINDS["rule_change"]
     said = [WatchAct(0.0, said=text) for _, text in acts]
-    settled = [(units.settles(act, 1.0), law.settles(act, None)) for act in said]
-    assert settled == [(True, False), (False, True)]
+    assert [(units.settles(act, 1.0), law.settles(act, None)) for act in said] == [settled]
     assert all(3 < at < 8 for at, _ in acts)
 
 

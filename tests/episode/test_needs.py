@@ -28,7 +28,7 @@ def test_a_law_that_says_otherwise_is_named_as_the_reason() -> None:
     finder = _finder("phenomenon_rear_fog_in_mist")
     assert finder._lacking() == ""
     finder._missing = "the law of Germany answers differently"
-    assert "a verified rule: rear fog lamp, as in FR.rear_fog" in finder._lacking()
+    assert "a verified rule on the rear fog lamp (compare FR.rear_fog)" in finder._lacking()
     assert "the law of Germany answers differently" in finder._lacking()
 
 

@@ -37,7 +37,7 @@ def test_actions_are_played_in_order_and_then_it_waits(tmp_path, observation):
         ("[]", "object"),
         ('{"action_type": "clik"}', "click"),
         ('{"action_type": "click"}', "index"),
-        ('{"action_type": "click", "index": "1"}', "int"),
+        ('{"action_type": "click", "index": "one"}', "int"),
         ('{"action_type": "wait", "seconds": 99}', "seconds"),
     ],
 )

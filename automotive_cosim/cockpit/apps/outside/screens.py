@@ -42,7 +42,7 @@ DRIZZLE_MM = 0.1
 
 
 @dataclass(frozen=True, slots=True)
-class Reading:
+class OutsideReading:
     """The reading of one phenomenon."""
 
     word: str
@@ -70,7 +70,7 @@ class Phenomenon:
     title: str
     icon: Icon
     about: str
-    read: Callable[[State], Reading]
+    read: Callable[[State], OutsideReading]
     acts: tuple[Act, ...]
     alert: AlertKind
 
@@ -79,7 +79,7 @@ def _switch(key: str, text: str, icon: Icon, signal: Signal[bool]) -> Act:
     return Act(key, text, icon, signal, True, False)
 
 
-def _rain(state: State) -> Reading:
+def _rain(state: State) -> OutsideReading:
     rate = 0.0 if state.outside is None else state.outside.weather.precipitation
     word = (
         say("No rain")
@@ -90,10 +90,10 @@ def _rain(state: State) -> Reading:
         if rate < 10
         else say("Heavy")
     )
-    return Reading(word, Quantity(f"{rate:.1f} mm/h"), state.signals[BODY.RAIN_INTENSITY] / 100)
+    return OutsideReading(word, Quantity(f"{rate:.1f} mm/h"), state.signals[BODY.RAIN_INTENSITY] / 100)
 
 
-def _fog(state: State) -> Reading:
+def _fog(state: State) -> OutsideReading:
     sight = state.signals[OUTSIDE.VISIBILITY]
     weather = None if state.outside is None else state.outside.weather
     is_fog = weather is None or not (is_dusty(weather) or weather.precipitation >= DRIZZLE_MM)
@@ -103,10 +103,10 @@ def _fog(state: State) -> Reading:
         else (say("Good"), say("Moderate"), say("Poor"), say("Very poor"))
     )
     word = words[sum(sight < bound_m for bound_m in (MIST_M, FOG_M, DENSE_FOG_M))]
-    return Reading(word, distance(state.signals, sight), 1 - min(1.0, sight / MIST_M))
+    return OutsideReading(word, distance(state.signals, sight), 1 - min(1.0, sight / MIST_M))
 
 
-def _ice(state: State) -> Reading:
+def _ice(state: State) -> OutsideReading:
     signals = state.signals
     grip, air = signals[ADAS.ROAD_FRICTION], signals[OUTSIDE.TEMPERATURE]
     word = (
@@ -118,53 +118,53 @@ def _ice(state: State) -> Reading:
         if grip < 90
         else say("Good grip")
     )
-    return Reading(
+    return OutsideReading(
         word,
         say("{temperature}, grip {grip} %", temperature=temperature(signals, air, 0), grip=f"{grip:.0f}"),
         1 - grip / 100,
     )
 
 
-def _glare(state: State) -> Reading:
+def _glare(state: State) -> OutsideReading:
     share = state.signals[OUTSIDE.GLARE] / 100
     word = say("No glare") if share < 0.1 else say("Low sun ahead") if share < 0.5 else say("Strong")
-    return Reading(word, f"{100 * share:.0f} %", share)
+    return OutsideReading(word, f"{100 * share:.0f} %", share)
 
 
-def _dust(state: State) -> Reading:
+def _dust(state: State) -> OutsideReading:
     dusty = state.outside is not None and is_dusty(state.outside.weather)
     sight = state.signals[OUTSIDE.VISIBILITY]
     word = say("No dust") if not dusty else say("Blowing dust") if sight >= FOG_M else say("Dust storm")
-    return Reading(
+    return OutsideReading(
         word,
         say("Visibility {distance}", distance=distance(state.signals, sight)),
         1 - min(1.0, sight / MIST_M) if dusty else 0.0,
     )
 
 
-def _air(state: State) -> Reading:
+def _air(state: State) -> OutsideReading:
     fine = state.signals[OUTSIDE.FINE_DUST]
     inside = state.signals[HVAC.CABIN_FINE_DUST]
-    return Reading(
+    return OutsideReading(
         air_grade(fine),
         say("Outside {fine} µg/m³, in the cabin {inside} µg/m³", fine=f"{fine:.0f}", inside=f"{inside:.0f}"),
         min(1.0, fine / 140),
     )
 
 
-def _wind(state: State) -> Reading:
+def _wind(state: State) -> OutsideReading:
     wind = state.signals[OUTSIDE.WIND]
     calm = say_in("wind", "Calm")
     word = calm if wind < 20 else say("Breeze") if wind < 50 else say("Strong") if wind < 75 else say("Storm")
-    return Reading(word, f"{speed(state.signals, wind)} {speed_unit(state.signals)}", min(1.0, wind / 100))
+    return OutsideReading(word, f"{speed(state.signals, wind)} {speed_unit(state.signals)}", min(1.0, wind / 100))
 
 
-def _glass(state: State) -> Reading:
+def _glass(state: State) -> OutsideReading:
     signals: Signals = state.signals
     fog, film = signals[GLASS.WINDSHIELD_FOG], signals[GLASS.WINDSHIELD_FILM]
     word = glass_words(fog, film)[0]
     hidden = fog + film - fog * film
-    return Reading(word, say("Windshield {share} % clear", share=f"{100 * (1 - hidden):.0f}"), hidden)
+    return OutsideReading(word, say("Windshield {share} % clear", share=f"{100 * (1 - hidden):.0f}"), hidden)
 
 
 _LOW_BEAM = _switch("low_beam", say("Low beam"), Icon.LOW_BEAM, LIGHTS.LOW_BEAM)
