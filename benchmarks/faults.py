@@ -32,9 +32,8 @@ from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim.run.watch_row import WatchRow
-
 from automotive_cosim.agents.leftovers import children, tree
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import steady
 from automotive_cosim.run.store import read_rows
@@ -74,7 +73,7 @@ def main() -> None:
         folder = Path(name)
         parts: dict[str, Callable[[], dict[str, Any]]] = {
             "tasks": lambda: killed(folder / "tasks", TASKS, EpisodeRow, given.kills, rng),
-            "drives": lambda: killed(folder / "drives", DRIVES, WatchRow, tenth, rng),
+            "drives": lambda: killed(folder / "drives", DRIVES, DriveTrialRow, tenth, rng),
             "faults": lambda: disturbed(folder / "faults"),
             "ray": lambda: on_ray(folder / "ray", tenth, rng),
             "resets": lambda: resets(given.resets),

@@ -9,6 +9,7 @@ from automotive_cosim.cosim.simulation import CoSimulation, couple
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenarios.incidents import EmergencyVehicle
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan
@@ -86,5 +87,6 @@ def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:
         halts=script.halts,
         incidents=script.incidents,
         advice_s=ADVICE_S,
-        brakes_early=True,
+        # A driver of SUMO's with blue light runs into a car that brakes early before it has made way.
+        brakes_early=not any(isinstance(incident, EmergencyVehicle) for incident in script.incidents),
     )

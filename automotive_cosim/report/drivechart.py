@@ -97,13 +97,14 @@ def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
             panel = axes.inset_axes((0.0, top - panel_in / height_in, 1.0, panel_in / height_in))
             fill(panel)
             panel.spines[["top", "right", "left"]].set_visible(False)
-            panel.tick_params(length=0, labelbottom=fill is panels[-1][1])
+            is_last = fill is panels[-1][1]
+            panel.tick_params(length=0, labelbottom=is_last)
+            panel.set_xlabel("minutes since departure" if is_last else "")
             panel.grid(axis="both", color=INK, alpha=0.15, linewidth=0.8)
             panel.set_xlim(0, end_s)
             panel.set_xticks(list(ticks), [f"{tick // 60}" for tick in ticks])
             _unwatched(panel, timeline)
             top -= panel_in / height_in
-        panel.set_xlabel("minutes since departure")
         axes.set_xlim(0, end_s)
         axes.set_xticks(list(ticks), [])
         axes.spines["bottom"].set_visible(False)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field, fields, replace
 from fnmatch import fnmatchcase
@@ -83,7 +84,8 @@ class Plan(ConditionLists):
 
     def as_json(self) -> Json:
         """The plan as a JSON object, for the manifest."""
-        return {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
+        made: Json = json.loads(json.dumps(asdict(self)))  # words in place of enumerations
+        return made
 
     def check(self, *, dry: bool = False) -> tuple[str, ...]:
         """Checks every value and name before anything runs.

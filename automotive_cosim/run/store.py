@@ -21,7 +21,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from datetime import datetime
 from pathlib import Path
-from typing import IO, Generic
+from typing import IO, Generic, cast
 
 import automotive_cosim
 from automotive_cosim.contracts import Json
@@ -144,7 +144,7 @@ def read_rows(folder: Path, kind: RowKind[R]) -> dict[str, R]:
         *lines, _cut = file.read().split(b"\n")
     for number, line in enumerate(lines, start=1):
         try:
-            of: type[R] = kind if isinstance(kind, type) else kind(line)
+            of = cast("type[R]", kind if isinstance(kind, type) else kind(line))
             row = from_line(of, line)
         except ValueError as error:
             raise UserError(

@@ -56,6 +56,8 @@ class SumoPedals:
         self._sensor = sensor
         self._router = router
         self._service_mps2: float = sumo.vehicle.getDecel(ego_id)
+        self._expected_mps2 = self._service_mps2
+        """How hard those behind expect the driver to brake: as hard as he can, however gently he means to."""
         self._factor = 1.0
         self._top_mps = self._set_mps = FASTEST_MPS
         # The first change gives the ego a type of its own and redraws its speed factor, so it comes before ours.
@@ -88,7 +90,7 @@ class SumoPedals:
         service_mps2 = min(self._service_mps2, hardest_mps2)
         vehicle = self._sumo.vehicle
         vehicle.setDecel(self._ego, service_mps2)
-        vehicle.setApparentDecel(self._ego, service_mps2)
+        vehicle.setApparentDecel(self._ego, min(self._expected_mps2, hardest_mps2))
         vehicle.setEmergencyDecel(self._ego, hardest_mps2)
 
     def set_braking(self, deceleration_mps2: float) -> None:

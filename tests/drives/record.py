@@ -92,7 +92,9 @@ def drive(family: str, simulations: Simulations) -> Recorded:
                     fact = against(KINDS[name], facts_s[-1])
                     if not known or known[-1][1] != fact:
                         known.append((facts_s[-1], fact))
-            moments += world.advance(1.0)
+            if not (passed := world.advance(1.0)):
+                raise RuntimeError(f"{family} ends after {moments[-1].time_s - moments[0].time_s:.0f} s")
+            moments += passed
     begun_s = moments[0].time_s
     events = tuple(tracker.events)
     told = {name: tuple(known) for name, known in facts.items()}

@@ -109,7 +109,7 @@ PLANTED: dict[FailureClass, list[tuple[str, str, Sequence[Any], str]]] = {
         (FAN, "first", of(SEAT), ""),
         (FAN, "first", of(REAR), ""),
         (SEAT, "first", of(FAN), ""),
-        (HANDS, "first", of(FAN), ""),
+        (HANDS, "first", of(REAR), ""),
         (SEAT, "first", of(FRONT), ""),
         (HANDS, "first", [declines(GoalStatus.INFEASIBLE, Reason.NOT_POSSIBLE)], ""),
         (WHOSE, "first", of(WHOSE, "second"), ""),
