@@ -239,9 +239,9 @@ def tables(entries: Sequence[BoardEntry]) -> list[tuple[Table, BundleConditions,
     for entry in entries:
         alike[entry.conditions].append(entry)
     ordered = sorted(alike.items(), key=lambda each: (-len(each[1]), str(each[0])))
-    first = ordered[0][0]
+    first = ordered[0][0] if ordered else None  # drives have tables of their own
     return [
-        (_table(number, found), conditions, conditions.differing(first))
+        (_table(number, found), conditions, conditions.differing(first or conditions))
         for number, (conditions, found) in enumerate(ordered, start=1)
     ]
 

@@ -90,7 +90,7 @@ def test_a_missing_memory_is_told_and_not_made(cli, tmp_path):
 def test_geo_and_switches_stand_in_the_record(cli):
     cli("run", "--json", *GRID, "--geo", "none", "--without", "reflection,screen", "--out", "out")
     written = json.loads(Path("out/episode.json").read_text(encoding="utf-8"))
-    assert (written["geo"], written["without"]) == ("none", ["reflection", "screen"])
+    assert (written["conditions"]["geo"], written["without"]) == ("none", ["reflection", "screen"])
     lines = Path("out/steps.jsonl").read_text(encoding="utf-8").splitlines()
     stages = [stage["stage"] for line in lines for stage in json.loads(line)["stages"]]
     assert "reflect" not in stages

@@ -68,7 +68,7 @@ def test_an_agent_that_fails_is_judged_and_told(cli, tmp_path):
     ran = cli("eval", "--agents", "oracle,raises:Raises", *GRID, "--out", "e")
     assert ran.code == 0
     assert "1 succeeded; 2 of 2 planned episodes judged" in ran.out
-    assert "agent raises:Raises failed in 1 episode, e.g. " in ran.out
+    assert "agent raises:Raises failed in 1 trial, e.g. " in ran.out
     assert "RuntimeError: broken" in ran.out
 
 

@@ -63,7 +63,7 @@ def oracle(simulations: Simulations) -> Callable[[int], tuple[list[Json], str]]:
     def solve(seed: int) -> tuple[list[Json], str]:
         spec = replace(SPEC, seed=seed)
         hand_over = SituationFinder(spec, simulations).find(SeedSource(seed).next())
-        episode = Episode.take_over(hand_over, spec.conditions())
+        episode = Episode.take_over(hand_over, spec.session())
         agent = Oracle()
         agent.reset(episode.goal)
         agent.brief(episode.instance)

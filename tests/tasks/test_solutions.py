@@ -135,6 +135,8 @@ def _solved(
             time_s=around.driving.time_s,
             local_time=around.local_time + timedelta(seconds=second),
             surroundings=around,
+            driving=around.driving,
+            weather=around.weather,
             signals=car.signals.snapshot(),
             commands=car.commands(),
         )
