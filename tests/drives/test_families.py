@@ -28,7 +28,7 @@ from automotive_cosim.drives.script import (
 )
 from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGED, STAGINGS, Setting
 from automotive_cosim.errors import UserError
-from automotive_cosim.proof.world import out_of_season
+from automotive_cosim.proof.world import implausible
 from automotive_cosim.scenarios import load, shipped
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
@@ -136,7 +136,7 @@ def test_the_weather_is_of_its_place_and_season(family: Any) -> None:
         for entry in script.weather:
             driving = SimpleNamespace(lon_deg=lon_deg, lat_deg=lat_deg)
             moment: Any = SimpleNamespace(weather=entry.weather, driving=driving, local_time=start)
-            assert list(out_of_season(moment)) == [], script.seed
+            assert list(implausible(moment)) == [], script.seed
 
 
 def test_who_is_aboard_is_drawn_planned_and_read_back() -> None:

@@ -15,7 +15,7 @@ itself)."""
 PROGRAM = """
 import gc, json, os
 from automotive_cosim.envs.cockpit import CockpitEnv
-from automotive_cosim.run import memory
+from automotive_cosim.agents.leftovers import tree
 from automotive_cosim.traffic.fork import Simulations
 
 EPISODES = 200
@@ -24,7 +24,7 @@ EVERY = 40
 
 def own_mb():
     # Without pages of files: what of those is resident, or shared with others, is not up to us.
-    return sum(map(anonymous_kb, memory.tree())) / 1024
+    return sum(map(anonymous_kb, tree(os.getpid()))) / 1024
 
 def anonymous_kb(process):
     with open(f"/proc/{process}/status") as status:
@@ -32,7 +32,7 @@ def anonymous_kb(process):
 
 def seen():
     gc.collect()
-    return own_mb(), len(memory.tree()), len(os.listdir("/proc/self/fd"))
+    return own_mb(), len(tree(os.getpid())), len(os.listdir("/proc/self/fd"))
 
 simulations = Simulations()
 env = CockpitEnv("hvac_fan_max", scenario="grid", render_mode="rgb_array", simulations=simulations)
@@ -48,7 +48,7 @@ for number in range(EPISODES):
         figures.append(seen())
 env.close()
 simulations.close()
-print(json.dumps({"figures": figures, "left": len(memory.tree()) - 1}))
+print(json.dumps({"figures": figures, "left": len(tree(os.getpid())) - 1}))
 """
 """In a process of its own: what else a test run keeps alive would show in the figures."""
 

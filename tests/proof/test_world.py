@@ -10,7 +10,7 @@ from automotive_cosim.contracts import Weather
 from automotive_cosim.geo.climate import climate_norm
 from automotive_cosim.geo.forecast import Climate
 from automotive_cosim.geo.weather import typical_weather
-from automotive_cosim.proof.world import STATION_WITHIN_KM, normal_c, out_of_season
+from automotive_cosim.proof.world import STATION_WITHIN_KM, implausible, normal_c
 
 PASS, PARIS, SYDNEY, OCEAN = (9.2, 46.5), (2.35, 48.85), (150.75, -33.6), (-150.0, 0.0)
 ZONES = {PASS: "Europe/Zurich", PARIS: "Europe/Paris", SYDNEY: "Australia/Sydney", OCEAN: "UTC"}
@@ -19,7 +19,7 @@ ZONES = {PASS: "Europe/Zurich", PARIS: "Europe/Paris", SYDNEY: "Australia/Sydney
 def faults(place: tuple[float, float], time: str, weather: Weather) -> str:
     local = datetime.fromisoformat(time).replace(tzinfo=ZoneInfo(ZONES[place]))
     driving = SimpleNamespace(lon_deg=place[0], lat_deg=place[1])
-    return "; ".join(out_of_season(SimpleNamespace(weather=weather, driving=driving, local_time=local)))  # type: ignore[arg-type]
+    return "; ".join(implausible(SimpleNamespace(weather=weather, driving=driving, local_time=local)))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize(
