@@ -165,6 +165,7 @@ def evaluate(
     """Run agents over tasks, scenarios and seeds, or over drives. Rerun the command to resume."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.errors import UnknownNameError
+    from automotive_cosim.report.answer import answer
     from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
@@ -224,6 +225,7 @@ def evaluate(
         told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
         typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
     else:
+        console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")
         for line in (*standings(found), *drive_standings(found.drives)):
             console.print(f"  {line}", soft_wrap=True)
