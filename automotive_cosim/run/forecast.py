@@ -39,7 +39,7 @@ class Tokens:
 
 
 A_STEP: Mapping[str, Tokens] = {"t3a": Tokens(1450, 100), "m3a": Tokens(1450, 100), "asurada": Tokens(1950, 100)}
-"""Text of one step with its reflection, as the built-in agents send it to the stand-in (40 tasks on the grid, November
+"""Text of one step with its reflection, as the built-in agents send it to the stand-in (40 tasks, grid, November
 2026). Its answers are shorter than a model's, which gives reasons; 100 tokens are our estimate."""
 OTHER_STEP = Tokens(3000, 150)
 """The same for other agents, whose prompts are longer."""
