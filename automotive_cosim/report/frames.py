@@ -62,7 +62,7 @@ class Frames(EpisodeObserver):
         self._fitted: tuple[npt.NDArray[np.uint8], Image.Image] | None = None
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Takes a picture now and then after each step, in case it is the last; notes times before the hand-over."""
+        """Takes a picture now and then after a step, in case it is the last; notes times before the hand-over."""
         at_s = moment.time_s - self._hand_over_s
         if self.map is None:
             if not self._before_s or at_s - self._before_s[-1] >= BEFORE_EVERY_S:
