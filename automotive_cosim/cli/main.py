@@ -38,8 +38,9 @@ from automotive_cosim.cli import (
     tasks,
     validate,
 )
-from automotive_cosim.cli.terminal import discard_output, open_streams, plain, plain_streams
+from automotive_cosim.cli.terminal import discard_output, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.formats.plain import plain
 
 INTERRUPTED = 130
 """Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
