@@ -59,7 +59,7 @@ class EncounterKind(StrEnum):
     ONCOMING = "oncoming"
 
 
-class Order(StrEnum):
+class PairOrder(StrEnum):
     """Whether a vehicle is in front or behind, or at the point of crossing first or second."""
 
     LEADS = "leads"
@@ -75,7 +75,7 @@ class PairReading:
     vehicle: str
     other: str
     kind: EncounterKind
-    order: Order
+    order: PairOrder
     """Of ``vehicle``."""
     gap_m: float
     """From bumper to bumper; in a crossing, from the second's front to the point."""
@@ -106,7 +106,7 @@ class Encounter:
     other: str
     kind: EncounterKind
     """When the TTC was least."""
-    order: Order
+    order: PairOrder
     begins_s: float
     ends_s: float
     min_ttc_s: float | None = None
@@ -217,7 +217,7 @@ def _following(
         vehicle.vehicle_id,
         other.vehicle_id,
         EncounterKind.FOLLOWING,
-        Order.FOLLOWS if is_behind else Order.LEADS,
+        PairOrder.FOLLOWS if is_behind else PairOrder.LEADS,
         gap_m,
         time_to_collision_s(gap_m, closing_mps),
         drac_mps2(gap_m, closing_mps),
@@ -245,7 +245,7 @@ def _oncoming(
         vehicle.vehicle_id,
         other.vehicle_id,
         EncounterKind.ONCOMING,
-        Order.MEETS,
+        PairOrder.MEETS,
         gap_m,
         time_to_collision_s(gap_m, closing_mps),
         drac_mps2(gap_m, closing_mps),
@@ -281,7 +281,7 @@ def _crossing(time_s: float, vehicle: SeenVehicle, other: SeenVehicle, kind: Enc
         vehicle.vehicle_id,
         other.vehicle_id,
         kind,
-        Order.LEADS if is_first else Order.FOLLOWS,
+        PairOrder.LEADS if is_first else PairOrder.FOLLOWS,
         second_m,
         ttc_s,
         needed_mps2,
@@ -367,7 +367,7 @@ def _summed(begins_s: float, ends_s: float, readings: Sequence[PairReading], thr
 
 
 @dataclass(slots=True)
-class _Track:
+class _DrivenPath:
     """The way of one vehicle's front bumper."""
 
     vehicle: SeenVehicle
@@ -394,12 +394,12 @@ class _Track:
 
 def _crossings(scenes: Sequence[Scene], ego: str | None, thresholds: Thresholds) -> Iterator[Encounter]:
     """The crossings of paths within the threshold of the PET."""
-    tracks: dict[str, _Track] = {}
+    tracks: dict[str, _DrivenPath] = {}
     for time_s, vehicles in scenes:
         for each in vehicles:
             track = tracks.get(each.vehicle_id)
             if track is None:
-                tracks[each.vehicle_id] = _Track(each, [time_s], [(each.x_m, each.y_m)], [0.0])
+                tracks[each.vehicle_id] = _DrivenPath(each, [time_s], [(each.x_m, each.y_m)], [0.0])
                 continue
             east, north = track.points_m[-1]
             step_m = hypot(each.x_m - east, each.y_m - north)
@@ -409,7 +409,7 @@ def _crossings(scenes: Sequence[Scene], ego: str | None, thresholds: Thresholds)
                 track.points_m.append((each.x_m, each.y_m))
                 track.ways_m.append(track.ways_m[-1] + step_m)
     if ego is None:
-        pairs: Iterable[tuple[_Track, _Track]] = combinations(tracks.values(), 2)
+        pairs: Iterable[tuple[_DrivenPath, _DrivenPath]] = combinations(tracks.values(), 2)
     elif ego in tracks:
         pairs = ((tracks[ego], other) for name, other in tracks.items() if name != ego)
     else:
@@ -419,7 +419,7 @@ def _crossings(scenes: Sequence[Scene], ego: str | None, thresholds: Thresholds)
             yield from _crossed(mine, other, thresholds)
 
 
-def _crossed(mine: _Track, other: _Track, thresholds: Thresholds) -> Iterator[Encounter]:
+def _crossed(mine: _DrivenPath, other: _DrivenPath, thresholds: Thresholds) -> Iterator[Encounter]:
     for my_m, their_m, angle_deg in _meetings(mine, other, thresholds):
         my_in_s, their_in_s = mine.passes_s(my_m), other.passes_s(their_m)
         my_out_s = mine.passes_s(my_m + mine.vehicle.length_m)
@@ -439,7 +439,7 @@ def _crossed(mine: _Track, other: _Track, thresholds: Thresholds) -> Iterator[En
             mine.vehicle.vehicle_id,
             other.vehicle.vehicle_id,
             EncounterKind.CROSSING if angle_deg > thresholds.crossing_above_deg else EncounterKind.MERGING,
-            Order.LEADS if leads else Order.FOLLOWS,
+            PairOrder.LEADS if leads else PairOrder.FOLLOWS,
             min(my_out_s, their_out_s),
             max(my_in_s, their_in_s),
             pet_s=pet_s,
@@ -447,7 +447,9 @@ def _crossed(mine: _Track, other: _Track, thresholds: Thresholds) -> Iterator[En
         )
 
 
-def _meetings(mine: _Track, other: _Track, thresholds: Thresholds) -> Iterator[tuple[float, float, float]]:
+def _meetings(
+    mine: _DrivenPath, other: _DrivenPath, thresholds: Thresholds
+) -> Iterator[tuple[float, float, float]]:
     """Where two paths cross at an angle, within some seconds: how far each has driven by then, and the angle."""
     for index in range(1, len(mine.times_s)):
         from_s, to_s = mine.times_s[index - 1] - LONGEST_PET_S, mine.times_s[index] + LONGEST_PET_S

@@ -18,7 +18,7 @@ from automotive_cosim.measures import (
     exposure,
     pair_readings,
 )
-from automotive_cosim.measures.encounters import Order, Scene, as_csv
+from automotive_cosim.measures.encounters import PairOrder, Scene, as_csv
 from automotive_cosim.measures.formulas import (
     crossing_drac_mps2,
     delta_v_mps,
@@ -68,7 +68,7 @@ def test_following_equals_its_closed_form(heading_deg: float) -> None:
     assert found.min_gap_time_s == pytest.approx(6.0 / 20.0, abs=0.01)
     assert found.delta_v_mps == pytest.approx(5.0)
     (behind,) = encounters(scenes(6.0, *road), ego="lead")
-    assert behind.order == Order.LEADS
+    assert behind.order == PairOrder.LEADS
     assert behind.min_ttc_s == found.min_ttc_s
 
 
@@ -95,13 +95,13 @@ def test_paths_that_cross_have_the_planned_post_encroachment_time(angle_deg: flo
     """The ego's rear leaves the origin at 5.5 s; the other's front reaches it at 6.5 s."""
     road = ("ego", 0.0, 0.0, steadily(-50.0, 10.0)), ("foe", angle_deg, 0.0, steadily(-65.0, 10.0))
     (found,) = encounters(scenes(10.0, *road))
-    assert (found.kind, found.order) == (kind, Order.LEADS)
+    assert (found.kind, found.order) == (kind, PairOrder.LEADS)
     assert found.pet_s == pytest.approx(1.0, abs=0.01)
     assert found.pet_swept_s == pytest.approx(1.0 - 0.1 - 0.1, abs=0.02)
     assert found.min_ttc_s is None
     (mirrored,) = encounters(scenes(10.0, *road), ego="foe")
     assert mirrored.pet_s == pytest.approx(found.pet_s)
-    assert mirrored.order == Order.FOLLOWS
+    assert mirrored.order == PairOrder.FOLLOWS
 
 
 def test_two_who_reach_a_crossing_together_collide() -> None:
