@@ -32,6 +32,7 @@ from automotive_cosim.cli import (
     scenarios,
     schema,
     screens,
+    search,
     serve,
     signals,
     study,
@@ -59,6 +60,7 @@ app.command()(run.run)
 app.command()(drive.drive)
 app.command()(validate.validate)
 app.command("eval")(evaluate.evaluate)
+app.command()(search.search)
 app.command()(results.report)
 app.command()(compare.compare)
 app.command()(results.replay)

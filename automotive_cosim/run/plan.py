@@ -61,6 +61,8 @@ class PlannedTrial:
     scenario: str = ""
     """Instead of the task's or the drive's own."""
     seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
+    repeat: Annotated[int, Ge(0), Le(1000)] = 0
+    """Which run of the same it is; the plan's repeats count from here."""
     held_out: bool = False
     """Whether the driver says the task's held-out phrasing."""
     conditions: Conditions = Conditions()  # noqa: RUF009, frozen
@@ -86,7 +88,7 @@ class PlannedTrial:
         if self.drive:
             family_named(self.drive)
             setup = DriveSetup(self.drive, self.seed, agent, named, self.conditions, self.scenario, self.settings)
-            return DriveJob(setup, repeat, limits.of_drives)
+            return DriveJob(setup, self.repeat + repeat, limits.of_drives)
         if self.settings != AS_SCRIPTED:
             raise UserError(f"{self.task}: {self.settings.words} can be set for drives alone; omit it")
         if self.task not in CATALOGUE:
@@ -109,7 +111,7 @@ class PlannedTrial:
             held_out=self.held_out,
             spare_traffic=spare if scenario is None or scenario in task.runs_in else (),
         )
-        return EpisodeJob(episode, repeat, limits)
+        return EpisodeJob(episode, self.repeat + repeat, limits)
 
 
 @dataclass(frozen=True, slots=True)
