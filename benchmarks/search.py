@@ -8,16 +8,31 @@ agents that are otherwise right, and search drives and tasks in SUMO until each 
 from __future__ import annotations
 
 import argparse
+import re
 from collections.abc import Callable, Mapping
+from contextlib import closing, nullcontext
 from math import log
+from pathlib import Path
 from statistics import median
 
 import numpy as np
 
-from automotive_cosim.safety.hunt import hunt
+from automotive_cosim.agents import Agent
+from automotive_cosim.agents.oracle import Oracle
+from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
+from automotive_cosim.drives.watchers import RulePerfect
+from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.worker import run_with
+from automotive_cosim.safety.hunt import Hunt, hunt
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.samplers import make_sampler
-from automotive_cosim.safety.space import FactorChoices, FactorRange, Point, Space
+from automotive_cosim.safety.space import FactorChoices, FactorRange, FailureRule, Point, Space
+from automotive_cosim.safety.trying import trial_of, trying
+from automotive_cosim.traffic.fork import Simulations
 
 DEADLINE_S = 20.0
 SEEDS, MOST = range(10), 3000
@@ -106,10 +121,131 @@ def surrogate(samplers: tuple[str, ...]) -> None:
         print(f"{name:26}{100 * share:9.2f}" + "".join(f"{cell:>10}" for cell in cells) + f"   {words}", flush=True)
 
 
+# --- in SUMO -------------------------------------------------------------------------------------------------
+
+
+class FaultyWatcher(RulePerfect):
+    """Right about everything, except that it does nothing when its fault is there."""
+
+    name = "faulty-watcher"
+
+    def __init__(self, fault: Callable[[Observation, list[str]], bool]) -> None:
+        super().__init__()
+        self._fault = fault
+
+    def reset(self, goal: str) -> None:
+        super().reset(goal)
+        self._places: list[str] = []
+        """The countries so far."""
+
+    def act(self, observation: Observation) -> Action:
+        place = re.search(r"^place: ([^,\n]+)", observation.context or "", re.MULTILINE)
+        if place and self._places[-1:] != [place[1]]:
+            self._places.append(place[1])
+        right = super().act(observation)
+        return Action(ActionType.WAIT, seconds=5) if self._fault(observation, self._places) else right
+
+
+class DeafOracle(Oracle):
+    """Plays the reference solution, except for a driver who speaks one language."""
+
+    name = "deaf-oracle"
+
+    def __init__(self, *, is_deaf: bool) -> None:
+        super().__init__()
+        self._is_deaf = is_deaf
+
+    def act(self, observation: Observation) -> Action:
+        if self._is_deaf:
+            return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
+        return super().act(observation)
+
+
+def in_fog(observation: Observation, places: list[str]) -> bool:
+    seen = re.search(r"visibility (\d+) m", observation.context or "")
+    return seen is not None and float(seen[1]) < 150
+
+
+def close_behind(observation: Observation, places: list[str]) -> bool:
+    car = observation.vehicle
+    return car is not None and car.leader_gap_m is not None and car.leader_gap_m < 12 and car.speed_kmh > 5
+
+
+def abroad(observation: Observation, places: list[str]) -> bool:
+    return len(places) > 1
+
+
+def asleep(observation: Observation, places: list[str]) -> bool:
+    return observation.time_s > 900
+
+
+SEED = FactorRange("seed", 0, 9, 0, whole=True)
+SIGHT = FactorRange("visibility_m", 40.0, 20_000.0, 20_000.0, logarithmic=True)
+DENSITY = FactorRange("density", 0.3, 2.0, 1.0)
+HOUR = FactorRange("hour", 6.0, 22.0, 12.0)
+LATENCY = FactorRange("latency_s", 0.0, 3.0, 0.0)
+RULE = FailureRule(drive_value_below=60)
+
+
+def drives(*families: str) -> Space:
+    return Space((FactorChoices("drive", families), SEED, SIGHT, DENSITY, HOUR, LATENCY), RULE)
+
+
+TASKS = Space(
+    (
+        FactorChoices("task", ("hard_song_for_bea", "hard_zone_from_isla", "hard_seat_from_memo")),
+        FactorRange("seed", 0, 3, 0, whole=True),
+        FactorChoices("language", ("en", "de", "fr", "ja")),
+        LATENCY,
+    )
+)
+REAL: Mapping[str, tuple[Space, Callable[[Observation, list[str]], bool] | None]] = {
+    "deaf in one language": (TASKS, None),
+    "blind in fog": (drives("grid_june"), in_fog),
+    "late behind lorries": (drives("grid_june"), close_behind),
+    "sleepy after 15 minutes": (drives("grid_june"), asleep),
+    "wrong beyond a border": (drives("grid_june", "border_july"), abroad),
+    "none (oracle)": (drives("grid_june"), lambda observation, places: False),
+}
+
+
+def real(name: str, budget: int, folder: Path) -> None:
+    """Searches with one planted fault until it is found, and prints what was found."""
+    space, fault = REAL[name]
+    with closing(Simulations(count_limit=2)) as simulations:
+
+        def run(job: TrialJob, into: Path) -> TrialRow:
+            deaf = str(job.setup.conditions.language) == "de"
+            agent: Agent = DeafOracle(is_deaf=deaf) if fault is None else FaultyWatcher(fault)
+            return run_with(nullcontext(agent), job, into, Pictures.NONE, simulations)
+
+        plan = make_plan({"agents": ["oracle"], "models": ["rules"], "trials": [as_json(trial_of(space.nominal))]})
+        with trying(space, plan, folder / name.replace(" ", "_"), run) as tries:
+            found: list[Hunt] = []
+            made = hunt(
+                space,
+                tries,
+                make_sampler("climb", space, budget, 0),
+                budget,
+                most_failures=1,
+                goes_on=lambda: not (found and found[-1].minimal),
+                tell=found.append,
+            )
+    words = [f"{each.words(space)} [{each.why}]" for each in made.minimal] or ["none found"]
+    print(f"{name:26}{made.run:4} samples, {len(made.tried):4} runs: {words[0]}", flush=True)
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--samplers", default="random,sobol,lhs,climb")
+    parser.add_argument("--real", nargs="*", metavar="FAULT", help="in SUMO: these faults, or all")
+    parser.add_argument("--budget", type=int, default=24)
+    parser.add_argument("--out", type=Path, default=Path("runs/planted"))
     given = parser.parse_args()
+    if given.real is not None:
+        for name in given.real or REAL:
+            real(name, given.budget, given.out)
+        return
     surrogate(tuple(given.samplers.split(",")))
 
 

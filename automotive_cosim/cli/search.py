@@ -104,7 +104,7 @@ def search(
             return
         margin = "not judged" if last.outcome.margin is None else f"margin {last.outcome.margin:+.2f}"
         console.print(
-            f"{sum(not each.outcome.is_unrunnable for each in found.samples)} of {budget}; {margin}; {counted(len(found.minimal), 'minimal failure')}",
+            f"{found.run} of {budget}; {margin}; {counted(len(found.minimal), 'minimal failure')}",
             soft_wrap=True,
         )
 

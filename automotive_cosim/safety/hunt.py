@@ -17,7 +17,7 @@ BISECTIONS = 4
 """Halvings between a number that fails and the nominal one: to a sixteenth of the distance."""
 
 MOST_ASKED = 20
-"""Points that a sampler is asked for at most, for each that is run: combinations that cannot be run are passed over."""
+"""Points that a sampler is asked for at most, for each that is run."""
 
 Evaluate = Callable[[Point, int], TriedOutcome]
 """Runs a point; the number says which repeat."""
@@ -108,6 +108,11 @@ class Hunt:
         """The points that the sampler chose, each once."""
         return [each for each in self.tried if each.phase is Phase.SAMPLE]
 
+    @property
+    def run(self) -> int:
+        """How many of them could be run."""
+        return sum(not each.outcome.is_unrunnable for each in self.samples)
+
 
 def hunt(
     space: Space,
@@ -125,7 +130,8 @@ def hunt(
         space: where.
         evaluate: runs a point.
         sampler: chooses the points.
-        budget: how many points are run that it chooses; those that name nothing that can be run do not count. Repeats and reductions come in addition: about thirty a failure.
+        budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
+            reductions come in addition: about thirty runs a failure.
         most_failures: how many failures are made small; those that one of them explains are not.
         goes_on: asked before each point; whether there is time left.
         tell: called after each point.
@@ -142,7 +148,7 @@ def hunt(
             f"the nominal point {why}; give nominal values, the first of each list, under which the agent passes"
         )
     for _ in range(MOST_ASKED * budget):
-        if sum(not each.outcome.is_unrunnable for each in found.samples) >= budget:
+        if found.run >= budget:
             break
         if not goes_on():
             found.stopped = "its time is over"

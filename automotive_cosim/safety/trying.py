@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -108,14 +108,21 @@ class Trying:
 
 
 @contextmanager
-def trying(space: Space, plan: Plan, folder: Path) -> Iterator[Trying]:
+def trying(
+    space: Space, plan: Plan, folder: Path, runner: Runner[TrialJob, TrialRow] | None = None
+) -> Iterator[Trying]:
     """Opens a folder, new or to be resumed.
+
+    Args:
+        space: what is searched.
+        plan: the agent, its model and limits.
+        folder: where the trials are kept.
+        runner: runs a trial; None runs it with the agent of its name.
 
     Raises:
         UserError: it cannot be written, or holds something else.
     """
-    with (
-        opened(folder, plan.as_json(), kind_of, planned=0, grows=True) as store,
-        worker.trials(Pictures.NONE) as runner,
-    ):
-        yield Trying(plan, store, runner, space)
+    with ExitStack() as ends:
+        store = ends.enter_context(opened(folder, plan.as_json(), kind_of, planned=0, grows=True))
+        own = runner or ends.enter_context(worker.trials(Pictures.NONE))
+        yield Trying(plan, store, own, space)
