@@ -30,7 +30,7 @@ from automotive_cosim.run.worker import run_with
 from automotive_cosim.safety.hunt import Hunt, hunt
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.samplers import make_sampler
-from automotive_cosim.safety.space import FactorChoices, FactorRange, FailureRule, Point, Space
+from automotive_cosim.safety.space import FactorChoices, FactorRange, FailureRule, SearchPoint, Space
 from automotive_cosim.safety.trying import trial_of, trying
 from automotive_cosim.traffic.fork import Simulations
 
@@ -55,15 +55,15 @@ SPACE = Space(
 )
 """Nine factors and a seed."""
 
-Fault = Callable[[Point], float]
+Fault = Callable[[SearchPoint], float]
 """Seconds by which an agent is late."""
 
 
-def number(point: Point, name: str) -> float:
+def number(point: SearchPoint, name: str) -> float:
     return float(point[name])
 
 
-def dark(point: Point) -> float:
+def dark(point: SearchPoint) -> float:
     """0 by day, 1 in the middle of the night."""
     hour = number(point, "hour")
     return max(0.0, 1 - min(hour, 24 - hour) / 6)
@@ -85,7 +85,7 @@ FAULTS: Mapping[str, Fault] = {
 }
 
 
-def outcome(fault: Fault, point: Point) -> TriedOutcome:
+def outcome(fault: Fault, point: SearchPoint) -> TriedOutcome:
     """Its delay is three seconds, the latency, up to two by chance, and the fault's."""
     chance_s = float(np.random.default_rng(int(number(point, "seed"))).random()) * 2
     delay_s = 3.0 + number(point, "latency_s") + chance_s + fault(point)

@@ -9,7 +9,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Weather
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.sun import Darkness, elevation_deg
 from automotive_cosim.geo.weather import FOG_BELOW_M
-from automotive_cosim.measures.exposure import Stretch
+from automotive_cosim.measures.exposure import DriveStretch
 
 UNKNOWN = "unknown"
 
@@ -20,13 +20,13 @@ def states_of(moments: Sequence[Moment]) -> list[DrivingState]:
     return first + [state for moment in moments[1:] for state in moment.passed]
 
 
-def stretches(moments: Sequence[Moment]) -> Iterator[Stretch]:
+def stretches(moments: Sequence[Moment]) -> Iterator[DriveStretch]:
     """The stretches between moments; a stretch has the conditions and the speed of its end."""
     for before, now in pairwise(moments):
         state, seconds = now.driving, now.time_s - before.time_s
         metres = max(0.0, state.distance_m - before.driving.distance_m)
         kmh = metres / seconds * KMH_PER_MPS if seconds > 0 else 0.0
-        yield Stretch(seconds, metres, kmh, state.road.road_class, weather_class(now.weather), _light(now))
+        yield DriveStretch(seconds, metres, kmh, state.road.road_class, weather_class(now.weather), _light(now))
 
 
 def weather_class(weather: Weather) -> str:

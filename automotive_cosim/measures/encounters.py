@@ -46,7 +46,7 @@ MASSES_KG = {
 }  # fmt: skip
 """Masses of SUMO's vehicle classes (defaults of SUMO 1.28); any other has that of a passenger car."""
 
-Scene = tuple[float, Sequence[SeenVehicle]]
+RoadScene = tuple[float, Sequence[SeenVehicle]]
 """Simulation time, and every vehicle then."""
 
 
@@ -126,7 +126,7 @@ class Encounter:
 
 
 def pair_readings(
-    scenes: Iterable[Scene], ego: str | None = "ego", thresholds: Thresholds = DEFAULT_THRESHOLDS
+    scenes: Iterable[RoadScene], ego: str | None = "ego", thresholds: Thresholds = DEFAULT_THRESHOLDS
 ) -> Iterator[PairReading]:
     """Every pair of vehicles in range that follow, merge, cross or meet, at every instant.
 
@@ -157,7 +157,7 @@ def pair_readings(
 
 
 def encounters(
-    scenes: Iterable[Scene], ego: str | None = "ego", thresholds: Thresholds = DEFAULT_THRESHOLDS
+    scenes: Iterable[RoadScene], ego: str | None = "ego", thresholds: Thresholds = DEFAULT_THRESHOLDS
 ) -> tuple[Encounter, ...]:
     """The critical encounters, in the order in which they begin; arguments as in ``pair_readings``."""
     kept = tuple(scenes)
@@ -392,7 +392,7 @@ class _DrivenPath:
         return 1.0 / ahead if ahead > 0 else max(CREEPING_MPS, self.vehicle.speed_mps)
 
 
-def _crossings(scenes: Sequence[Scene], ego: str | None, thresholds: Thresholds) -> Iterator[Encounter]:
+def _crossings(scenes: Sequence[RoadScene], ego: str | None, thresholds: Thresholds) -> Iterator[Encounter]:
     """The crossings of paths within the threshold of the PET."""
     tracks: dict[str, _DrivenPath] = {}
     for time_s, vehicles in scenes:

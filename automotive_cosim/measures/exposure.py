@@ -10,7 +10,7 @@ BANDS_KMH = (0, 30, 50, 80, 100)
 
 
 @dataclass(frozen=True, slots=True)
-class Stretch:
+class DriveStretch:
     """A piece of a drive in unchanged conditions."""
 
     seconds: float
@@ -35,7 +35,7 @@ class ExposureCell:
     kilometres: float
 
 
-def exposure(stretches: Iterable[Stretch]) -> tuple[ExposureCell, ...]:
+def exposure(stretches: Iterable[DriveStretch]) -> tuple[ExposureCell, ...]:
     """The sums by condition, the longest first; together they are the whole drive."""
     sums: dict[tuple[str, str, str, str], list[float]] = {}
     for each in stretches:

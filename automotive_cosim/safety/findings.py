@@ -10,7 +10,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
-from automotive_cosim.safety.space import Factor, Point, told
+from automotive_cosim.safety.space import Factor, SearchPoint, told
 
 MOST_PAIRS = 30
 """Rows of the table of two factors."""
@@ -54,7 +54,7 @@ def unseen(found: Hunt) -> UnseenBound:
     )
 
 
-def explained(found: Hunt, point: Point) -> MinimalFailure | None:
+def explained(found: Hunt, point: SearchPoint) -> MinimalFailure | None:
     """The first minimal failure that explains one at a point."""
     return next((each for each in found.minimal if each.covers(found.space, point)), None)
 

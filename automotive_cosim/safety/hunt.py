@@ -9,7 +9,7 @@ from enum import StrEnum
 from automotive_cosim.errors import UserError
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.samplers import Sampler
-from automotive_cosim.safety.space import FactorRange, Key, Point, Space, Value, key_of, told
+from automotive_cosim.safety.space import FactorRange, FactorValue, PointKey, SearchPoint, Space, key_of, told
 
 REPEATS = 3
 """Runs of a failure; it counts if all of them fail."""
@@ -19,7 +19,7 @@ BISECTIONS = 4
 MOST_ASKED = 20
 """Points that a sampler is asked for at most, for each that is run."""
 
-Evaluate = Callable[[Point, int], TriedOutcome]
+Evaluate = Callable[[SearchPoint, int], TriedOutcome]
 """Runs a point; the number says which repeat."""
 
 
@@ -38,7 +38,7 @@ class Tried:
 
     number: int
     phase: Phase
-    point: Point
+    point: SearchPoint
     repeat: int
     outcome: TriedOutcome
     even: bool = False
@@ -51,10 +51,10 @@ class MinimalFailure:
 
     first: Tried
     """The failure that it was made of."""
-    point: Point
+    point: SearchPoint
     changed: tuple[str, ...]
     """The factors that it needs; empty if the nominal point fails."""
-    neighbour: Point | None
+    neighbour: SearchPoint | None
     """The nearest point found that passes; None if there is none."""
     differs: str
     """The one factor in which the two differ."""
@@ -62,7 +62,7 @@ class MinimalFailure:
     trial: str
     neighbour_trial: str
 
-    def covers(self, space: Space, point: Point) -> bool:
+    def covers(self, space: Space, point: SearchPoint) -> bool:
         """Whether a point has all that this failure needs, and perhaps more of it."""
         for name in self.changed:
             factor, mine, theirs = space.factor(name), self.point[name], point[name]
@@ -169,9 +169,9 @@ class _Runner:
     def __init__(self, found: Hunt, evaluate: Evaluate) -> None:
         self.found = found
         self._evaluate = evaluate
-        self._known: dict[tuple[Key, int], TriedOutcome] = {}
+        self._known: dict[tuple[PointKey, int], TriedOutcome] = {}
 
-    def __call__(self, phase: Phase, point: Point, repeat: int = 0, *, even: bool = False) -> Tried:
+    def __call__(self, phase: Phase, point: SearchPoint, repeat: int = 0, *, even: bool = False) -> Tried:
         key = key_of(point), repeat
         fresh = key not in self._known
         if fresh:
@@ -181,7 +181,7 @@ class _Runner:
             self.found.tried.append(tried)
         return tried
 
-    def is_steady(self, point: Point) -> bool:
+    def is_steady(self, point: SearchPoint) -> bool:
         """Whether a point fails each time."""
         return all(self(Phase.REPEAT, point, repeat).outcome.failed for repeat in range(1, REPEATS))
 
@@ -203,7 +203,7 @@ def _reduce(run: _Runner, first: Tried, most: int) -> None:
 def minimise(run: _Runner, first: Tried) -> MinimalFailure:
     """Takes factors back to nominal while it still fails, then bisects the numbers that are left."""
     space = run.found.space
-    point: dict[str, Value] = dict(first.point)
+    point: dict[str, FactorValue] = dict(first.point)
     passing: list[Tried] = []
     last = first
     for factor in sorted(space.factors, key=lambda each: isinstance(each, FactorRange)):
@@ -245,7 +245,7 @@ def minimise(run: _Runner, first: Tried) -> MinimalFailure:
     )
 
 
-def _neighbour(run: _Runner, point: Point, passing: Sequence[Tried]) -> tuple[Tried | None, str]:
+def _neighbour(run: _Runner, point: SearchPoint, passing: Sequence[Tried]) -> tuple[Tried | None, str]:
     """The nearest passing point that differs in one factor: known, or made of those that nearly do."""
     space = run.found.space
     made: list[Tried] = []
@@ -258,5 +258,5 @@ def _neighbour(run: _Runner, point: Point, passing: Sequence[Tried]) -> tuple[Tr
     return nearest, "" if nearest is None else next(_differing(nearest.point, point))
 
 
-def _differing(one: Point, other: Point) -> Iterator[str]:
+def _differing(one: SearchPoint, other: SearchPoint) -> Iterator[str]:
     return (name for name in one if one[name] != other[name])

@@ -14,7 +14,7 @@ from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write, read_manifest
 from automotive_cosim.safety.findings import as_json, tables
 from automotive_cosim.safety.hunt import Hunt, MinimalFailure, Tried
-from automotive_cosim.safety.space import Point
+from automotive_cosim.safety.space import SearchPoint
 from automotive_cosim.safety.trying import trial_of
 
 ROWS, FINDINGS, PAGE, PLANS = "tried.jsonl", "findings.json", "search.html", "failures"
@@ -69,7 +69,7 @@ def suite(found: Hunt, agent: str, model: str, failures: list[MinimalFailure] | 
     return "\n".join(lines) + "\n"
 
 
-def _entry(point: Point) -> Iterator[str]:
+def _entry(point: SearchPoint) -> Iterator[str]:
     trial, plain = trial_of(point), PlannedTrial()
     yield "[[trials]]"
     for name in ("task", "half", "drive", "scenario", "seed", "held_out"):

@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from automotive_cosim.errors import SetupError, UnknownNameError
-from automotive_cosim.safety.space import Factor, FactorChoices, Point, Space, Value, key_of
+from automotive_cosim.safety.space import Factor, FactorChoices, FactorValue, SearchPoint, Space, key_of
 
 NEEDS = "the sampler {} needs the extra search: pip install 'automotive-cosim[search]'"
 SHARE = 0.25
@@ -24,11 +24,11 @@ STEP = 0.15
 class Sampler(Protocol):
     """Proposes points."""
 
-    def ask(self) -> tuple[Point, bool]:
+    def ask(self) -> tuple[SearchPoint, bool]:
         """The next point, and whether it is one of those that represent the whole space."""
         ...
 
-    def tell(self, point: Point, margin: float) -> None:
+    def tell(self, point: SearchPoint, margin: float) -> None:
         """By how much a point passed (above 0) or failed."""
         ...
 
@@ -40,11 +40,11 @@ class RandomSampler:
         """Draws from ``rng``."""
         self._space, self._rng = space, rng
 
-    def ask(self) -> tuple[Point, bool]:
+    def ask(self) -> tuple[SearchPoint, bool]:
         """A random point."""
         return self._space.at(self._rng.random(self._space.dimensions).tolist()), True
 
-    def tell(self, point: Point, margin: float) -> None:
+    def tell(self, point: SearchPoint, margin: float) -> None:
         """Learns nothing."""
 
 
@@ -69,14 +69,14 @@ class EvenSampler:
         self._laid = [space.at(units.tolist()) for units in laid[:budget]]
         self._next = 0
 
-    def ask(self) -> tuple[Point, bool]:
+    def ask(self) -> tuple[SearchPoint, bool]:
         """The next of them; random ones once they are used up."""
         if self._next >= len(self._laid):
             return self._space.at(self._rng.random(self._space.dimensions).tolist()), True
         self._next += 1
         return self._laid[self._next - 1], True
 
-    def tell(self, point: Point, margin: float) -> None:
+    def tell(self, point: SearchPoint, margin: float) -> None:
         """Learns nothing."""
 
 
@@ -88,9 +88,9 @@ class ClimbSampler:
         even = max(min(budget, LEAST_EVEN), round(SHARE * min(budget, 64)))
         self._space, self._rng, self._even = space, rng, EvenSampler(space, even, rng)
         self._left = even
-        self._known: dict[Any, tuple[float, Point]] = {}
+        self._known: dict[Any, tuple[float, SearchPoint]] = {}
 
-    def ask(self) -> tuple[Point, bool]:
+    def ask(self) -> tuple[SearchPoint, bool]:
         """An even point at first, then a step from one of the worst."""
         if self._left > 0 or not self._known:
             self._left -= 1
@@ -102,11 +102,11 @@ class ClimbSampler:
                 return point, False
         return self._space.at(self._rng.random(self._space.dimensions).tolist()), False
 
-    def tell(self, point: Point, margin: float) -> None:
+    def tell(self, point: SearchPoint, margin: float) -> None:
         """Notes the margin."""
         self._known[key_of(point)] = margin, point
 
-    def _step(self, point: Point) -> Point:
+    def _step(self, point: SearchPoint) -> SearchPoint:
         made = dict(point)
         moved = self._rng.permutation(self._space.dimensions)[: 1 + int(self._rng.random() < 0.5)]
         for index in moved:
@@ -142,7 +142,7 @@ class CmaSampler:
         self._told: list[tuple[list[float], float]] = []
         self._known: list[tuple[float, list[float]]] = []
 
-    def ask(self) -> tuple[Point, bool]:
+    def ask(self) -> tuple[SearchPoint, bool]:
         """An even point at first, then one of the distribution."""
         if self._left > 0 or not self._known:
             self._left -= 1
@@ -158,7 +158,7 @@ class CmaSampler:
         units = self._asked[len(self._told)]
         return self._space.at(units), False
 
-    def tell(self, point: Point, margin: float) -> None:
+    def tell(self, point: SearchPoint, margin: float) -> None:
         """Adapts the distribution after each generation."""
         self._known.append((margin, self._space.units(point)))
         if self._asked:
@@ -195,19 +195,19 @@ class BayesSampler:
         }
         self._trial: Any = None
 
-    def ask(self) -> tuple[Point, bool]:
+    def ask(self) -> tuple[SearchPoint, bool]:
         """The next point of the study."""
         self._trial = self._study.ask(self._distributions)
         given = self._trial.params
         point = {each.name: _value(each, given[each.name]) for each in self._space.factors}
         return point, self._trial.number < self._random
 
-    def tell(self, point: Point, margin: float) -> None:
+    def tell(self, point: SearchPoint, margin: float) -> None:
         """Adds the result to the study."""
         self._study.tell(self._trial, margin)
 
 
-def _value(factor: Factor, given: Any) -> Value:
+def _value(factor: Factor, given: Any) -> FactorValue:
     """A value from optuna's: the number of one in the list, or a coordinate."""
     return factor.values[given] if isinstance(factor, FactorChoices) else factor.at(given)
 

@@ -16,10 +16,10 @@ from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.toml import Document, read_toml
 from automotive_cosim.run.plan import choose, families_named
 
-Value = str | float | bool
-Point = Mapping[str, Value]
+FactorValue = str | float | bool
+SearchPoint = Mapping[str, FactorValue]
 """A value of every factor."""
-Key = tuple[tuple[str, Value], ...]
+PointKey = tuple[tuple[str, FactorValue], ...]
 
 CONDITIONS = tuple(each.name for each in TABLE)
 SETTINGS = tuple(entry.name for entry in fields(DriveSettings))
@@ -37,10 +37,10 @@ class FactorChoices:
     """A factor with a list of values; the first is the nominal one."""
 
     name: str
-    values: tuple[Value, ...]
+    values: tuple[FactorValue, ...]
 
     @property
-    def nominal(self) -> Value:
+    def nominal(self) -> FactorValue:
         """The value of an ordinary trial."""
         return self.values[0]
 
@@ -49,19 +49,19 @@ class FactorChoices:
         """Its values in words."""
         return tuple(map(told, self.values))
 
-    def at(self, unit: float) -> Value:
+    def at(self, unit: float) -> FactorValue:
         """The value at a coordinate from 0 to 1."""
         return self.values[min(len(self.values) - 1, int(unit * len(self.values)))]
 
-    def unit(self, value: Value) -> float:
+    def unit(self, value: FactorValue) -> float:
         """A coordinate of a value."""
         return (self.values.index(value) + 0.5) / len(self.values)
 
-    def level(self, value: Value) -> str:
+    def level(self, value: FactorValue) -> str:
         """A value in words."""
         return told(value)
 
-    def distance(self, one: Value, other: Value) -> float:
+    def distance(self, one: FactorValue, other: FactorValue) -> float:
         """How far two values are apart, from 0 to 1."""
         return float(one != other)
 
@@ -98,18 +98,18 @@ class FactorRange:
             return round(value)
         return min(self.most, max(self.least, float(f"{value:.{DIGITS}g}")))
 
-    def unit(self, value: Value) -> float:
+    def unit(self, value: FactorValue) -> float:
         """The coordinate of a number."""
         number = float(value)
         if self.logarithmic:
             return (log(number) - log(self.least)) / (log(self.most) - log(self.least))
         return (number - self.least) / (self.most - self.least)
 
-    def level(self, value: Value) -> str:
+    def level(self, value: FactorValue) -> str:
         """The part in which a number lies, in words."""
         return self.levels[min(BINS - 1, int(self.unit(value) * BINS))]
 
-    def distance(self, one: Value, other: Value) -> float:
+    def distance(self, one: FactorValue, other: FactorValue) -> float:
         """How far two numbers are apart, as a share of the range."""
         return abs(self.unit(one) - self.unit(other)) if self.is_ordered else float(one != other)
 
@@ -137,7 +137,7 @@ class Space:
     rule: FailureRule = field(default_factory=FailureRule)
 
     @property
-    def nominal(self) -> Point:
+    def nominal(self) -> SearchPoint:
         """Every factor at its nominal value."""
         return {each.name: each.nominal for each in self.factors}
 
@@ -146,11 +146,11 @@ class Space:
         """Number of factors."""
         return len(self.factors)
 
-    def at(self, units: Sequence[float]) -> Point:
+    def at(self, units: Sequence[float]) -> SearchPoint:
         """The point at coordinates from 0 to 1."""
         return {each.name: each.at(unit) for each, unit in zip(self.factors, units, strict=True)}
 
-    def units(self, point: Point) -> list[float]:
+    def units(self, point: SearchPoint) -> list[float]:
         """Coordinates of a point."""
         return [each.unit(point[each.name]) for each in self.factors]
 
@@ -158,7 +158,7 @@ class Space:
         """The factor of that name."""
         return next(each for each in self.factors if each.name == name)
 
-    def distance(self, one: Point, other: Point) -> float:
+    def distance(self, one: SearchPoint, other: SearchPoint) -> float:
         """The sum over the factors."""
         return sum(each.distance(one[each.name], other[each.name]) for each in self.factors)
 
@@ -245,12 +245,12 @@ def _range(document: Document, steps: tuple[str, str], name: str, given: dict[st
     return FactorRange(name, float(made.least), float(made.most), nominal, whole, made.logarithmic)
 
 
-def key_of(point: Point) -> Key:
+def key_of(point: SearchPoint) -> PointKey:
     """A point as something that can be looked up."""
     return tuple(sorted(point.items()))
 
 
-def told(value: Value) -> str:
+def told(value: FactorValue) -> str:
     """A value in words."""
     if isinstance(value, bool):
         return "yes" if value else "no"

@@ -21,12 +21,12 @@ from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.store import Store, opened, replan
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
-from automotive_cosim.safety.space import CONDITIONS, SETTINGS, FactorChoices, Point, Space
+from automotive_cosim.safety.space import CONDITIONS, SETTINGS, FactorChoices, SearchPoint, Space
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasks import CATALOGUE
 
 
-def trial_of(point: Point, repeat: int = 0) -> PlannedTrial:
+def trial_of(point: SearchPoint, repeat: int = 0) -> PlannedTrial:
     """The trial at a point.
 
     Raises:
@@ -81,7 +81,7 @@ class Trying:
     """Trials since this start."""
     tell: Callable[[TrialRow], None] = lambda row: None
 
-    def __call__(self, point: Point, repeat: int) -> TriedOutcome:
+    def __call__(self, point: SearchPoint, repeat: int) -> TriedOutcome:
         """What comes of a point."""
         trial = trial_of(point, repeat)
         try:

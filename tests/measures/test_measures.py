@@ -10,15 +10,15 @@ import pytest
 from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.measures import (
     DEFAULT_THRESHOLDS,
+    DriveStretch,
     Encounter,
     EncounterKind,
-    Stretch,
     Thresholds,
     encounters,
     exposure,
     pair_readings,
 )
-from automotive_cosim.measures.encounters import PairOrder, Scene, as_csv
+from automotive_cosim.measures.encounters import PairOrder, RoadScene, as_csv
 from automotive_cosim.measures.formulas import (
     crossing_drac_mps2,
     delta_v_mps,
@@ -37,7 +37,7 @@ def steadily(from_m: float, mps: float) -> Way:
     return lambda time_s: (from_m + mps * time_s, mps)
 
 
-def scenes(seconds: float, *vehicles: tuple[str, float, float, Way]) -> Iterable[Scene]:
+def scenes(seconds: float, *vehicles: tuple[str, float, float, Way]) -> Iterable[RoadScene]:
     """Vehicles by name, heading, offset to the right of the origin, and way."""
     for step in range(round(seconds / STEP_S) + 1):
         time_s = step * STEP_S
@@ -173,10 +173,10 @@ def test_a_table_has_a_column_for_each_field() -> None:
 
 def test_exposure_keeps_all_time_and_way() -> None:
     drive = [
-        Stretch(3600.0, 40_000.0, 40.0, "primary", "dry", "day"),
-        Stretch(1800.0, 10_000.0, 20.0, "primary", "fog", "day"),
-        Stretch(1800.0, 60_000.0, 120.0, "motorway", "dry", "night"),
-        Stretch(3600.0, 40_000.0, 40.0, "primary", "dry", "day"),
+        DriveStretch(3600.0, 40_000.0, 40.0, "primary", "dry", "day"),
+        DriveStretch(1800.0, 10_000.0, 20.0, "primary", "fog", "day"),
+        DriveStretch(1800.0, 60_000.0, 120.0, "motorway", "dry", "night"),
+        DriveStretch(3600.0, 40_000.0, 40.0, "primary", "dry", "day"),
     ]
     cells = exposure(drive)
     assert [(cell.speed_band, cell.hours) for cell in cells] == [
