@@ -24,6 +24,7 @@ from automotive_cosim.cli import (
     drive,
     evaluate,
     mcp,
+    measures,
     memory,
     playback,
     publish,
@@ -61,6 +62,7 @@ app.command()(drive.drive)
 app.command()(validate.validate)
 app.command("eval")(evaluate.evaluate)
 app.command()(search.search)
+app.command()(measures.measures)
 app.command()(results.report)
 app.command()(compare.compare)
 app.command()(results.replay)
