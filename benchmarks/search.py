@@ -35,7 +35,7 @@ from automotive_cosim.safety.trying import trial_of, trying
 from automotive_cosim.traffic.fork import Simulations
 
 DEADLINE_S = 20.0
-SEEDS, MOST = range(10), 3000
+MOST = 3000
 LANGUAGES = ("en", "de", "fr", "es", "it", "nl", "pl", "ja")
 PLACES = ("grid", "alpine", "border", "gulf", "london", "nordic", "paris", "sydney")
 DRIVERS = ("average", "cautious", "elderly", "hurried", "learner", "tailgating")
@@ -105,7 +105,7 @@ def first_found(fault: Fault, sampler: str, seed: int, most: int) -> int | None:
     return None
 
 
-def surrogate(samplers: tuple[str, ...]) -> None:
+def surrogate(samplers: tuple[str, ...], seeds: int, most_random: int) -> None:
     rng = np.random.default_rng(0)
     points = [SPACE.at(rng.random(SPACE.dimensions).tolist()) for _ in range(20_000)]
     print(f"{'fault':26}{'fails %':>9}" + "".join(f"{name:>10}" for name in samplers) + "   minimal failure")
@@ -113,8 +113,8 @@ def surrogate(samplers: tuple[str, ...]) -> None:
         share = sum(outcome(fault, point).failed for point in points) / len(points)
         cells = []
         for sampler in samplers:
-            most = MOST if sampler == "random" else 500
-            found = [first_found(fault, sampler, seed, most) or most + 1 for seed in SEEDS]
+            most = most_random if sampler == "random" else min(500, most_random)
+            found = [first_found(fault, sampler, seed, most) or most + 1 for seed in range(seeds)]
             cells.append(f"{median(found):.0f}" if median(found) <= most else f"> {most}")
         made = hunt(SPACE, lambda p, _, of=fault: outcome(of, p), make_sampler("climb", SPACE, 128, 0), 128)
         words = made.minimal[0].words(SPACE) if made.minimal else "none found"
@@ -214,7 +214,7 @@ REAL: Mapping[str, tuple[Space, Callable[[Observation, list[str]], bool] | None]
 
 
 def real(name: str, budget: int, folder: Path) -> None:
-    """Searches with one planted fault until a failure has failed three times; those of drives are not made small."""
+    """Searches with one planted fault until a failure fails three times; those of drives are not made small."""
     space, fault = REAL[name]
     with closing(Simulations(count_limit=2)) as simulations:
 
@@ -246,12 +246,14 @@ def main() -> None:
     parser.add_argument("--real", nargs="*", metavar="FAULT", help="in SUMO: these faults, or all")
     parser.add_argument("--budget", type=int, default=24)
     parser.add_argument("--out", type=Path, default=Path("runs/planted"))
+    parser.add_argument("--seeds", type=int, default=10)
+    parser.add_argument("--most", type=int, default=MOST, help="samples at most")
     given = parser.parse_args()
     if given.real is not None:
         for name in given.real or REAL:
             real(name, given.budget, given.out)
         return
-    surrogate(tuple(given.samplers.split(",")))
+    surrogate(tuple(given.samplers.split(",")), given.seeds, given.most)
 
 
 if __name__ == "__main__":

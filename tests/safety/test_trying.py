@@ -9,7 +9,7 @@ import pytest
 
 from automotive_cosim.agents import Agent
 from automotive_cosim.agents.oracle import Oracle
-from automotive_cosim.agents.trivial import NoOp
+from automotive_cosim.agents.trivial import AlwaysAlert
 from automotive_cosim.contracts import Json
 from automotive_cosim.report.results import read_results
 from automotive_cosim.run.collect import Pictures
@@ -43,7 +43,7 @@ def plan() -> Plan:
 @pytest.mark.slow
 def test_a_search_finds_what_is_planted_and_goes_on(tmp_path: Path, simulations: Simulations) -> None:
     def run(job: TrialJob, folder: Path) -> TrialRow:
-        agent: Agent = NoOp() if job.setup.conditions.latency_s > 5 else Oracle()
+        agent: Agent = AlwaysAlert() if job.setup.conditions.latency_s > 5 else Oracle()
         return run_with(nullcontext(agent), job, folder, Pictures.NONE, simulations)
 
     folder = tmp_path / "search"
