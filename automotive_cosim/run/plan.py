@@ -59,8 +59,9 @@ class PlannedTrial:
     drive: str = ""
     """Family of drives; empty for a task."""
     scenario: str = ""
-    """Instead of the task's or the drive's own."""
+    """Where to run it instead of in the task's or the drive's own scenario."""
     seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
+    """Seed of the traffic, and of everything that is drawn."""
     repeat: Annotated[int, Ge(0), Le(1000)] = 0
     """Which run of the same it is; the plan's repeats count from here."""
     held_out: bool = False
