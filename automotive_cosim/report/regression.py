@@ -211,10 +211,26 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
         f"\n{problem}\n" for problem in dict.fromkeys(each for one in found for each in one.problems)
     )
     return (
-        table.markdown()
+        f"**{sentence(found, allowed)}**\n\n"
+        + table.markdown()
         + unknown
         + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
     )
+
+
+def sentence(found: Sequence[SuccessChange], allowed: float) -> str:
+    """The result in a sentence: each contestant that is worse or incomplete, by how much, or that none is."""
+    told = [
+        f"{each.contestant.label} is {each.outcome(allowed)}: {_before_and_after(each)}"
+        for each in found
+        if each.outcome(allowed) != "as good"
+    ]
+    return "; ".join(told or [f"No contestant is worse: {_before_and_after(found[-1])}"]) + "."
+
+
+def _before_and_after(each: SuccessChange) -> str:
+    shares = " before, ".join("–" if rate.value is None else f"{rate.value:.0%}" for rate in each.rates)
+    return f"{shares} after, of {each.rates[1].planned:,} {each.unit}"
 
 
 def mixed_versions(found: Sequence[SuccessChange]) -> str:
@@ -257,6 +273,7 @@ def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
     ]
     return {
         "ok": all(each["outcome"] == "as good" for each in contestants),
+        "answer": sentence(found, allowed),
         "versions": list(found[0].versions),
         "mixed_versions": bool(mixed_versions(found)),
         "contestants": contestants,

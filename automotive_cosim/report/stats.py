@@ -58,8 +58,6 @@ class Comparison:
     neither: int
     interval: Interval
     """Interval of the difference, from resampling tasks."""
-    p_value: float
-    """McNemar's exact test, two-sided; it treats the instances as independent."""
 
     @property
     def count(self) -> int:
@@ -173,14 +171,11 @@ def compare(
         clusters: the cluster, e.g. the task, of each instance.
         seed: of the bootstrap.
     """
-    from scipy.stats import binomtest
-
     shared = [instance for instance in first if instance in second]
     if not shared:
         return None
     cells = [(first[instance], second[instance]) for instance in shared]
     only_first, only_second = cells.count((True, False)), cells.count((False, True))
-    differing = only_first + only_second
     sums: dict[Hashable, list[int]] = defaultdict(lambda: [0, 0])
     for instance, (one, other) in zip(shared, cells, strict=True):
         sums[clusters[instance]][0] += int(one) - int(other)
@@ -191,7 +186,6 @@ def compare(
         only_second=only_second,
         neither=cells.count((False, False)),
         interval=_bootstrap(list(sums.values()), seed) or _newcombe(cells, len(sums)),
-        p_value=float(binomtest(only_first, differing).pvalue) if differing else 1.0,
     )
 
 

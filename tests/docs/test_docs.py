@@ -280,7 +280,7 @@ def test_pages_count_the_tasks_as_they_are():
 )
 @pytest.mark.slow
 def test_pages_count_the_episodes_as_they_are(cli, line, words):
-    planned = re.search(r"episodes +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
+    planned = re.search(r"runs +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
     assert planned is not None
     text = (TOP / "docs/evaluation.md").read_text(encoding="utf-8")
     assert f"automotive-cosim eval {line}" in text
