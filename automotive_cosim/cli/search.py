@@ -73,7 +73,7 @@ def search(
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.record import write_whole
     from automotive_cosim.safety.findings import as_json as findings_json
-    from automotive_cosim.safety.findings import percent
+    from automotive_cosim.safety.findings import sentence
     from automotive_cosim.safety.hunt import hunt
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import make_sampler
@@ -125,12 +125,11 @@ def search(
     if as_json:
         typer.echo(json.dumps(findings_json(found) | {"out": str(folder)}))
         return
-    for number_, each in enumerate(found.minimal, 1):
+    console.print(sentence(found, agent), soft_wrap=True)
+    for count, each in enumerate(found.minimal, 1):
         near = "" if each.neighbour is None else f"; passes with {each.differs} {each.neighbour[each.differs]}"
-        console.print(f"{number_}. fails with {each.words(space)}{near} [{each.why}]", markup=False, soft_wrap=True)
-    bound = findings_json(found)["failure_rate_upper"]
-    told = "" if bound is None else f"; the failure rate in the space is at most {percent(bound)} (95 %)"
-    console.print(f"{counted(len(found.minimal), 'minimal failure')}{told}. Report: {page}", soft_wrap=True)
+        console.print(f"{count}. fails with {each.words(space)}{near} [{each.why}]", markup=False, soft_wrap=True)
+    console.print(f"Report: {page}", soft_wrap=True)
 
 
 def _laid(folder: Path, about: Json, budget: int) -> int:

@@ -12,7 +12,7 @@ import io
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from itertools import combinations, pairwise
 from math import acos, cos, degrees, hypot, radians, sin
@@ -170,8 +170,7 @@ def encounters(
         if near is None:
             found.append(crossing)
         else:
-            known = asdict(found[near]) | {"pet_s": crossing.pet_s, "pet_swept_s": crossing.pet_swept_s}
-            found[near] = Encounter(**known)
+            found[near] = replace(found[near], pet_s=crossing.pet_s, pet_swept_s=crossing.pet_swept_s)
     return tuple(sorted(found, key=lambda each: (each.begins_s, each.vehicle, each.other)))
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from itertools import combinations
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
@@ -197,6 +198,20 @@ def _errors(found: Hunt) -> Table:
 
 def _point(each: Tried) -> str:
     return ", ".join(f"{name} {told(value)}" for name, value in each.point.items())
+
+
+def sentence(found: Hunt, agent: str) -> str:
+    """What was found, in a sentence or two."""
+    samples, bound = judged(found.samples), unseen(found)
+    failed = sum(each.outcome.failed for each in samples)
+    if not failed:
+        told_first = f"{agent} failed in none of {counted(len(samples), 'sample')}."
+    else:
+        causes = counted(len(found.minimal), "minimal failure")
+        told_first = f"{agent} failed in {failed} of {counted(len(samples), 'sample')}, from {causes}."
+    if bound.upper is None:
+        return told_first
+    return f"{told_first} The failure rate in this space is at most {percent(bound.upper)} ({CONFIDENCE:.0%})."
 
 
 def as_json(found: Hunt) -> Json:

@@ -12,7 +12,7 @@ from automotive_cosim.report.templates import render
 from automotive_cosim.run.plan import PlannedTrial
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write, read_manifest
-from automotive_cosim.safety.findings import as_json, tables
+from automotive_cosim.safety.findings import as_json, sentence, tables
 from automotive_cosim.safety.hunt import Hunt, MinimalFailure, Tried
 from automotive_cosim.safety.space import SearchPoint
 from automotive_cosim.safety.trying import trial_of
@@ -92,6 +92,7 @@ def _page(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> str
         model=model,
         about=about,
         found=found,
+        sentence=sentence(found, agent),
         failures=len(found.minimal),
         errors=sum(each.outcome.margin is None for each in found.tried),
         tables=made,

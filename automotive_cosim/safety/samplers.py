@@ -187,7 +187,7 @@ class BayesSampler:
         self._study = optuna.create_study(sampler=sampler)
         of = optuna.distributions
         self._space = space
-        self._distributions = {
+        self._distributions: dict[str, Any] = {
             each.name: of.CategoricalDistribution(list(range(len(each.values))))
             if isinstance(each, FactorChoices)
             else of.FloatDistribution(0.0, 1.0)
