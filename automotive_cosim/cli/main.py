@@ -24,6 +24,7 @@ from automotive_cosim.cli import (
     drive,
     evaluate,
     mcp,
+    measures,
     memory,
     playback,
     publish,
@@ -32,6 +33,7 @@ from automotive_cosim.cli import (
     scenarios,
     schema,
     screens,
+    search,
     serve,
     signals,
     study,
@@ -60,6 +62,8 @@ app.command()(run.run)
 app.command()(drive.drive)
 app.command()(validate.validate)
 app.command("eval")(evaluate.evaluate)
+app.command()(search.search)
+app.command()(measures.measures)
 app.command()(results.report)
 app.command()(compare.compare)
 app.command()(results.replay)

@@ -87,6 +87,19 @@ def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> In
     return Interval(max(0.0, middle - reach), min(1.0, middle + reach))
 
 
+def upper_bound(count: int, total: int, confidence: float = CONFIDENCE) -> float:
+    """The one-sided upper bound of a rate (Clopper and Pearson 1934, Biometrika 26); 3 / total if none was seen.
+
+    Raises:
+        ValueError: total is not above 0, or count is not between 0 and total.
+    """
+    if total <= 0 or not 0 <= count <= total:
+        raise ValueError(f"{count} of {total}")
+    from scipy.stats import beta
+
+    return 1.0 if count == total else float(beta.ppf(confidence, count + 1, total - count))
+
+
 def rate(
     outcomes: Iterable[tuple[Hashable, bool | None]],
     not_run: Iterable[Hashable] = (),

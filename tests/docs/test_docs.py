@@ -98,6 +98,12 @@ DRY = ("--dry-run",)
 HELP = ("--help",)
 
 TREATED: list[tuple[str, tuple[str, ...], str]] = [
+    (r"eval .*failures/", HELP, "needs a search; tests/safety/test_trying.py has one"),
+    (
+        r"(search|measures)",
+        HELP,
+        "takes minutes; tests/safety and tests/measures try them",
+    ),
     (r"eval .*--executor ray", HELP, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
