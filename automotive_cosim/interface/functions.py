@@ -18,7 +18,7 @@ from typing import Any
 from automotive_cosim.cockpit import calls
 from automotive_cosim.cockpit.actions import FIELDS, check, field_schema, parse, to_json
 from automotive_cosim.contracts import BY_HAND, UNCALLED, Action, ActionType, Json
-from automotive_cosim.contracts.given import GeoInput
+from automotive_cosim.contracts.given import GeoInput, Interface
 from automotive_cosim.errors import ActionError, UnknownNameError
 from automotive_cosim.formats.words import shown
 
@@ -26,6 +26,9 @@ LIGHT = ActionType.HAZARD_LIGHTS
 """An action that a function of the car's actuators does too: one way is enough."""
 OF_ACTIONS = tuple(kind for kind in UNCALLED if kind not in BY_HAND and kind is not LIGHT)
 """Actions that are functions by their own name: to wait, to speak, to ask, to warn, to end."""
+
+
+_OWN = frozenset(map(str, OF_ACTIONS))
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,11 +53,16 @@ def functions() -> Mapping[str, Function]:
     return found
 
 
-def offered(geo: GeoInput = GeoInput.FULL) -> tuple[Function, ...]:
-    """The functions of an agent that is told so much of its place: who is told nothing has nothing to ask, and no
-    position to estimate."""
-    without = set() if geo.answers else {str(ActionType.QUERY)}
-    return tuple(function for name, function in functions().items() if name not in without)
+def offered(interface: Interface = Interface.FUNCTIONS, geo: GeoInput = GeoInput.FULL) -> tuple[Function, ...]:
+    """The functions of an agent: of the car, of a finger, or of both, and always to wait, speak, ask, warn and end.
+
+    Args:
+        interface: how it acts.
+        geo: what it is told of its place; who is told nothing has nothing to ask.
+    """
+    own = {str(kind) for kind in OF_ACTIONS} - (set() if geo.answers else {str(ActionType.QUERY)})
+    called = [each for name, each in functions().items() if name in own or (interface.calls and name not in _OWN)]
+    return (*called, *map(_of_action, sorted(BY_HAND))) if interface.touches else tuple(called)
 
 
 def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Action:
@@ -67,9 +75,9 @@ def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Ac
     Raises:
         ActionError: there is no such function, or the arguments do not fit it.
     """
-    if name not in functions():
+    if name not in functions() and name not in BY_HAND:
         raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim functions")))
-    if name not in set(OF_ACTIONS):
+    if name not in _OWN and name not in BY_HAND:
         return parse({"action_type": ActionType.CALL, "function": name, "arguments": arguments or {}})
     given = _object(name, arguments) if isinstance(arguments, str) else dict(arguments or {})
     if "action_type" in given:
@@ -105,9 +113,10 @@ def call_of(action: Action) -> tuple[str, Json]:
 
 def _of_action(kind: ActionType) -> Function:
     takes = FIELDS[kind]
+    target = ("index", "x", "y") if takes.target else ()
     schema = {
         "type": "object",
-        "properties": {name: field_schema(name) for name in (*takes.required, *takes.optional)},
+        "properties": {name: field_schema(name) for name in (*target, *takes.required, *takes.optional)},
         "required": list(takes.required),
         "additionalProperties": False,
     }

@@ -103,12 +103,12 @@ class _Caller:
         return call.action
 
 
-def _play(ground: Ground, actor: Actor) -> Played:
+def _play(ground: Ground, actor: Actor, *, stop_when_lost: bool = False) -> Played:
     """An episode from the hand-over of an agent that calls functions and sees nothing of the screen."""
     episode: Episode = ground.episode.branch()
     conditions = replace(episode.setup.conditions, interface=Interface.FUNCTIONS, see=See.NOTHING)
     episode.setup = replace(episode.setup, conditions=conditions)
-    return finish(episode, actor)
+    return finish(episode, actor, stop_when_lost=stop_when_lost)
 
 
 def functions_win(ground: Ground) -> Iterator[str]:
@@ -157,5 +157,6 @@ def functions_are_not_enough(grounds: dict[str, Ground]) -> Iterator[str]:
         if all(_play(ground, _Caller((end,))).success for ground in grounds.values()):
             yield f"{name} at once wins by functions"
     for kind in AlertKind:
-        if all(_play(ground, ground.agent(AlwaysAlert(kind))).success for ground in grounds.values()):
+        warner = AlwaysAlert(kind)
+        if all(_play(ground, ground.agent(warner), stop_when_lost=True).success for ground in grounds.values()):
             yield f"always {kind} wins by functions"
