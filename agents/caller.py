@@ -106,7 +106,7 @@ class Caller:
         return action
 
     def _ask(self, seen: Observation) -> None:
-        pictures = ()
+        pictures: tuple[bytes, ...] = ()
         if seen.screenshot is not None and self._asking.chat_model.sees_pictures:
             pictures = (png(seen.screenshot),)
         now = self._situation(seen, bool(pictures))

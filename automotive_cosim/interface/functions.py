@@ -77,9 +77,9 @@ def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Ac
     """
     if name not in functions() and name not in BY_HAND:
         raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim functions")))
-    if name not in _OWN and name not in BY_HAND:
-        return parse({"action_type": ActionType.CALL, "function": name, "arguments": arguments or {}})
     given = _object(name, arguments) if isinstance(arguments, str) else dict(arguments or {})
+    if name not in _OWN and name not in BY_HAND:
+        return parse({"action_type": ActionType.CALL, "function": name, "arguments": given})
     if "action_type" in given:
         raise ActionError(f"{name} takes no action_type; its name says it")
     return parse({"action_type": name, **given})

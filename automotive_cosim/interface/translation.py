@@ -87,7 +87,7 @@ def _set(signal: Signal[Any], value: Any) -> Action:
 @cache
 def _by_path() -> Mapping[str, tuple[str, str, str]]:
     """By the path of an actuator, the function that sets it, as which of several, and the name of the value."""
-    found = {}
+    found: dict[str, tuple[str, str, str]] = {}
     for function in (each for each in functions().values() if each.signals):
         *which, value = function.parameters
         names = which[0].schema["enum"] if which else [""]

@@ -64,7 +64,8 @@ def _answer(page: Page) -> str:
 def _call(page: Page, *, called: bool) -> str:
     """Calls that fulfil the goal, then how it ended by the last result, in the form of a protocol of calls."""
     goal = page.goal.lower()
-    known = next((calls for words, calls in CALLS if re.search(words, goal)), ())
+    known = next((found for words, found in CALLS if re.search(words, goal)), ())
+    calls: list[tuple[str, dict[str, object]]]
     if called and page.result in STOPPED:
         calls = [("status", {"goal_status": "infeasible", "reason": STOPPED[page.result]})]
     elif called or not known:

@@ -272,7 +272,10 @@ SKILLS: tuple[Skill, ...] = (
 
 
 CALLS: tuple[tuple[str, tuple[tuple[str, dict[str, object]], ...]], ...] = (
-    (r"\bfan\b.*\b(highest|maximum|full|max)", (("set_hvac_fan_speed", {"percent": 100}),)),
+    (
+        r"\bfull blast|\bfan\b.*\b(highest|maximum|full|max|all the way)",
+        (("set_hvac_fan_speed", {"percent": 100}),),
+    ),
     (r"\brear (window )?(defroster|heat)", (("switch_hvac", {"which": "rear_defroster", "on": True}),)),
     (r"\bhazard", (("switch_lights", {"which": "hazard", "on": True}),)),
     (r"\bhigh beam", (("switch_lights", {"which": "high_beam", "on": True}),)),
