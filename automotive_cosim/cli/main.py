@@ -23,6 +23,7 @@ from automotive_cosim.cli import (
     doctor,
     drive,
     evaluate,
+    functions,
     mcp,
     measures,
     memory,
@@ -76,6 +77,7 @@ app.command()(playback.playback)
 app.command()(serve.serve)
 app.command()(screens.screens)
 app.command()(schema.schema)
+app.command()(functions.functions)
 app.command()(doctor.doctor)
 app.command()(mcp.mcp)
 app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
