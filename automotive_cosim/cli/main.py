@@ -23,7 +23,9 @@ from automotive_cosim.cli import (
     doctor,
     drive,
     evaluate,
+    functions,
     mcp,
+    measures,
     memory,
     playback,
     publish,
@@ -32,6 +34,7 @@ from automotive_cosim.cli import (
     scenarios,
     schema,
     screens,
+    search,
     serve,
     signals,
     study,
@@ -60,6 +63,8 @@ app.command()(run.run)
 app.command()(drive.drive)
 app.command()(validate.validate)
 app.command("eval")(evaluate.evaluate)
+app.command()(search.search)
+app.command()(measures.measures)
 app.command()(results.report)
 app.command()(compare.compare)
 app.command()(results.replay)
@@ -72,6 +77,7 @@ app.command()(playback.playback)
 app.command()(serve.serve)
 app.command()(screens.screens)
 app.command()(schema.schema)
+app.command()(functions.functions)
 app.command()(doctor.doctor)
 app.command()(mcp.mcp)
 app.command(context_settings=context.COMMAND_SETTINGS)(context.context)

@@ -14,13 +14,13 @@ from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.files import CHUNK_BYTES, opened
 from automotive_cosim.interface.trace import SAID, Step, plain, sha256
+from automotive_cosim.measures import nearest_s
 from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
 from automotive_cosim.report.page import element
 from automotive_cosim.run.collect import alerts, questioned
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.harm import nearest_s
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged

@@ -33,10 +33,14 @@ OURS = ("episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.
 STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
 
 
-def default_folder(setup: EpisodeSetup) -> Path:
-    """``runs/<timestamp>-<task>-<half>-<agent>-seed<seed>``; a second run in the same second gets a number."""
-    stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
-    folder = Path("runs") / f"{stamp}-{setup.task}-{setup.half}-{setup.agent}-seed{setup.seed}"
+def default_folder(setup: EpisodeSetup, ending: str = "") -> Path:
+    """``runs/<timestamp>-<task>-<half>-<agent>-seed<seed><ending>``."""
+    return stamped_folder(f"{setup.task}-{setup.half}-{setup.agent}-seed{setup.seed}{ending}")
+
+
+def stamped_folder(name: str) -> Path:
+    """``runs/<timestamp>-<name>``; a second one in the same second gets a number."""
+    folder = Path("runs") / f"{datetime.now():%Y%m%d-%H%M%S}-{name}"
     number = 2
     while folder.exists():
         folder = folder.with_name(f"{folder.name.removesuffix(f'-{number - 1}')}-{number}")

@@ -139,7 +139,7 @@ def _single_drive(folder: Path, drive: str) -> list[Compared]:
         raise UserError(f"cannot read the drive in {folder}: {error}") from error
     own = family_named(row.family).scenario
     scenario = "" if row.scenario == own else row.scenario
-    setup = DriveSetup(row.family, row.seed, row.agent, row.model, row.conditions, scenario)
+    setup = DriveSetup(row.family, row.seed, row.agent, row.model, row.conditions, scenario, row.settings)
     return _drive_again(row, DriveJob(setup, row.repeat), steps)
 
 
@@ -158,7 +158,9 @@ def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
         return PROFILES[setup.agent].under(settings).channels
     if setup.agent == ScriptedAgent.name:
         return ALL
-    return frozenset((NativeAgent if setup.agent == NativeAgent.name else make_agent(setup.agent)).channels)
+    if setup.agent == NativeAgent.name:
+        return frozenset(NativeAgent.channels)
+    return frozenset(make_agent(setup.agent, settings=AgentSettings(setup.conditions)).channels)
 
 
 def _again(
