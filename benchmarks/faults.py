@@ -65,7 +65,7 @@ MARK = "FAULTS_OF"
 
 def main() -> None:
     """Runs everything that is asked for and prints what came of it as JSON, a line for each part."""
-    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--parts", default="tasks,drives,faults,ray,resets")
     parser.add_argument("--kills", type=int, default=200)
     parser.add_argument("--resets", type=int, default=1000)
@@ -190,7 +190,7 @@ def parent_of(pid: int) -> int:
 
 def left_over() -> list[int]:
     """Processes that a command has started and that still run half a minute after its end."""
-    mine = f"{MARK}={os.getpid()}".encode()
+    mine, found = f"{MARK}={os.getpid()}".encode(), list[int]()
     for _ in range(30):
         found = []
         for path in Path("/proc").glob("[0-9]*"):
@@ -303,14 +303,14 @@ def on_ray(folder: Path, kills: int, rng: random.Random) -> dict[str, Any]:
     from ray.cluster_utils import Cluster
 
     expected, took_s = rows(folder / "undisturbed", TASKS, EpisodeRow)
-    node = {"num_cpus": 1, "object_store_memory": 80 * 1024**2}
+    node: dict[str, Any] = {"num_cpus": 1, "object_store_memory": 80 * 1024**2}
     cluster = Cluster(initialize_head=True, head_node_args=node | {"include_dashboard": False})
     differing = starts = 0
     with closing(_Closes(cluster)):
         for number in range(kills):
             second = cluster.add_node(**node)
             out = folder / f"e{number}"
-            words = (*TASKS, "--executor", "ray", "--ray-address", cluster.address, "--out", str(out))
+            words = (*TASKS, "--executor", "ray", "--ray-address", str(cluster.address), "--out", str(out))
             with started(words) as process:
                 with suppress(subprocess.TimeoutExpired):
                     process.wait(rng.uniform(5.0, 5.0 + took_s))
