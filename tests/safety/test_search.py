@@ -127,6 +127,13 @@ def test_findings_count_every_sample() -> None:
     assert sum(of_driver) == 50
 
 
+def test_few_whole_numbers_are_levels_of_their_own() -> None:
+    few, many = (FactorRange("seed", 0, most, 0, whole=True) for most in (3, 40))
+    assert few.levels == ("0", "1", "2", "3")
+    assert {few.level(few.at(step / 100)) for step in range(101)} == set(few.levels)
+    assert len(many.levels) == 4
+
+
 def test_the_bound_is_the_rule_of_three() -> None:
     assert upper_bound(0, 300) == pytest.approx(0.01, rel=0.01)
     assert upper_bound(5, 5) == 1.0
