@@ -115,6 +115,13 @@ def test_combinations_that_cannot_be_run_cost_nothing() -> None:
     assert dict(tables(found)[-1].rows)
 
 
+def test_no_point_is_begun_after_the_time_is_over() -> None:
+    left = iter([True, True, False])
+    found = hunt(SPACE, judged(lambda p: 0.5), make_sampler("random", SPACE, 9, 0), 9, goes_on=lambda: next(left))
+    assert found.run == 2
+    assert found.stopped == "its time is over"
+
+
 def test_findings_count_every_sample() -> None:
     found = searched("random", 50)
     told = as_json(found)
