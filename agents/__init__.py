@@ -8,6 +8,7 @@ if __name__ != "automotive_cosim.agents":
 from collections.abc import Callable, Mapping
 
 from automotive_cosim.agents.base import Agent, Learner, Privileged, Stage, StageName, Thinker
+from automotive_cosim.agents.caller import Caller, tools
 from automotive_cosim.agents.guest import load
 from automotive_cosim.agents.human import Human
 from automotive_cosim.agents.model_agent import ModelAgent
@@ -16,8 +17,10 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.settings import PROFILES, AgentPart, AgentSettings
 from automotive_cosim.agents.trivial import AlwaysAlert, AlwaysAsk, NoOp, PressEverything, Random
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.interface.functions import as_json
 from automotive_cosim.models import ChatModel, make_model
+from automotive_cosim.models.apis import ChatTools, ProviderApi
 from automotive_cosim.models.turns import Turns
 
 __all__ = [
@@ -31,6 +34,7 @@ __all__ = [
     "AgentSettings",
     "AlwaysAlert",
     "AlwaysAsk",
+    "Caller",
     "Human",
     "Learner",
     "ModelAgent",
@@ -64,12 +68,15 @@ SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
 }
 """Agents without a model."""
 
-MODELLED = frozenset({*PROFILES, NativeAgent.name})
+MODELLED = frozenset({*PROFILES, NativeAgent.name, Caller.name})
 """Agents with a model."""
 
 AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
 """Names of all agents; ``package.module:Class`` names one of your own."""
 
+
+BY_TOUCH = frozenset({*PROFILES, NativeAgent.name, "human", "oracle", "press-everything", "random"})
+"""Agents that act on the screen alone."""
 
 ABOUT: Mapping[str, str] = {
     "alert-all": "negative control on drives: gives every kind of alert in turn",
@@ -78,6 +85,7 @@ ABOUT: Mapping[str, str] = {
     "always-alert": "negative control: warns at once, whatever happens",
     "always-ask": "negative control: asks the driver what is meant, and declares complete",
     "asurada": "elements, screenshots, GPS, geo-context; can query rules and remember (as the paper's)",
+    "caller": "calls functions, in a plain loop; what it sees is set by --see and --geo",
     "human": "you, with numbered elements on the terminal",
     "m3a": "elements and screenshots, raw and marked (after AndroidWorld's M3A)",
     "native": "screenshots alone, for models trained to operate screens, in their own formats",
@@ -114,6 +122,10 @@ def make_agent(
     """
     if ":" in name:
         return load(name)
+    if name in BY_TOUCH and not settings.conditions.interface.touches:
+        raise UserError(f"agent {name!r} works on the screen, which --interface functions withholds; take 'caller'")
+    if name == Caller.name:
+        return Caller(chat_model or make_model(model, _speaking(settings)), settings)
     if name in PROFILES:
         return ModelAgent(PROFILES[name], chat_model or make_model(model), settings)
     if name == NativeAgent.name:
@@ -124,13 +136,19 @@ def make_agent(
     return SIMPLE[name](settings)
 
 
-def model_of(name: str, model: str, turns: Turns | None = None) -> ChatModel | None:
+def model_of(
+    name: str,
+    model: str,
+    turns: Turns | None = None,
+    settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
+) -> ChatModel | None:
     """The model that an agent of this name asks; None if it has none.
 
     Args:
         name: the agent.
         model: the model's name.
         turns: where a model with a limit of questions a minute takes its turns; by default its own.
+        settings: of the agent; one that calls functions tells its model which.
 
     Raises:
         as ``make_agent``.
@@ -140,4 +158,9 @@ def model_of(name: str, model: str, turns: Turns | None = None) -> ChatModel | N
     if name == NativeAgent.name:
         without_format, form = chosen(model)
         return make_model(without_format, form.api, turns)
-    return make_model(model, turns=turns)
+    return make_model(model, _speaking(settings) if name == Caller.name else None, turns)
+
+
+def _speaking(settings: AgentSettings) -> ProviderApi:
+    """The protocol of a model that is offered the functions."""
+    return ChatTools(tools=tuple(map(as_json, tools(settings))))

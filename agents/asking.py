@@ -35,13 +35,16 @@ class Asking:
             OutOfBudgetError: the episode's tokens or seconds are spent.
             ModelError: the model does not answer.
         """
+        return self.converse([ChatMessage("user", text, tuple(pictures))])
+
+    def converse(self, messages: Sequence[ChatMessage]) -> tuple[ModelReply, str]:
+        """The answer to the last of several messages, and the digest of them all; raises like ``ask``."""
         settings = self._settings
         if self._tokens >= settings.most_tokens or self._seconds >= settings.most_seconds:
             raise OutOfBudgetError(
                 f"the episode's budget is spent: {self._tokens} of {settings.most_tokens} tokens, "
                 f"{self._seconds:.0f} of {settings.most_seconds:g} s"
             )
-        messages = [ChatMessage("user", text, tuple(pictures))]
         reply = self.chat_model.chat(messages)
         self._tokens += reply.tokens_in + reply.tokens_out
         self._seconds += reply.seconds

@@ -27,7 +27,7 @@ import sys
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -192,7 +192,10 @@ def _turn(agent: Agent, seen: Observation) -> Json:
 
 def _message(message: ChatMessage) -> Json:
     pictures = [base64.b64encode(picture).decode("ascii") for picture in message.pictures]
-    return {"role": message.role, "text": message.text, "pictures": pictures}
+    told: Json = {"role": message.role, "text": message.text, "pictures": pictures}
+    if message.calls:
+        told["calls"] = [asdict(call) for call in message.calls]
+    return told | ({"call_id": message.call_id} if message.call_id else {})
 
 
 def _told(error: BaseException) -> str:

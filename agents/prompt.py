@@ -93,6 +93,25 @@ def turn(
     )
 
 
+def situation(profile: AgentProfile, observation: Observation, *, pictures: bool, on_watch: bool) -> str:
+    """The situation alone, for an agent whose protocol carries the rest: the functions and what was called."""
+    given = profile.channels
+    is_listed = Channel.ELEMENTS in given
+    return fill(
+        "caller_now",
+        {
+            "goal": driver_words(observation),
+            "feedback": _result(observation),
+            "elements": _elements(profile, observation) if is_listed else None,
+            "pictures": PICTURE if pictures else None,
+            "vehicle": _vehicle(observation.vehicle, is_brief=profile.brief) if Channel.VEHICLE in given else None,
+            "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
+            "gps": _gps(observation.gps) if Channel.GPS in given else None,
+            "context": _context(profile, observation, on_watch=on_watch) if Channel.CONTEXT in given else None,
+        },
+    )
+
+
 PLACE_COUNTS = (
     "Weigh what you know of the place against what the car is doing: the same act can be right in one place and "
     "wrong in another."

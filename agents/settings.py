@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from automotive_cosim.contracts import ActionType
+from automotive_cosim.contracts import UNCALLED, ActionType
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.observe import Channel
@@ -65,7 +65,7 @@ class AgentSettings:
             )
 
 
-SCREEN_ALONE = frozenset(ActionType) - {ActionType.QUERY, ActionType.ESTIMATE_POSITION}
+SCREEN_ALONE = frozenset(UNCALLED) - {ActionType.QUERY, ActionType.ESTIMATE_POSITION}
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +111,6 @@ T3A = AgentProfile("t3a", _TEXT)
 """Reads the elements (after AndroidWorld's T3A)."""
 M3A = AgentProfile("m3a", _TEXT | {Channel.SCREENSHOT})
 """Also sees the screen, raw and with numbered marks (after AndroidWorld's M3A)."""
-ASURADA = AgentProfile("asurada", frozenset(Channel), frozenset(ActionType), remembers=True)
+ASURADA = AgentProfile("asurada", frozenset(Channel), frozenset(UNCALLED), remembers=True)
 """Also knows where it is, and can query the rules there (after the paper's ASURADA)."""
 PROFILES = {profile.name: profile for profile in (T3A, M3A, ASURADA)}

@@ -6,6 +6,7 @@ import numpy as np
 
 from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, check
 from automotive_cosim.contracts import (
+    UNCALLED,
     Action,
     ActionType,
     AlertKind,
@@ -97,7 +98,7 @@ class Random:
 
     def act(self, observation: Observation) -> Action:
         """A randomly drawn action."""
-        kind = tuple(ActionType)[int(self._rng.integers(len(ActionType)))]
+        kind = UNCALLED[int(self._rng.integers(len(UNCALLED)))]
         takes = FIELDS[kind]
         names = takes.required + (("index",) if takes.target else ())
         names += tuple(name for name in takes.optional if name != "index" and self._rng.random() < 0.5)

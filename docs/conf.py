@@ -29,7 +29,7 @@ author = "The automotive_cosim authors"
 project_copyright = "The automotive_cosim authors, Apache-2.0"
 version = release = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-exclude_patterns = ["_site", "examples", "_made/readme.md", "_made/spaces.md"]
+exclude_patterns = ["_site", "examples", "_made/functions.md", "_made/readme.md", "_made/spaces.md"]
 myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence", "deflist"]
 napoleon_numpy_docstring = False
@@ -53,6 +53,7 @@ def setup(sphinx: Sphinx) -> None:
     _catalogue()
     _gallery()
     _commands()
+    _write("functions.md", "```text", _printed("functions"), "```")
 
 
 def _write(page: str, *lines: str) -> None:

@@ -23,7 +23,7 @@ from automotive_cosim.agents.native.syntax import (
     car_function,
 )
 from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, KEYS, Meaning, Verb
-from automotive_cosim.contracts import ActionType, GoalStatus
+from automotive_cosim.contracts import UNCALLED, ActionType, GoalStatus
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.models.apis import Anthropic, Gemini, OpenAI, ProviderApi
 
@@ -59,7 +59,7 @@ class Format:
     def lacks(self) -> tuple[str, ...]:
         """The actions and statuses of the benchmark that it has no words for."""
         statuses = () if ActionType.SHOW_ALERT in self.actions else (str(GoalStatus.NOT_NEEDED),)
-        return (*(str(kind) for kind in ActionType if kind not in self.actions), *statuses)
+        return (*(str(kind) for kind in UNCALLED if kind not in self.actions), *statuses)
 
 
 _MEANT: Mapping[Meaning, frozenset[ActionType]] = {
@@ -181,8 +181,8 @@ _GEMINI: dict[str, Verb] = {
     END: Verb(Meaning.END, means="success"),
     CAR: Verb(Meaning.CAR),
 }
-_SCREEN_ALONE = frozenset(ActionType) - {ActionType.QUERY, ActionType.ESTIMATE_POSITION}
-_PLAIN: dict[str, Verb] = {str(kind): Verb(Meaning.CAR) for kind in ActionType if kind in _SCREEN_ALONE}
+_SCREEN_ALONE = frozenset(UNCALLED) - {ActionType.QUERY, ActionType.ESTIMATE_POSITION}
+_PLAIN: dict[str, Verb] = {str(kind): Verb(Meaning.CAR) for kind in UNCALLED if kind in _SCREEN_ALONE}
 
 _FUNCTIONS = (car_function(),)
 

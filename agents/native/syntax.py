@@ -14,7 +14,7 @@ from automotive_cosim.agents import answer
 from automotive_cosim.agents.answer import ended, objects
 from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, GuiCall, Meaning, Verb
 from automotive_cosim.cockpit.actions import grammar, to_json
-from automotive_cosim.contracts import ActionType, Json
+from automotive_cosim.contracts import UNCALLED, ActionType, Json
 from automotive_cosim.errors import ActionError
 
 LONGEST = 20_000
@@ -246,7 +246,7 @@ class ToolCalls:
 
 def car_function() -> Json:
     """The function with the car's own actions, as a JSON Schema."""
-    kinds = [kind for kind in ActionType if kind in CAR_ACTIONS]
+    kinds = [kind for kind in UNCALLED if kind in CAR_ACTIONS]
     return {
         "name": CAR,
         "description": f"Use the car's own functions. The arguments are one of:\n{grammar(kinds)}",

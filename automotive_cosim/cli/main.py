@@ -23,6 +23,7 @@ from automotive_cosim.cli import (
     doctor,
     drive,
     evaluate,
+    functions,
     mcp,
     measures,
     memory,
@@ -40,8 +41,9 @@ from automotive_cosim.cli import (
     tasks,
     validate,
 )
-from automotive_cosim.cli.terminal import discard_output, open_streams, plain, plain_streams
+from automotive_cosim.cli.terminal import discard_output, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.formats.plain import plain
 
 INTERRUPTED = 130
 """Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
@@ -75,6 +77,7 @@ app.command()(playback.playback)
 app.command()(serve.serve)
 app.command()(screens.screens)
 app.command()(schema.schema)
+app.command()(functions.functions)
 app.command()(doctor.doctor)
 app.command()(mcp.mcp)
 app.command(context_settings=context.COMMAND_SETTINGS)(context.context)

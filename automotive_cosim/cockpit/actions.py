@@ -7,14 +7,17 @@ model's prompt is generated from it (``grammar``), so the two cannot diverge.
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from dataclasses import fields as dataclass_fields
 from enum import StrEnum
 from math import isfinite
 from typing import TYPE_CHECKING, Any
 
+from automotive_cosim.cockpit.calls import function_named
 from automotive_cosim.contracts import (
+    UNCALLED,
     Action,
     ActionType,
     Alert,
@@ -127,6 +130,9 @@ FIELDS: Mapping[ActionType, Takes] = {
         "all options, and ask before you change anything. Asking distracts the driver",
         required=("text",),
     ),
+    ActionType.CALL: Takes(
+        "call a function of the car, where functions may be called", required=("function",), optional=("arguments",)
+    ),
 }
 
 _ENUMS: Mapping[str, type[StrEnum]] = {
@@ -148,8 +154,14 @@ _TYPES: Mapping[str, type] = {
     "speed_kmh": float,
     "clear_text": bool,
     "on": bool,
+    "function": str,
+    "arguments": dict,
 }
-_JSON_TYPES = {int: "integer", float: "number", str: "string", bool: "boolean"}
+_JSON_TYPES = {int: "integer", float: "number", str: "string", bool: "boolean", dict: "object"}
+
+
+_FENCE = re.compile(r"\A\s*```\w*\s*(.*?)\s*```\s*\Z", re.DOTALL)
+"""What Markdown puts around code, as models put it around JSON."""
 
 
 def parse(value: str | Json) -> Action:
@@ -160,7 +172,7 @@ def parse(value: str | Json) -> Action:
     """
     if isinstance(value, str):
         try:
-            value = json.loads(value)
+            value = json.loads(_FENCE.sub(r"\1", value))
         except (ValueError, RecursionError) as error:
             raise ActionError(f"the action is not JSON ({error}); send one JSON object") from error
     if not isinstance(value, dict):
@@ -210,6 +222,9 @@ def check(action: Action) -> Action:
         if value is not None and not least <= value <= most:
             came = f"{value:g}" if isinstance(value, float) else shown(value)
             raise ActionError(f"{name}: {field} is {came}; it goes from {least} to {most}")
+    if action.action_type is ActionType.CALL:
+        called = function_named(action.function or "")
+        return replace(action, arguments=called.read(action.arguments or {}))
     return action
 
 
@@ -218,7 +233,7 @@ def to_json(action: Action) -> Json:
     return {name: value for name, value in asdict(action).items() if value is not None}
 
 
-def grammar(kinds: Collection[ActionType] = tuple(ActionType), *, by_point: bool = False) -> str:
+def grammar(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = False) -> str:
     """The actions of these kinds, each as one line of JSON with its meaning, for a prompt.
 
     Args:
@@ -232,7 +247,7 @@ def grammar(kinds: Collection[ActionType] = tuple(ActionType), *, by_point: bool
     )
 
 
-def signatures(kinds: Collection[ActionType] = tuple(ActionType), *, by_point: bool = False) -> str:
+def signatures(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = False) -> str:
     """The same in fewer words: each action as a name with its fields, those in brackets optional.
 
     Args:
@@ -276,7 +291,7 @@ def _member(kind: ActionType, takes: Takes) -> Json:
     schema: Json = {
         "title": str(kind),
         "description": takes.about,
-        "properties": {"action_type": {"const": str(kind)}} | {name: _value(name) for name in named},
+        "properties": {"action_type": {"const": str(kind)}} | {name: field_schema(name) for name in named},
         "required": ["action_type", *takes.required],
         "additionalProperties": False,
     }
@@ -289,7 +304,8 @@ def _member(kind: ActionType, takes: Takes) -> Json:
     return schema
 
 
-def _value(name: str) -> Json:
+def field_schema(name: str) -> Json:
+    """The values of a field of an action, as a JSON Schema."""
     if name in _ENUMS:
         return {"enum": [str(member) for member in _ENUMS[name]]}
     schema: Json = {"type": _JSON_TYPES[_TYPES[name]]}
@@ -372,6 +388,8 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
             )
         case ActionType.ASK_DRIVER:
             return cockpit.ask_driver(action.text or "")
+        case ActionType.CALL:
+            return cockpit.call(action.function or "", action.arguments or {})
         case _:  # wait, answer, status, query, estimate_position: nothing in the cockpit moves
             return Feedback(FeedbackCode.OK, "")
 
@@ -458,7 +476,22 @@ def _switch(value: Any) -> bool | None:
     return {"true": True, "false": False}.get(value.casefold()) if isinstance(value, str) else None
 
 
-_CONVERTED: Mapping[type, Callable[[Any], Any]] = {int: _whole, float: _real, str: _words, bool: _switch}
+def _object(value: Any) -> dict[str, Any] | None:
+    """A JSON object from its text."""
+    try:
+        found = json.loads(value) if isinstance(value, str) else None
+    except (ValueError, RecursionError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+_CONVERTED: Mapping[type, Callable[[Any], Any]] = {
+    int: _whole,
+    float: _real,
+    str: _words,
+    bool: _switch,
+    dict: _object,
+}
 """A value of another type as one of this type; None where it is none."""
 
 

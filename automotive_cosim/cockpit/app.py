@@ -12,6 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from automotive_cosim.cockpit.functions import CarFunction
 from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
@@ -63,6 +64,8 @@ class App:
     """The initial parts of its screens."""
     starts: Callable[[State, np.random.Generator], Iterable[AppData]] = nothing
     """What it keeps before the first ``sense``."""
+    functions: tuple[CarFunction, ...] = ()
+    """Its commands as functions, besides those of the actuators."""
     turn: int = 0
     """Apps start in this order. What they draw comes from one generator, so that an app that draws takes a turn
     after all others: what these draw stays the same."""

@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.cockpit import accessibility, language, road, vhal
+from automotive_cosim.cockpit import accessibility, calls, language, road, vhal
 from automotive_cosim.cockpit.aboard import Occupant, take_seats
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.map.commands import Pan
@@ -425,6 +425,11 @@ class Cockpit:
         """Commands an actuator as its switch does."""
         return self._perform(Set(signal, value))
 
+    def call(self, name: str, arguments: Mapping[str, Any]) -> Feedback:
+        """Calls a function of the car, with checked arguments (``calls.function_named(name).read``)."""
+        self._tree = None
+        return calls.call(self._state, name, arguments)
+
     def repeat(self, record: CommandRecord, keys: Collection[str]) -> None:
         """Gives once more a command that was given at another cockpit, as far as it aims at these keys of
         ``commands``; the road replies as it did."""
@@ -447,6 +452,11 @@ class Cockpit:
     def signals(self) -> Signals:
         """The vehicle's signals."""
         return self._state.signals
+
+    @property
+    def state(self) -> State:
+        """What the screens are built from, to be read only."""
+        return self._state
 
     @property
     def tree(self) -> Screen:

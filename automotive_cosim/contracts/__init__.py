@@ -19,7 +19,15 @@ requests     the cockpit's requests to the road, and the answers
 plain        factors between units, JSON, numbers in texts, and how progress is told
 """
 
-from automotive_cosim.contracts.action import Action, ActionType, Direction, GoalStatus, Reason
+from automotive_cosim.contracts.action import (
+    BY_HAND,
+    UNCALLED,
+    Action,
+    ActionType,
+    Direction,
+    GoalStatus,
+    Reason,
+)
 from automotive_cosim.contracts.driving import (
     NO_LIMIT,
     STANDING_BELOW_MPS,
@@ -63,10 +71,12 @@ from automotive_cosim.contracts.sight import Sight, SightKind
 from automotive_cosim.contracts.snapshot import LaneShape, RoadShapes, RoadSnapshot, SeenVehicle, SumoSignal
 
 __all__ = [
+    "BY_HAND",
     "KMH_PER_MPS",
     "MPH_PER_MPS",
     "NO_LIMIT",
     "STANDING_BELOW_MPS",
+    "UNCALLED",
     "Action",
     "ActionType",
     "Alert",

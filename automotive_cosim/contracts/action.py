@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 from automotive_cosim.contracts.requests import AlertKind, Severity
 
@@ -34,6 +36,27 @@ class ActionType(StrEnum):
     QUERY = "query"
     ESTIMATE_POSITION = "estimate_position"
     ASK_DRIVER = "ask_driver"
+    CALL = "call"
+    """A function of the car, by its name; what it can be, ``cockpit.calls`` lists."""
+
+
+BY_HAND = frozenset(
+    {
+        ActionType.CLICK,
+        ActionType.DOUBLE_TAP,
+        ActionType.LONG_PRESS,
+        ActionType.INPUT_TEXT,
+        ActionType.SCROLL,
+        ActionType.SWIPE,
+        ActionType.KEYBOARD_ENTER,
+        ActionType.NAVIGATE_HOME,
+        ActionType.NAVIGATE_BACK,
+        ActionType.OPEN_APP,
+    }
+)
+"""Actions on the screen."""
+UNCALLED = tuple(kind for kind in ActionType if kind is not ActionType.CALL)
+"""Every action but a call of a function: those of an agent at the touch screen."""
 
 
 class GoalStatus(StrEnum):
@@ -84,3 +107,7 @@ class Action:
     speed_kmh: float | None = None
     on: bool | None = None
     destination: str | None = None
+    function: str | None = None
+    """The function that is called."""
+    arguments: Mapping[str, Any] | None = None
+    """Its arguments by name, in JSON's types."""

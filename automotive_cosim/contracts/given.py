@@ -55,6 +55,8 @@ class See(StrEnum):
     """As the list of elements."""
     PICTURE = "picture"
     """As the picture: no list, no ids, no descriptions; an action has to give a point."""
+    NOTHING = "nothing"
+    """Not at all, for who calls functions."""
 
     @property
     def withheld(self) -> frozenset[Channel]:
@@ -63,7 +65,28 @@ class See(StrEnum):
             See.BOTH: frozenset[Channel](),
             See.TREE: frozenset({Channel.SCREENSHOT}),
             See.PICTURE: frozenset({Channel.ELEMENTS}),
+            See.NOTHING: frozenset({Channel.SCREENSHOT, Channel.ELEMENTS}),
         }[self]
+
+
+class Interface(StrEnum):
+    """How an agent acts."""
+
+    TOUCH = "touch"
+    """On the screen, and by the safety calls."""
+    FUNCTIONS = "functions"
+    """By typed functions of the car; the screen cannot be touched."""
+    BOTH = "both"
+
+    @property
+    def touches(self) -> bool:
+        """Whether the screen can be touched."""
+        return self is not Interface.FUNCTIONS
+
+    @property
+    def calls(self) -> bool:
+        """Whether functions can be called."""
+        return self is not Interface.TOUCH
 
 
 class FeedbackDetail(StrEnum):

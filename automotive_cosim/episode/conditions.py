@@ -16,7 +16,7 @@ from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import Clock, FeedbackDetail, GeoInput, Language, See
+from automotive_cosim.contracts.given import Channel, Clock, FeedbackDetail, GeoInput, Interface, Language, See
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.docs import field_docs
@@ -77,7 +77,8 @@ class Conditions:
         OneOf(See, "way to see the screen"),
         Words(
             "Sees", "{} alone", "see_{}", "Success by how the agent sees the screen",
-            "The list of elements, the picture, or both; the picture alone comes without ids and descriptions.",
+            "The list of elements, the picture, or both; the picture alone comes without ids and descriptions. "
+            "Who calls functions may also see nothing of the screen.",
         ),
     ] = See.BOTH  # fmt: skip
     """How the agent sees the screen."""
@@ -110,6 +111,16 @@ class Conditions:
     ] = Language.ENGLISH  # fmt: skip
     """What the driver speaks, and the car shows."""
 
+    interface: Annotated[
+        Interface,
+        OneOf(Interface, "interface"),
+        Words(
+            "Interface", "by {}", "by_{}", "Success by interface",
+            "The agent acts on the screen (touch), by typed functions of the car (functions), or by both.",
+        ),
+    ] = Interface.TOUCH  # fmt: skip
+    """How the agent acts: on the screen (``touch``), by typed functions of the car (``functions``), or ``both``."""
+
     @classmethod
     def named(cls, values: Mapping[str, object]) -> Conditions:
         """Conditions by name, with values as words or numbers.
@@ -118,6 +129,13 @@ class Conditions:
             UserError: there is no such condition or value.
         """
         return cls(**{name: condition(name).value(value) for name, value in values.items()})
+
+    @property
+    def hides_pictures(self) -> str:
+        """Why an agent sees no picture that it would have to open; empty if it does."""
+        if not self.interface.touches:
+            return f"interface = {self.interface} cannot open"
+        return f"see = {self.see} withholds" if Channel.SCREENSHOT in self.see.withheld else ""
 
     @property
     def labels(self) -> tuple[str, ...]:
@@ -274,6 +292,7 @@ def told(plan: Json) -> str:
 
 
 def combined(values: ConditionLists) -> tuple[Conditions, ...]:
-    """Every combination of the values."""
+    """Every combination of the values, without those that leave an agent at the screen nothing to see."""
     lists = lists_of(values)
-    return tuple(Conditions(**dict(zip(lists, each, strict=True))) for each in product(*lists.values()))
+    every = (Conditions(**dict(zip(lists, each, strict=True))) for each in product(*lists.values()))
+    return tuple(each for each in every if each.interface.calls or each.see is not See.NOTHING)

@@ -12,7 +12,9 @@ from typing import Any, Self
 import numpy as np
 import numpy.typing as npt
 
+from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.contracts import (
+    BY_HAND,
     Action,
     ActionType,
     Element,
@@ -115,6 +117,9 @@ class Session:
             TrafficError: the traffic simulation failed.
         """
         self._check_open()
+        if why := self._barred(action):
+            self.refuse(why)
+            return
         feedback, cost_s = self._answer(action) or (self._performed(action), 0.0)
         said: tuple[str, ...] = ()
         if action.action_type is ActionType.ASK_DRIVER and feedback.code is FeedbackCode.OK:
@@ -178,11 +183,21 @@ class Session:
         if self.end is not None:
             raise RuntimeError(f"the episode is over ({self.end}); begin another one")
 
+    def _barred(self, action: Action) -> str:
+        """Why an agent with this interface cannot act so; empty if it can."""
+        interface = self.setup.conditions.interface
+        if action.action_type is ActionType.CALL and not interface.calls:
+            return "functions cannot be called here; act on the screen"
+        if action.action_type in BY_HAND and not interface.touches:
+            return "the screen cannot be touched here; call a function"
+        return ""
+
     def _performed(self, action: Action) -> Feedback:
         """The cockpit's feedback to an action; an agent without a list has no index to name."""
         is_listed = Channel.ELEMENTS in self.setup.given
         elements = self.elements if is_listed else ()
-        if self.setup.conditions.feedback is FeedbackDetail.VERBOSE:
+        is_read = action.action_type is ActionType.CALL and functions()[action.function or ""].reads
+        if is_read or self.setup.conditions.feedback is FeedbackDetail.VERBOSE:
             return self.world.perform(action, elements)
         name = control(action, self.world.cockpit, elements, by_name=is_listed)
         return quiet(self.world.perform(action, elements), name, self.world.cockpit)

@@ -18,7 +18,6 @@ from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import EpisodeSpec, Seeds
 from automotive_cosim.errors import NoRoomError, TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.interface.observe import See
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound, needs
@@ -74,8 +73,8 @@ class SituationFinder:
         """
         spec.check()
         self.task = CATALOGUE[spec.task] if task is None else task
-        if self.task.needs_picture and spec.conditions.see is See.TREE:
-            raise UserError(f"{self.task.id} needs the picture, which see = tree withholds; give picture or both")
+        if self.task.needs_picture and (why := spec.conditions.hides_pictures):
+            raise UserError(f"{self.task.id} needs the picture, which {why}; give see = both, interface = touch")
         half = self.task.half(spec.half)
         start = half.start
         if spec.conditions.language is not Language.ENGLISH:

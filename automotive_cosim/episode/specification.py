@@ -14,7 +14,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Latitude, Longitude
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
-from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.interface.observe import ALL, Channel, See
 from automotive_cosim.tasking.draws import SEED_LIMIT
 
 ACTION_COST_S = 1.0
@@ -48,7 +48,9 @@ class SessionSetup:
         Raises:
             UserError: nothing of the screen is left that it can see.
         """
-        if self.channels & SCREEN and not self.given & SCREEN:
+        if self.conditions.see is See.NOTHING and not self.conditions.interface.calls:
+            raise UserError("--see nothing leaves an agent at the screen nothing; give --interface functions too")
+        if self.channels & SCREEN and not self.given & SCREEN and not self.conditions.interface.calls:
             (only,) = self.channels & SCREEN
             raise UserError(
                 f"the agent sees the screen only as {_AS[only]}, which --see {self.conditions.see} withholds; "

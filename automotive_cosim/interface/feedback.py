@@ -5,8 +5,8 @@
 | ``quiet`` | the control and whether it took: "Front defroster: done" |
 | ``verbose`` | what became of the car: "IsFrontDefrosterActive is on" |
 
-Both say alike why something could not be done, what a query found, and what the car reads out. With the picture
-alone, a control without letters on it is not named.
+Both say alike why something could not be done, what a query or a reading found, and what the car reads out. With
+the picture alone, a control without letters on it is not named.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ def control(action: Action, cockpit: Cockpit, elements: tuple[Element, ...], *, 
     index = action.index
     if index is not None and not 0 <= index < len(elements):
         return ""
+    if action.action_type is ActionType.CALL:
+        return action.function or ""
     if action.action_type is ActionType.SCROLL:
         return elements[index].content_description if index is not None and by_name else ""
     if not FIELDS[action.action_type].target:

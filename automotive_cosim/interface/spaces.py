@@ -34,6 +34,7 @@ from gymnasium import spaces
 from automotive_cosim.cockpit.actions import FIELDS, SECONDS_LIMIT, TEXT_LIMIT, check
 from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.contracts import (
+    UNCALLED,
     Action,
     ActionType,
     AlertKind,
@@ -127,7 +128,7 @@ def action_space(width: int, height: int) -> spaces.Dict:
     that it does not take, so every sample is well formed."""
     return spaces.Dict(
         {
-            "action_type": spaces.Discrete(len(ActionType)),
+            "action_type": spaces.Discrete(len(UNCALLED)),
             "target": spaces.Discrete(2),
             "index": spaces.Discrete(MAX_ELEMENTS),
             "x": spaces.Discrete(width),

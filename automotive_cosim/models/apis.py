@@ -1,6 +1,6 @@
 """The APIs of providers: for each provider's protocol, the request and how its answer is read.
 
-``chat``        OpenAI's chat completions, which most servers speak
+``chat``        OpenAI's chat completions, which most servers speak; also with functions
 ``openai``      OpenAI's responses with its tool ``computer``
 ``anthropic``   Anthropic's messages with its toolset or its earlier tools for a computer
 ``gemini``      Gemini's ``generateContent`` with its tool ``computer_use``
@@ -102,6 +102,46 @@ class Chat:
         parts: list[Json] = [{"type": "text", "text": message.text}]
         parts += [{"type": "image_url", "image_url": {"url": _data_url(picture)}} for picture in message.pictures]
         return {"role": message.role, "content": parts}
+
+
+@dataclass(frozen=True, slots=True)
+class ChatTools(Chat):
+    """OpenAI's chat completions with functions; an answer's text is ``{"say": ..., "calls": [...]}``."""
+
+    tools: tuple[Json, ...] = ()
+    """Each with name, description and parameters."""
+
+    def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
+        """See ``ProviderApi``."""
+        tools = [{"type": "function", "function": tool} for tool in self.tools]
+        return Chat.body(self, model, messages, limits) | {"tools": tools}
+
+    def read(self, told: Any) -> ModelReply:
+        """See ``ProviderApi``."""
+        plain = Chat.read(self, told)
+        message = _first(told, "choices").get("message") or {}
+        calls = [
+            {"name": str(each.get("name") or ""), "arguments": _loaded(each.get("arguments"))}
+            for each in _named(message.get("tool_calls"))
+        ]
+        say = _text(message.get("content")) or _text(message.get("refusal"))
+        return replace(plain, text=json.dumps({"say": say, "calls": calls}, ensure_ascii=False))
+
+    def _message(self, message: ChatMessage) -> Json:
+        if message.call_id:
+            return {"role": "tool", "tool_call_id": message.call_id, "content": message.text}
+        told = Chat._message(self, message)
+        if not message.calls:
+            return told
+        calls = [
+            {
+                "id": call.id,
+                "type": "function",
+                "function": {"name": call.name, "arguments": _dumped(call.arguments)},
+            }
+            for call in message.calls
+        ]
+        return told | {"content": message.text or None, "tool_calls": calls}
 
 
 @dataclass(frozen=True, slots=True)
@@ -341,10 +381,18 @@ def _loaded(arguments: object) -> object:
         return str(arguments)
 
 
+def _dumped(arguments: object) -> str:
+    return arguments if isinstance(arguments, str) else json.dumps(arguments, ensure_ascii=False)
+
+
+def _named(calls: object) -> list[Json]:
+    """The functions of an answer's calls."""
+    return [each["function"] for each in calls if each.get("function")] if isinstance(calls, list) else []
+
+
 def _tool_calls(calls: object) -> str:
     """Calls that the server has taken out of the answer, in the form in which models write them."""
-    named = [each["function"] for each in calls if each.get("function")] if isinstance(calls, list) else []
-    told = ({"name": each.get("name", ""), "arguments": _loaded(each.get("arguments"))} for each in named)
+    told = ({"name": each.get("name", ""), "arguments": _loaded(each.get("arguments"))} for each in _named(calls))
     return "\n".join(f"<tool_call>\n{json.dumps(each, ensure_ascii=False)}\n</tool_call>" for each in told)
 
 

@@ -7,7 +7,7 @@ import json
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from math import ceil
-from typing import Protocol
+from typing import Any, Protocol
 
 from automotive_cosim.contracts import Json
 
@@ -19,14 +19,28 @@ ENDED_BY_ITSELF = ("stop", "tool_calls", "function_call", "eos", "end_turn", "st
 
 
 @dataclass(frozen=True, slots=True)
+class ToolCall:
+    """A function that a model calls."""
+
+    id: str
+    name: str
+    arguments: Any
+    """By name; as they came where they are no object."""
+
+
+@dataclass(frozen=True, slots=True)
 class ChatMessage:
     """One turn of a conversation."""
 
     role: str
-    """``"system"``, ``"user"`` or ``"assistant"``."""
+    """``"system"``, ``"user"``, ``"assistant"`` or, of a call's result, ``"tool"``."""
     text: str
     pictures: tuple[bytes, ...] = ()
     """PNG files, in the order in which the text mentions them."""
+    calls: tuple[ToolCall, ...] = ()
+    """What the assistant calls."""
+    call_id: str = ""
+    """The call that it is the result of."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,6 +100,7 @@ def digest(messages: Sequence[ChatMessage]) -> str:
     """SHA-256 of a conversation, including pictures, as a hexadecimal string."""
     told = [
         [message.role, message.text, [hashlib.sha256(picture).hexdigest() for picture in message.pictures]]
+        + ([[asdict(call) for call in message.calls], message.call_id] if message.calls or message.call_id else [])
         for message in messages
     ]
     return hashlib.sha256(json.dumps(told).encode()).hexdigest()

@@ -17,7 +17,7 @@ from collections.abc import Mapping, Sequence
 
 from automotive_cosim.models.base import ChatMessage, ModelReply, estimated_tokens
 from automotive_cosim.models.page import ListedElement, Page
-from automotive_cosim.models.skills import SKILLS, Course, Decline, SkillMove, Wait
+from automotive_cosim.models.skills import CALLS, SKILLS, Course, Decline, SkillMove, Wait
 
 MOST_SCROLLS = 6
 """How often it scrolls for one element before it stops looking."""
@@ -39,7 +39,10 @@ class Rules:
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """Answers a prompt with an action, or a request to look back with one line."""
         page = Page.read(messages[-1].text)
-        text = _look_back(page) if page.looks_back else _answer(page)
+        if messages[0].role == "system":
+            text = _call(page, called=len(messages) > 2)
+        else:
+            text = _look_back(page) if page.looks_back else _answer(page)
         asked = [message.text for message in messages]
         return ModelReply(text, estimated_tokens(*asked), estimated_tokens(text))
 
@@ -56,6 +59,20 @@ def _answer(page: Page) -> str:
         return _say(decided.because, wait if decided.seconds is None else wait | {"seconds": decided.seconds})
     end = (("status", "complete", "none"),) if decided.declares else ()
     return _go_on(page, decided.because, (*decided.moves, *end), 0)
+
+
+def _call(page: Page, *, called: bool) -> str:
+    """Calls that fulfil the goal, then how it ended by the last result, in the form of a protocol of calls."""
+    goal = page.goal.lower()
+    known = next((found for words, found in CALLS if re.search(words, goal)), ())
+    calls: list[tuple[str, dict[str, object]]]
+    if called and page.result in STOPPED:
+        calls = [("status", {"goal_status": "infeasible", "reason": STOPPED[page.result]})]
+    elif called or not known:
+        calls = [("status", {"goal_status": "complete"} if known else {"goal_status": "infeasible"})]
+    else:
+        calls = list(known)
+    return json.dumps({"say": "", "calls": [{"name": name, "arguments": given} for name, given in calls]})
 
 
 def _decide(page: Page) -> Course | Decline | Wait:

@@ -269,3 +269,18 @@ SKILLS: tuple[Skill, ...] = (
         in_app("climate", "Wheel", because="Cold hands want a warm wheel."),
     ),
 )
+
+
+CALLS: tuple[tuple[str, tuple[tuple[str, dict[str, object]], ...]], ...] = (
+    (
+        r"\bfull blast|\bfan\b.*\b(highest|maximum|full|max|all the way)",
+        (("set_hvac_fan_speed", {"percent": 100}),),
+    ),
+    (r"\brear (window )?(defroster|heat)", (("switch_hvac", {"which": "rear_defroster", "on": True}),)),
+    (r"\bhazard", (("switch_lights", {"which": "hazard", "on": True}),)),
+    (r"\bhigh beam", (("switch_lights", {"which": "high_beam", "on": True}),)),
+    (r"\brecirculat", (("switch_hvac", {"which": "recirculation", "on": True}),)),
+    (r"\bwindshield is fogg?", (("switch_hvac", {"which": "front_defroster", "on": True}),)),
+    (r"\bmute\b", (("switch_media", {"which": "muted", "on": True}),)),
+)
+"""What the same words are as calls of functions: a handful, which shows that the loop works."""

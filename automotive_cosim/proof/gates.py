@@ -17,6 +17,8 @@
 | effect | where the words do not say what to do, a solution that acts on the air has an effect on it |
 | knowable | what was drawn has been told before the reference solution uses it |
 | lawful | the reference solution breaks no sign and no verified rule, nor has cruise control break one |
+| functions | by calls of functions, translated by machine, the reference solution wins too, with a wrong value it \
+loses, and to end or to warn at once wins no pair (``proof.functions``); not of tasks that need the picture |
 | trivial | no negative control wins both halves of a pair, or the only half |
 | random | random actions win at most one of twenty |
 | leak | without goal and solutions, every observation is the same, byte for byte |

@@ -12,6 +12,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import TrafficError, TriggerNotReachedError, UserError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.proof import gates
+from automotive_cosim.proof.functions import functions_are_not_enough, functions_win
 from automotive_cosim.proof.ground import Ground
 from automotive_cosim.run.row import JobRow, Volatile
 from automotive_cosim.tasks import CATALOGUE
@@ -33,6 +34,7 @@ GATES = (
     "effect",
     "knowable",
     "lawful",
+    "functions",
     "trivial",
     "random",
     "leak",
@@ -124,6 +126,8 @@ class Prover:
                     found.take(gate, getattr(gates, gate)(grounds))
             if "knowable" in self._chosen:
                 found.take("knowable", gates.parted(grounds))
+            if "functions" in self._chosen:
+                found.take("functions", functions_are_not_enough(grounds))
             if "reach" in self._chosen:
                 found.take("reach", gates.reach(CATALOGUE[task_id], seed, self._simulations))
             if "residue" in self._chosen:
@@ -162,6 +166,8 @@ class Prover:
         for gate in ("undone", "near", "coupled", "uncoupled", "optional", "knowable", "lawful"):
             if gate in self._chosen and right.success:
                 found.take(gate, getattr(gates, gate)(ground, right), half)
+        if "functions" in self._chosen and right.success:
+            found.take("functions", functions_win(ground), half)
         for gate in ("leak", "road", "repeat"):
             if gate in self._chosen:
                 found.take(gate, getattr(gates, gate)(ground, self._simulations), half)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,6 +23,7 @@ BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
 AFTER_EVERY_S = 1.0
 BEFORE_MS, STEP_MS, AFTER_MS, LAST_MS = 350, 1500, 350, 4000
 QUALITY = 72
+DIMMED = 0.6
 AFTER = "After the end"
 """Title of the frames after the last step."""
 SAME_TIME_S = 0.05
@@ -53,20 +54,19 @@ class Frames(EpisodeObserver):
         self.map: RoadMap | None = None
         """The roads; None before the hand-over."""
         self._size = size
-        self._before: deque[FilmFrame] = deque(maxlen=BEFORE_FRAMES)
+        self._before_s: deque[float] = deque(maxlen=BEFORE_FRAMES)
+        """Simulation times before the hand-over that have a frame."""
         self._steps: list[FilmFrame] = []
         self._after: list[FilmFrame] = []
         self._hand_over_s = 0.0
         self._fitted: tuple[npt.NDArray[np.uint8], Image.Image] | None = None
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Takes a picture now and then: before the hand-over, and after each step in case it is the last."""
+        """Takes a picture now and then after a step, in case it is the last; notes times before the hand-over."""
         at_s = moment.time_s - self._hand_over_s
         if self.map is None:
-            if not self._before or at_s - self._before[-1].at_s >= BEFORE_EVERY_S:
-                title = "The drive up to the hand-over"
-                words = "no agent acts yet; the hand-over resets the car and its clock to their state at departure"
-                self._before.append(self._frame(at_s, cockpit.screenshot(), title, words, BEFORE_MS))
+            if not self._before_s or at_s - self._before_s[-1] >= BEFORE_EVERY_S:
+                self._before_s.append(at_s)
         elif not self._after or at_s - self._after[-1].at_s >= AFTER_EVERY_S:
             self._after.append(self._frame(at_s, cockpit.screenshot(), AFTER, "the drive continues", AFTER_MS))
 
@@ -74,9 +74,6 @@ class Frames(EpisodeObserver):
         """The first frame of the episode, with the driver's words."""
         self.map = RoadMap(episode.network)
         self._hand_over_s = shot.step.moment.time_s
-        self._before = deque(
-            (replace(frame, at_s=frame.at_s - self._hand_over_s) for frame in self._before), BEFORE_FRAMES
-        )
         words = f"“{episode.instance.goal}”"
         self._steps.append(self._frame(0.0, shot.screenshot, "The driver says", words, STEP_MS))
 
@@ -95,11 +92,20 @@ class Frames(EpisodeObserver):
             return []
         # An earlier departure, on which the situation did not arise, is no part of the drive.
         begin_s = result.path[0].at_s - SAME_TIME_S
-        frames = [frame for frame in (*self._before, *self._steps, *self._after) if frame.at_s >= begin_s]
+        frames = [frame for frame in (*self._approach(), *self._steps, *self._after) if frame.at_s >= begin_s]
         frames[-1:] = [
             replace(frame, milliseconds=LAST_MS, title=outcome(result), words=why(result)) for frame in frames[-1:]
         ]
         return frames
+
+    def _approach(self) -> Iterator[FilmFrame]:
+        """The drive to the hand-over. The screen is that of the hand-over, dimmed: the car's state and clock begin
+        there, and before it nobody acts."""
+        first = self._steps[0].cockpit
+        dimmed = Image.blend(first, Image.new("RGB", first.size, NIGHT.background), DIMMED)
+        for time_s in self._before_s:
+            at_s = time_s - self._hand_over_s
+            yield FilmFrame(at_s, dimmed, "The drive up to the hand-over", "no agent acts yet", BEFORE_MS)
 
     def _frame(
         self, at_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int

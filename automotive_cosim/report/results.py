@@ -8,10 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import Interface, See
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import SetupError, UserError
-from automotive_cosim.interface.observe import See
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -118,8 +118,10 @@ class Results:
 
     @property
     def beyond_the_list(self) -> tuple[str, ...]:
-        """Tasks not given to contestants that see only the list of elements, because they need the picture."""
-        if See.TREE not in self.manifest["plan"].get("see", ()):
+        """Tasks not given to contestants that see no pictures, because they need one."""
+        plan = self.manifest["plan"]
+        sees, interfaces = plan.get("see", ()), plan.get("interface", ())
+        if not {See.TREE, See.NOTHING} & set(sees) and Interface.FUNCTIONS not in interfaces:
             return ()
         given = (row for row in (*self.rows, *self.not_run) if NEEDS_PICTURE in row.tags)
         return tuple(sorted({row.task for row in given}))

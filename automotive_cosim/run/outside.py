@@ -27,6 +27,7 @@ from automotive_cosim.contracts import Action, Json, Observation
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models import ChatMessage, ChatModel, ModelReply
+from automotive_cosim.models.base import ToolCall
 from automotive_cosim.run.nursery import Nursery
 
 STEP_S, EPISODE_S = 120.0, 900.0
@@ -92,7 +93,7 @@ class OutsideAgent:
         """Why it cannot act any more."""
         self._nursery = nursery
         self._named = model
-        self._model = chat_model or model_of(name, model)
+        self._model = chat_model or model_of(name, model, settings=settings)
         self.model = "none" if self._model is None else self._model.name
         self._settings = settings
         self._step_s = step_s
@@ -253,6 +254,10 @@ def _messages(told: list[Json]) -> list[ChatMessage]:
             str(each["role"]),
             str(each["text"]),
             tuple(base64.b64decode(picture, validate=True) for picture in each["pictures"]),
+            tuple(
+                ToolCall(str(call["id"]), str(call["name"]), call["arguments"]) for call in each.get("calls", ())
+            ),
+            str(each.get("call_id", "")),
         )
         for each in told
     ]

@@ -27,7 +27,6 @@ from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
-from automotive_cosim.interface.observe import See
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.former import plan_values
@@ -230,8 +229,8 @@ class Plan(ConditionLists):
         return tuple(task_id for task_id in self._chosen() if task_id not in spoken)
 
     def beyond_the_list(self) -> tuple[str, ...]:
-        """Ids of the chosen tasks that are not run with ``see`` tree: something needed is only in the picture."""
-        if See.TREE not in lists_of(self)["see"]:
+        """Ids of the chosen tasks that some conditions leave out: something needed is only in the picture."""
+        if not any(conditions.hides_pictures for conditions in combined(self)):
             return ()
         return tuple(task_id for task_id in self._chosen() if CATALOGUE[task_id].needs_picture)
 
@@ -239,7 +238,7 @@ class Plan(ConditionLists):
         if not self._chosen():
             return f"no drive with these seeds is in the split {self.split!r}; give other seeds"
         if self._placed() and all(task.needs_picture for task, _ in self._placed()):
-            return "these tasks need the picture, which see = tree withholds; give picture or both"
+            return "these tasks need the picture, which these conditions hide; give see = both, interface = touch"
         if not self._spoken():
             return (
                 f"none of the tasks has phrasings in {languages_in_words(self.languages)}; those of the "
@@ -299,7 +298,7 @@ class Plan(ConditionLists):
             combined(self),
             range(self.repeats),
         ):
-            if task.needs_picture and conditions.see is See.TREE:
+            if task.needs_picture and conditions.hides_pictures:
                 continue
             for half in task.halves:
                 is_own = scenario == task.half(half).start.scenario  # a half may move it to another place

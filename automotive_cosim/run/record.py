@@ -24,6 +24,7 @@ from PIL import Image
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.plain import plain
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot
 from automotive_cosim.run.versions import installed
 
@@ -135,9 +136,9 @@ def screenshot(folder: Path, step: int) -> Path:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Writes a file completely or not at all."""
+    """Writes a file of plain text completely or not at all."""
     draft = path.with_name(f".{path.name}.part")
-    draft.write_text(text, encoding="utf-8", newline="\n")
+    draft.write_text(plain(text), encoding="utf-8", newline="\n")
     draft.replace(path)
 
 

@@ -158,7 +158,9 @@ def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
         return PROFILES[setup.agent].under(settings).channels
     if setup.agent == ScriptedAgent.name:
         return ALL
-    return frozenset((NativeAgent if setup.agent == NativeAgent.name else make_agent(setup.agent)).channels)
+    if setup.agent == NativeAgent.name:
+        return frozenset(NativeAgent.channels)
+    return frozenset(make_agent(setup.agent, settings=AgentSettings(setup.conditions)).channels)
 
 
 def _again(

@@ -69,6 +69,9 @@ def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
             return f"asks “{action.text}”"
         case ActionType.ASK_DRIVER:
             return f"asks the driver “{action.text}”"
+        case ActionType.CALL:
+            given = ", ".join(f"{name} {_said(value)}" for name, value in (action.arguments or {}).items())
+            return f"calls {action.function}" + (f" with {given}" if given else "")
         case ActionType.ESTIMATE_POSITION:
             return f"estimates the position at {action.text}"
         case _:  # keyboard_enter, emergency_call, pull_over: their names say it
@@ -116,6 +119,10 @@ def _target(action: Action, elements: Sequence[Element]) -> str:
     element = elements[action.index]
     name = element.text or element.content_description or element.resource_id or f"element {action.index}"
     return f"“{name}”"
+
+
+def _said(value: object) -> str:
+    return {True: "true", False: "false"}[value] if isinstance(value, bool) else f"{value}"
 
 
 def _plain(name: str | None) -> str:

@@ -186,7 +186,7 @@ def agent_for(
         yield make_agent(name, settings=settings)
         return
     settings = replace(settings, seed=0, most_tokens=limits.tokens)  # it is not told the episode's seed
-    asked = model_of(name, model, meter)
+    asked = model_of(name, model, meter, settings)
     outside = OutsideAgent(
         nursery,
         name,

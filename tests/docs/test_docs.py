@@ -19,9 +19,9 @@ from typer import TyperException
 from typer.main import get_command
 
 from automotive_cosim.cli.main import app
+from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.folder import VARIABLE
 from tests.laws import over
 
 TOP = Path(__file__).parents[2]

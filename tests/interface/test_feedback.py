@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.language import word
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import Action, ActionType, Direction, Element, Feedback, FeedbackCode
+from automotive_cosim.contracts.given import Interface
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.specification import SessionSetup
@@ -123,10 +124,14 @@ def test_without_a_list_an_index_names_nothing(parked: Cockpit) -> None:
 
 
 @pytest.mark.parametrize("see", See)
-def test_each_way_to_see_leaves_something_of_the_screen(see: See) -> None:
-    given = SessionSetup(conditions=Conditions(see=see)).given
+def test_only_who_calls_functions_may_see_nothing_of_the_screen(see: See) -> None:
+    given = SessionSetup(conditions=Conditions(see=see, interface=Interface.FUNCTIONS)).given
     assert ALL - given == see.withheld
-    assert given & {Channel.ELEMENTS, Channel.SCREENSHOT}
+    if see is See.NOTHING:
+        with pytest.raises(UserError, match="--interface functions"):
+            SessionSetup(conditions=Conditions(see=see))
+    else:
+        assert SessionSetup(conditions=Conditions(see=see)).given & {Channel.ELEMENTS, Channel.SCREENSHOT}
 
 
 @pytest.mark.parametrize(("channel", "see"), [(Channel.ELEMENTS, See.PICTURE), (Channel.SCREENSHOT, See.TREE)])

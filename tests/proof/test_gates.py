@@ -19,7 +19,9 @@ from automotive_cosim.contracts import (
     VehicleState,
 )
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.interface.functions import call_of
 from automotive_cosim.proof import gates, sight
+from automotive_cosim.proof.functions import functions_are_not_enough, functions_win, translated
 from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking import verdict
@@ -316,6 +318,20 @@ def test_a_task_that_wants_nothing_is_seen(ground):
     free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), NothingDone())), moves=())
     wrong = list(gates.trivial({"first": ground(free)}))
     assert "complete wins" in wrong
+
+
+def test_functions_win_what_touch_wins_and_nothing_by_themselves(ground):
+    stand = ground(SOUND)
+    assert [call_of(call.action) for call in translated(stand)] == [
+        ("set_seat_heating", {"which": "driver", "percent": 50.0}),
+        ("status", {"goal_status": GoalStatus.COMPLETE}),
+    ]
+    assert list(functions_win(stand)) == []
+    assert list(functions_are_not_enough({"first": stand})) == []
+    (wrong,) = functions_win(ground(changed(goal=SignalIs(SEAT.DRIVER_HEATING, (50.0, -50.0)))))
+    assert "succeeds with set_seat_heating {'which': 'driver', 'percent': -50.0}" in wrong
+    free = changed(goal=AnyOf((SignalIs(HVAC.AUTO, (True,)), NothingDone())), moves=())
+    assert "complete at once wins by functions" in list(functions_are_not_enough({"first": ground(free)}))
 
 
 def test_a_task_that_luck_wins_is_seen(ground):

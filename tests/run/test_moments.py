@@ -3,7 +3,6 @@
 import json
 import lzma
 from dataclasses import replace
-from pprint import pformat
 from types import SimpleNamespace
 
 import pytest
@@ -59,8 +58,9 @@ def test_moments_come_back_as_they_were(kept):
     first = judged_file(folder, "a").read_bytes()
     again = read_judged(folder, "a")
     assert again == judged
-    plain = replace(judged, parameters=dict(judged.parameters))
-    assert pformat(again, width=1) == pformat(plain, width=1), "types as well; sets in order"
+    # Types too; but a set has no order.
+    same = replace(judged, parameters=dict(judged.parameters), allowed_writes=frozenset())
+    assert repr(replace(again, allowed_writes=frozenset())) == repr(same)
     assert len(again.trace) == len(again.baseline) > 1
     write_judged(folder, "a", again)
     assert judged_file(folder, "a").read_bytes() == first

@@ -262,7 +262,7 @@ def test_what_only_the_picture_tells_is_not_planned_for_the_list_alone():
     mixed = plan(tasks=["picture", "hard_which_nora"], suite="hard", see=["tree", "both"])
     assert set(mixed.beyond_the_list()) == pictured
     assert {job.setup.task for job in mixed.jobs() if job.setup.conditions.see == "tree"} == {"hard_which_nora"}
-    with pytest.raises(UserError, match="need the picture, which see = tree withholds"):
+    with pytest.raises(UserError, match="need the picture, which these conditions hide"):
         plan(tasks=["picture"], suite="hard", see=["tree"]).check(dry=True)
 
 

@@ -26,6 +26,7 @@ VALUES = {
     "kind": AlertKind.SPEED,
     "speed_kmh": 50.0,
     "on": True,
+    "function": "reset_trip",
 }
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.calendar.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.calendar.screens import appointment, calendar
 from automotive_cosim.cockpit.apps.calendar.state import agenda
 from automotive_cosim.cockpit.places import Gazetteer
@@ -17,6 +18,7 @@ APP = App(
     order=16,
     where=Where.STORE,
     about=say("Today's appointments and how to get there"),
+    functions=FUNCTIONS,
     pages={"calendar": AppPage(calendar, Room.ONE), "appointment": AppPage(appointment, Room.ONE)},
     preinstalled=False,
     starts=lambda state, rng: (agenda(rng, state.of(Gazetteer)),),

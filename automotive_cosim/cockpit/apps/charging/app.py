@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.charging.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.charging.screens import charging
 from automotive_cosim.cockpit.apps.charging.state import ChargingSchedule
 from automotive_cosim.cockpit.theme import Icon
@@ -15,6 +16,7 @@ APP = App(
     order=11,
     where=Where.STORE,
     about=say("Charge limit, times and stations nearby"),
+    functions=FUNCTIONS,
     pages={"charging": AppPage(charging)},
     starts=lambda state, rng: (ChargingSchedule(),),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.manual.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.manual.screens import manual
 from automotive_cosim.cockpit.apps.manual.state import ManualFilm
 from automotive_cosim.cockpit.theme import Icon
@@ -15,6 +16,7 @@ APP = App(
     order=13,
     where=Where.STORE,
     about=say("The owner's handbook, to search in"),
+    functions=FUNCTIONS,
     pages={"manual": AppPage(manual)},
     picked={"manual": "0"},
     starts=lambda state, rng: (ManualFilm(),),

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.map.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.map.screens import map_screen
 from automotive_cosim.cockpit.apps.map.state import Navigation, Viewpoint
 from automotive_cosim.cockpit.apps.map.way import explore, place, route
@@ -29,6 +30,7 @@ APP = App(
     icon=Icon.MAP,
     order=2,
     where=Where.DOCK,
+    functions=FUNCTIONS,
     pages={
         "map": AppPage(map_screen, Room.WHOLE),
         "explore": AppPage(explore, Room.WHOLE),

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.media.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.media.screens import media, playlist
 from automotive_cosim.cockpit.apps.media.state import Listening, library
 from automotive_cosim.cockpit.state import AppData, State
@@ -26,6 +27,7 @@ APP = App(
     icon=Icon.MEDIA,
     order=7,
     where=Where.DOCK,
+    functions=FUNCTIONS,
     pages={"media": AppPage(media), "playlist": AppPage(playlist)},
     aliases={"music": "", "radio": ""},
     picked={"media.list": "all"},

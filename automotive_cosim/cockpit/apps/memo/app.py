@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.memo.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.memo.screens import memo, memo_note
 from automotive_cosim.cockpit.apps.memo.state import Memos
 from automotive_cosim.cockpit.size import Room
@@ -16,6 +17,7 @@ APP = App(
     order=14,
     where=Where.STORE,
     about=say("Spoken notes"),
+    functions=FUNCTIONS,
     pages={"memo": AppPage(memo), "note": AppPage(memo_note, Room.ONE)},
     aliases={"memos": ""},
     starts=lambda state, rng: (Memos(),),

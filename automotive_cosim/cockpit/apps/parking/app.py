@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.parking.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.parking.screens import parking
 from automotive_cosim.cockpit.apps.parking.state import Parking
 from automotive_cosim.cockpit.theme import Icon
@@ -15,6 +16,7 @@ APP = App(
     order=12,
     where=Where.STORE,
     about=say("Pay for a parking space from the car"),
+    functions=FUNCTIONS,
     pages={"parking": AppPage(parking)},
     starts=lambda state, rng: (Parking(),),
 )

@@ -8,6 +8,7 @@ import numpy as np
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.phone.figure import figure
+from automotive_cosim.cockpit.apps.phone.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.phone.person import contact, thread
 from automotive_cosim.cockpit.apps.phone.screens import phone
 from automotive_cosim.cockpit.apps.phone.state import Phone, directory
@@ -29,6 +30,7 @@ APP = App(
     icon=Icon.PHONE,
     order=8,
     where=Where.DOCK,
+    functions=FUNCTIONS,
     pages={
         "phone": AppPage(phone),
         "contact": AppPage(contact),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.settings.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.settings.screens import (
     connections,
     language,
@@ -23,6 +24,7 @@ APP = App(
     icon=Icon.SETTINGS,
     order=10,
     where=Where.DOCK,
+    functions=FUNCTIONS,
     pages={
         "settings": AppPage(settings),
         "sound": AppPage(sound),

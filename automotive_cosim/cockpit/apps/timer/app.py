@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.timer.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.timer.screens import timer
 from automotive_cosim.cockpit.apps.timer.state import Countdown
 from automotive_cosim.cockpit.size import Room
@@ -17,6 +18,7 @@ APP = App(
     where=Where.STORE,
     about=say("Tells you when some minutes are over"),
     preinstalled=False,
+    functions=FUNCTIONS,
     pages={"timer": AppPage(timer, Room.ONE)},
     starts=lambda state, rng: (Countdown(),),
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.trip.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.trip.screens import trip, trip_b
 from automotive_cosim.cockpit.apps.trip.state import TripMeters
 from automotive_cosim.cockpit.size import Room
@@ -16,6 +17,7 @@ APP = App(
     order=15,
     where=Where.STORE,
     about=say("Distance, time and consumption"),
+    functions=FUNCTIONS,
     pages={"trip": AppPage(trip, Room.ONE), "trip_b": AppPage(trip_b, Room.ONE)},
     starts=lambda state, rng: (TripMeters(),),
 )

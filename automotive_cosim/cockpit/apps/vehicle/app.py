@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.vehicle.body import doors, driving, interior, mirrors, seats
+from automotive_cosim.cockpit.apps.vehicle.functions import FUNCTIONS
 from automotive_cosim.cockpit.apps.vehicle.screens import assistance, vehicle
 from automotive_cosim.cockpit.apps.vehicle.state import car
 from automotive_cosim.cockpit.theme import Icon
@@ -16,6 +17,7 @@ APP = App(
     icon=Icon.VEHICLE,
     order=5,
     where=Where.DOCK,
+    functions=FUNCTIONS,
     pages={
         "vehicle": AppPage(vehicle),
         "assistance": AppPage(assistance),

@@ -1,0 +1,163 @@
+"""The agent ``caller``: a plain loop of function calls, as in-car assistants are built.
+
+    system: what to do     user: the wish and the situation
+    assistant: calls       tool: what each of them set, or why not
+    ...                    user: the situation now
+
+What it is told of the screen and the place are conditions (``--see``, ``--geo``); ``--interface`` says whether it
+calls the car's functions, the actions of a finger, or both.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import deque
+from collections.abc import Iterator
+
+from automotive_cosim.agents import prompt
+from automotive_cosim.agents.asking import Asking
+from automotive_cosim.agents.base import StageName
+from automotive_cosim.agents.marks import png
+from automotive_cosim.agents.settings import AgentProfile, AgentSettings
+from automotive_cosim.contracts import UNCALLED, Action, Observation
+from automotive_cosim.drives.order import STANDING_ORDER
+from automotive_cosim.errors import ActionError
+from automotive_cosim.formats.words import shown
+from automotive_cosim.interface.functions import Function, action_of, offered
+from automotive_cosim.interface.observe import Channel
+from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, ToolCall
+
+MOST_CALLS = 10
+"""Most calls of one answer; each is a step."""
+REMEMBERED = 20
+"""Answers with their results that a watch, which lasts for hundreds of turns, is told of."""
+WRITTEN = re.compile(r"<tool_call>\s*(\{.*?\})\s*</tool_call>", re.DOTALL)
+"""A call as models write it where no server takes it out of the text."""
+
+
+def tools(settings: AgentSettings) -> tuple[Function, ...]:
+    """The functions that it may call under these conditions."""
+    return offered(settings.conditions.interface, settings.conditions.geo)
+
+
+class Caller:
+    """Asks its model once per answer, which may hold several calls; each costs a step."""
+
+    name = "caller"
+
+    def __init__(self, chat_model: ChatModel, settings: AgentSettings) -> None:
+        """Puts the agent together.
+
+        Args:
+            chat_model: the model to ask, which knows the functions (``tools``) by its protocol.
+            settings: the conditions, what to take away, the budget.
+        """
+        wanted = AgentProfile(self.name, frozenset(Channel), frozenset(UNCALLED), reflects=False)
+        self._profile = wanted.under(settings)
+        self._asking = Asking(chat_model, settings)
+        self._known = {function.name for function in tools(settings)}
+        self.stages = self._asking.stages
+        self.reset("")
+
+    @property
+    def model(self) -> str:
+        """The model's name."""
+        return self._asking.chat_model.name
+
+    @property
+    def channels(self) -> frozenset[Channel]:
+        """All channels without those that the settings take away."""
+        return self._profile.channels
+
+    def reset(self, goal: str) -> None:
+        """Forgets the previous episode."""
+        self._asking.reset()
+        self._keeps_watch = goal == STANDING_ORDER
+        self._told: list[tuple[ChatMessage, list[ChatMessage]]] = []
+        self._left: deque[ToolCall] = deque()
+        self._waiting: ToolCall | None = None
+        self._count = 0
+
+    def act(self, observation: Observation) -> Action:
+        """The next call of the last answer, or the first of another one.
+
+        Raises:
+            ActionError: the answer has no call, or one that does not fit its function.
+            OutOfBudgetError: the episode's tokens or seconds are spent.
+            ModelError: the model does not answer.
+        """
+        self.stages.clear()
+        if self._waiting is not None:
+            result = f"{observation.feedback.code}: {observation.feedback.text}".rstrip(": ")
+            self._told[-1][1].append(ChatMessage("tool", result, call_id=self._waiting.id))
+            self._waiting = None
+        if not self._left:
+            self._ask(observation)
+        call = self._waiting = self._left.popleft()
+        try:
+            if call.name not in self._known:
+                raise ActionError(f"there is no function {shown(call.name)} here; call one of those offered")
+            action = action_of(call.name, call.arguments)
+        except ActionError as error:
+            self._asking.note(StageName.ACT, observation, str(error))
+            raise
+        self._asking.note(StageName.ACT, observation, prompt.action_words(action, observation))
+        return action
+
+    def _ask(self, seen: Observation) -> None:
+        pictures: tuple[bytes, ...] = ()
+        if seen.screenshot is not None and self._asking.chat_model.sees_pictures:
+            pictures = (png(seen.screenshot),)
+        now = self._situation(seen, bool(pictures))
+        self._asking.note(StageName.PERCEIVE, seen, now)
+        reply, asked = self._asking.converse([*self._conversation(), ChatMessage("user", now, pictures)])
+        say, calls = _read(reply)
+        self._left.extend(
+            ToolCall(f"call{self._count + at:05d}", name, arguments) for at, (name, arguments) in enumerate(calls)
+        )
+        self._count += len(calls)
+        self._told.append((ChatMessage("assistant", say, calls=tuple(self._left)), []))
+        self._asking.note(StageName.INTERPRET, seen, say, reply, asked, len(pictures))
+        if not calls or len(calls) > MOST_CALLS:
+            self._left.clear()
+            self._told.pop()
+            wrong = f"the answer has {len(calls)} calls; at most {MOST_CALLS} are allowed"
+            told = f"{wrong if calls else 'the answer calls no function; words alone do nothing'}{reply.ending}"
+            self._asking.note(StageName.ACT, seen, told)
+            raise ActionError(told)
+
+    def _conversation(self) -> Iterator[ChatMessage]:
+        """What it is to do, and each earlier answer with its results."""
+        weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self.channels else ""
+        yield ChatMessage(
+            "system", prompt.fill("caller_watch" if self._keeps_watch else "caller", {"weigh": weigh})
+        )
+        for answer, results in self._told[-REMEMBERED:] if self._keeps_watch else self._told:
+            yield answer
+            known = {result.call_id for result in results}
+            yield from results
+            left = (call for call in answer.calls if call.id not in known)
+            yield from (ChatMessage("tool", "not done", call_id=call.id) for call in left)
+
+    def _situation(self, seen: Observation, pictures: bool) -> str:
+        return prompt.situation(self._profile, seen, pictures=pictures, on_watch=self._keeps_watch)
+
+
+def _read(reply: ModelReply) -> tuple[str, list[tuple[str, object]]]:
+    """Words and calls of an answer: those that its protocol has, else those that are written in the words."""
+    try:
+        told = json.loads(reply.text)
+        say, calls = str(told["say"]), [(str(call["name"]), call["arguments"]) for call in told["calls"]]
+    except (ValueError, LookupError, TypeError, RecursionError):
+        say, calls = reply.text, []
+    return say, calls or list(_written(say))
+
+
+def _written(say: str) -> Iterator[tuple[str, object]]:
+    for found in WRITTEN.findall(say):
+        try:
+            call = json.loads(found)
+            yield str(call["name"]), call.get("arguments") or {}
+        except (ValueError, LookupError, AttributeError, TypeError, RecursionError):
+            yield "", found

@@ -1,0 +1,162 @@
+"""The gate of functions: what is won by touch is won by calls.
+
+The reference solution is played by touch, and each command that it gives is translated into the call that gives the
+same (``interface.translation``). Its looking about is left out: a call needs no screen. What it does besides, it
+does as before.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+from automotive_cosim.agents.trivial import AlwaysAlert
+from automotive_cosim.cockpit.calls import functions
+from automotive_cosim.cockpit.signals import Signal, named
+from automotive_cosim.contracts import BY_HAND, Action, ActionType, AlertKind, GoalStatus, Observation
+from automotive_cosim.contracts.given import Interface, See
+from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.loop import Actor
+from automotive_cosim.interface.functions import action_of, call_of
+from automotive_cosim.interface.translation import actions_of
+from automotive_cosim.proof.ground import Ground, Played, finish
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """One action of a translated solution."""
+
+    action: Action
+    heard: int
+    """How much the driver had said when the reference solution came to it."""
+    before: object = None
+    """Value of the signal that it sets, before it; None of any other action."""
+
+    @property
+    def signal(self) -> Signal[object] | None:
+        """The signal that it sets."""
+        if self.action.action_type is not ActionType.CALL:
+            return None
+        name, given = call_of(self.action)
+        paths = functions()[name].signals
+        if not paths:
+            return None
+        names = functions()[name].parameters[0].schema.get("enum", ())
+        return named(paths[names.index(given["which"])] if "which" in given else paths[0])
+
+
+class UntranslatableError(Exception):
+    """A command that no function gives."""
+
+
+def translated(ground: Ground) -> tuple[Call, ...]:
+    """The reference solution as calls.
+
+    Raises:
+        UntranslatableError: no function gives one of its commands.
+    """
+    oracle, walk, calls = ground.oracle(), ground.episode.branch(), list[Call]()
+    try:
+        while walk.end is None:
+            action, heard = oracle.act(walk.observation), len(walk.heard)
+            before, count = walk.world.cockpit.copy(), len(walk.world.cockpit.given)
+            walk.step(action)
+            if action.action_type not in BY_HAND:
+                calls.append(Call(action_of(*call_of(action)), heard))
+                continue
+            for record in walk.world.cockpit.given[count:]:
+                found = actions_of(record.command, before.state)
+                if found is None:
+                    raise UntranslatableError(
+                        f"no function does {type(record.command).__name__} {record.command}"[:200]
+                    )
+                for one in found:
+                    call = Call(one, heard)
+                    value = None if call.signal is None else before.signals[call.signal]
+                    _add(calls, replace(call, before=value))
+    finally:
+        walk.close()
+    return tuple(calls)
+
+
+def _add(calls: list[Call], call: Call) -> None:
+    """Adds a call; of several in a row that set the same signal, as taps on plus do, only the last counts."""
+    last = calls[-1] if calls else None
+    if call.signal is not None and last is not None and last.signal is call.signal and last.heard == call.heard:
+        calls[-1] = replace(call, before=last.before)
+    else:
+        calls.append(call)
+
+
+@dataclass(slots=True)
+class _Caller:
+    """Plays calls in order; waits for what the driver had said by then, and repeats the last."""
+
+    calls: Sequence[Call]
+    _next: int = 0
+
+    def act(self, observation: Observation) -> Action:
+        call = self.calls[min(self._next, len(self.calls) - 1)]
+        if len(observation.said) < call.heard:
+            return Action(ActionType.WAIT, seconds=1)
+        self._next += 1
+        return call.action
+
+
+def _play(ground: Ground, actor: Actor, *, stop_when_lost: bool = False) -> Played:
+    """An episode from the hand-over of an agent that calls functions and sees nothing of the screen."""
+    episode: Episode = ground.episode.branch()
+    conditions = replace(episode.setup.conditions, interface=Interface.FUNCTIONS, see=See.NOTHING)
+    episode.setup = replace(episode.setup, conditions=conditions)
+    return finish(episode, actor, stop_when_lost=stop_when_lost)
+
+
+def functions_win(ground: Ground) -> Iterator[str]:
+    """Plays the reference solution as calls, and each call with a wrong value. What hangs on the picture is left
+    out."""
+    if ground.task.needs_picture:
+        return
+    try:
+        calls = translated(ground)
+    except UntranslatableError as error:
+        yield str(error)
+        return
+    played = _play(ground, _Caller(calls))
+    if not played.success:
+        yield f"by functions it fails: {played.why}"
+        return
+    for at, call in enumerate(calls):
+        wrong = _wrong(call)
+        if wrong is not None and _play(ground, _Caller((*calls[:at], wrong, *calls[at + 1 :]))).success:
+            name, given = call_of(wrong.action)
+            yield f"succeeds with {name} {given}, which is wrong"
+
+
+def _wrong(call: Call) -> Call | None:
+    """The same call with a wrong value: a switch the other way, a number moved from what it was in the other
+    direction, a choice left as it was. None of a call that sets no signal."""
+    signal, (name, given) = call.signal, call_of(call.action)
+    if signal is None:
+        return None
+    *_, value = functions()[name].parameters
+    now = given[value.name]
+    if isinstance(now, bool):
+        wrong: object = not now
+    elif isinstance(call.before, float):
+        moved = call.before - signal.step if now > call.before else call.before + signal.step
+        wrong = min(signal.high, max(signal.low, moved))
+    else:
+        wrong = call.before
+    return None if wrong == now else replace(call, action=action_of(name, {**given, value.name: wrong}))
+
+
+def functions_are_not_enough(grounds: dict[str, Ground]) -> Iterator[str]:
+    """Plays strategies without a look: to end at once in each way, and to warn whatever happens."""
+    ends = {str(status): Call(Action(ActionType.STATUS, goal_status=status), 0) for status in GoalStatus}
+    for name, end in ends.items():
+        if all(_play(ground, _Caller((end,))).success for ground in grounds.values()):
+            yield f"{name} at once wins by functions"
+    for kind in AlertKind:
+        warner = AlwaysAlert(kind)
+        if all(_play(ground, ground.agent(warner), stop_when_lost=True).success for ground in grounds.values()):
+            yield f"always {kind} wins by functions"
