@@ -138,17 +138,17 @@ def _arguments(function: CarFunction, words: Sequence[str], numbers: Sequence[fl
 
 def _options(parameter: Parameter, words: Sequence[str], numbers: Sequence[float]) -> Sequence[Any]:
     schema = parameter.schema
-    left_out = () if parameter.required else (None,)
+    left_out = ("",) if parameter.required and schema["type"] == "string" else () if parameter.required else (None,)
     if "enum" in schema:
-        return (*left_out, *schema["enum"])
+        return (*schema["enum"], *left_out)
     match schema["type"]:
         case "boolean":
-            return (*left_out, True, False)
+            return (True, False, *left_out)
         case "string":
-            return (*left_out, *words) if left_out else (*words, "")
+            return (*words, *left_out)
         case _:
             low, high = schema.get("minimum", 0), schema.get("maximum", 0)
-            return (*left_out, *(range(low, high + 1) if high - low < FEW else numbers))
+            return (*(range(low, high + 1) if high - low < FEW else numbers), *left_out)
 
 
 FEW = 10

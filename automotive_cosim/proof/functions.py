@@ -126,37 +126,42 @@ def functions_win(ground: Ground) -> Iterator[str]:
         yield f"by functions it fails: {played.why}"
         return
     for at, call in enumerate(calls):
-        wrong = _wrong(call)
-        if wrong is not None and _play(ground, _Caller((*calls[:at], wrong, *calls[at + 1 :]))).success:
-            name, given = call_of(wrong.action)
+        wrongs = tuple(_wrong(call))
+        others = ((*calls[:at], wrong, *calls[at + 1 :]) for wrong in wrongs)
+        if wrongs and all(_play(ground, _Caller(other)).success for other in others):
+            name, given = call_of(wrongs[-1].action)
             yield f"succeeds with {name} {given}, which is wrong"
 
 
-def _wrong(call: Call) -> Call | None:
-    """The same call with a wrong value: a switch the other way, a number moved from what it was in the other
-    direction, a choice left as it was. None of a call that sets no signal."""
+def _wrong(call: Call) -> Iterator[Call]:
+    """The same call with each wrong value: a switch the other way, a number moved from what it was in the other
+    direction, any other choice, of which one has to lose. None of a call that sets no signal."""
     signal, (name, given) = call.signal, call_of(call.action)
     if signal is None:
-        return None
+        return
     *_, value = functions()[name].parameters
     now = given[value.name]
     if isinstance(now, bool):
-        wrong: object = not now
+        wrong: tuple[object, ...] = (not now,)
     elif isinstance(call.before, float):
         moved = call.before - signal.step if now > call.before else call.before + signal.step
-        wrong = min(signal.high, max(signal.low, moved))
+        wrong = (min(signal.high, max(signal.low, moved)),)
     else:
-        wrong = call.before
-    return None if wrong == now else replace(call, action=action_of(name, {**given, value.name: wrong}))
+        wrong = signal.allowed
+    for each in wrong:
+        if each != now:
+            yield replace(call, action=action_of(name, {**given, value.name: each}))
 
 
 def functions_are_not_enough(grounds: dict[str, Ground]) -> Iterator[str]:
-    """Plays strategies without a look: to end at once in each way, and to warn whatever happens."""
+    """Plays strategies without a look: to end at once in each way, and to warn of speed, or of what a reference
+    solution warns of, whatever happens. Other warnings are the gate ``trivial``'s, which plays the same actions."""
     ends = {str(status): Call(Action(ActionType.STATUS, goal_status=status), 0) for status in GoalStatus}
     for name, end in ends.items():
         if all(_play(ground, _Caller((end,))).success for ground in grounds.values()):
             yield f"{name} at once wins by functions"
-    for kind in AlertKind:
+    warnings = (action.kind for ground in grounds.values() for action in ground.reference.actions if action)
+    for kind in dict.fromkeys((AlertKind.SPEED, *filter(None, warnings))):
         warner = AlwaysAlert(kind)
         if all(_play(ground, ground.agent(warner), stop_when_lost=True).success for ground in grounds.values()):
             yield f"always {kind} wins by functions"
