@@ -102,15 +102,20 @@ def _told(call: Callable[..., CallToolResult]) -> Callable[..., CallToolResult]:
 class CockpitTools:
     """The tools; the server calls them on threads of its own. Their docstrings are what the client reads."""
 
-    def __init__(self, service: EpisodeService, server: MCPServer[Any], interface: Interface) -> None:
+    def __init__(
+        self,
+        service: EpisodeService,
+        server: MCPServer[Any] | None = None,
+        interface: Interface = Interface.TOUCH,
+    ) -> None:
         self._service = service
         self._server = server
         self._interface = interface
         self._has_functions = False
 
     def add_functions(self) -> None:
-        """Makes every function a tool, once."""
-        if not self._has_functions:
+        """Makes every function a tool of the server, once."""
+        if self._server is not None and not self._has_functions:
             self._has_functions = True
             for function in offered(Interface.FUNCTIONS):
                 self._server.add_tool(self._calling(function), name=function.name, description=function.about)

@@ -129,6 +129,8 @@ def functions_win(ground: Ground) -> Iterator[str]:
         wrongs = tuple(_wrong(call))
         others = ((*calls[:at], wrong, *calls[at + 1 :]) for wrong in wrongs)
         if wrongs and all(_play(ground, _Caller(other)).success for other in others):
+            if _play(ground, _Caller((*calls[:at], *calls[at + 1 :]))).success:
+                continue  # it led the finger somewhere, as to another source's list
             name, given = call_of(wrongs[-1].action)
             yield f"succeeds with {name} {given}, which is wrong"
 
