@@ -11,7 +11,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.run
-	$(BIN)/automotive-cosim run
+	$(BIN)/automotive-cosim run --pair
 
 test: $(VENV)/.dev
 	$(BIN)/python -m pytest -n auto --dist worksteal --durations=10

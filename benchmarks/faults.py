@@ -52,11 +52,12 @@ TASKS = (
     "0",
 )
 DRIVES = ("--drives", "grid_january", "--agents", "t3a", "--seeds", "0,1", "--retries", "0")
-KINDS = ("command", "worker", "warm traffic", "episode's traffic", "nursery", "agent", "stopped for a second")
+STOPPED = "stopped for a second"
+KINDS = ("command", "worker", "warm traffic", "episode's traffic", "nursery", "agent", STOPPED)
 AGENTS_OWN = frozenset(("nursery", "agent"))
 """Processes whose end is the agent's failure: it could have ended them itself."""
-LONGEST_S = 600.0
-"""Wall time of one start of the command."""
+LONGEST_S = 3600.0
+"""Wall time of one start of the command, on a busy machine too."""
 MOST_STARTS = 20
 
 
@@ -98,11 +99,12 @@ def killed(folder: Path, words: Sequence[str], kind: type[Any], kills: int, rng:
         mine: Counter[str] = Counter()
         for number in range(MOST_STARTS):
             starts += 1
-            to_do = min(rng.randint(1, 4), kills - done.total()) if number < MOST_STARTS // 2 else 0
+            left = kills - done.total() - mine.total()
+            to_do = min(rng.randint(1, 8), left) if number < MOST_STARTS // 2 else 0
             with started((*words, "--workers", "2", "--out", str(out))) as process:
                 for _ in range(to_do):
                     with suppress(subprocess.TimeoutExpired):
-                        process.wait(rng.uniform(0.5, max(2.0, took_s / 2)))
+                        process.wait(rng.uniform(0.5, max(2.0, took_s / 6)))
                         break
                     if hit := hurt(process.pid, rng):
                         mine[hit] += 1
@@ -130,13 +132,14 @@ def killed(folder: Path, words: Sequence[str], kind: type[Any], kills: int, rng:
 
 def hurt(command: int, rng: random.Random) -> str:
     """Kills a process of a running command, or stops it for a second; which, or nothing if there was none."""
-    kind = rng.choice(KINDS)
-    found = [pid for pid in tree(command) if kind in (kind_of(pid, command), KINDS[-1])]
-    if not found:
+    there = {pid: kind_of(pid, command) for pid in tree(command)}
+    kinds = [kind for kind in KINDS if kind in there.values() or (kind == STOPPED and there)]
+    if not kinds:
         return ""
+    kind = rng.choice(kinds)
     with suppress(ProcessLookupError):
-        pid = rng.choice(found)
-        if kind == KINDS[-1]:
+        pid = rng.choice([pid for pid, is_a in there.items() if kind in (is_a, STOPPED)])
+        if kind == STOPPED:
             os.kill(pid, signal.SIGSTOP)
             time.sleep(1)
             os.kill(pid, signal.SIGCONT)
@@ -225,10 +228,11 @@ def disturbed(folder: Path) -> dict[str, Any]:
     clock = folder / "clock"
     clock.mkdir()
     (clock / "sitecustomize.py").write_text(CLOCK)
+    path = os.pathsep.join((str(clock), *filter(None, [os.environ.get("PYTHONPATH")])))
     for name, options in (
         ("full disk", {"preexec_fn": limited(resource.RLIMIT_FSIZE, 60_000)}),
         ("little memory", {"preexec_fn": limited(resource.RLIMIT_AS, 320 * 2**20)}),
-        ("clock set back", {"env": os.environ | {"PYTHONPATH": str(clock)}}),
+        ("clock set back", {"env": os.environ | {"PYTHONPATH": path}}),
     ):
         out = folder / name.replace(" ", "_")
         with started((*TASKS, "--workers", "2", "--out", str(out)), **options) as process:

@@ -9,6 +9,7 @@ import os
 from pathlib import Path
 
 from automotive_cosim.tasking.catalogue import Catalogue
+from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasks import (
     apps,
     apps_asking,
@@ -83,5 +84,5 @@ for _module in (
 ):
     CATALOGUE.add(*map(spoken.spoken, _module.TASKS))
 
-if os.environ.get(folder.VARIABLE):
-    folder.add_folder(CATALOGUE, Path(os.environ[folder.VARIABLE]))
+if os.environ.get(VARIABLE):
+    folder.add_folder(CATALOGUE, Path(os.environ[VARIABLE]))

@@ -10,10 +10,8 @@ from pathlib import Path
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.tasking.catalogue import Catalogue
+from automotive_cosim.tasking.own_files import VARIABLE, own_files
 from automotive_cosim.tasking.task import Task
-
-VARIABLE = "AUTOMOTIVE_COSIM_TASKS"
-"""Environment variable with the folder, so that worker processes load it too."""
 
 
 def add_folder(catalogue: Catalogue, folder: Path) -> None:
@@ -22,12 +20,7 @@ def add_folder(catalogue: Catalogue, folder: Path) -> None:
     Raises:
         UserError: no such folder, nothing in it, or a file that cannot be used: file, line and reason.
     """
-    if not folder.is_dir():
-        raise UserError(f"--tasks-from {folder} is no folder; give one that holds .py files with TASKS")
-    paths = sorted(path for path in folder.glob("*.py") if not path.name.startswith("_"))
-    if not paths:
-        raise UserError(f"--tasks-from {folder} holds no .py file; each needs TASKS, a tuple of tasks")
-    for path in paths:
+    for path in own_files(folder):
         for task in _read(path):
             try:
                 catalogue.add(task)

@@ -304,4 +304,4 @@ def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
         def close(self) -> None:
             """They stay warm."""
 
-    monkeypatch.setattr("automotive_cosim.run.episode.Simulations", Lent)
+    monkeypatch.setattr("automotive_cosim.traffic.fork.Simulations", Lent)

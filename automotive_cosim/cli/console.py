@@ -9,7 +9,7 @@ from rich.console import Console as RichConsole
 from rich.console import ConsoleOptions, RenderableType
 from rich.segment import Segment
 
-from automotive_cosim.cli.terminal import plain
+from automotive_cosim.formats.plain import plain
 
 
 class Console(RichConsole):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from contextlib import ExitStack
+from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -39,7 +39,8 @@ def drive(
     out: Annotated[
         Path | None,
         typer.Option(
-            help="Folder for the row, the steps, the screens and the road, which `serve` shows.", show_default=False
+            help="Folder for the row, the steps, the screens and the road, which `serve` shows.",
+            show_default="runs/<time>-<family>-<agent>-seed<seed>",
         ),
     ] = None,
     list_them: Annotated[bool, typer.Option("--list", help="List the families of drives and exit.")] = False,
@@ -53,6 +54,7 @@ def drive(
     from automotive_cosim.run.drive import DriveSetup, run_drive
     from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.jobs import DriveJob
+    from automotive_cosim.run.record import stamped_folder
     from automotive_cosim.run.row import as_json as row_json
 
     console = Console(highlight=False)
@@ -78,17 +80,14 @@ def drive(
         under,
         scenario=scenario,
     )
-    recorders = [] if out is None else [DriveRecorder(out, setup, player)]
-    with ExitStack() as ends:
-        for recorder in recorders:
-            ends.callback(recorder.close)
-        record = run_drive(DriveJob(setup).planned(), setup, player, observers=recorders)
+    folder = out or stamped_folder(f"{name}-{player.name}-seed{seed}")
+    with closing(DriveRecorder(folder, setup, player)) as recorder:
+        record = run_drive(DriveJob(setup).planned(), setup, player, observers=[recorder])
     if as_json:
-        print_json(row_json(record.row))
+        print_json({**row_json(record.row), "out": str(folder)})
     else:
         _tell(console, record.row)
-        if out is not None:
-            console.print(f"Recorded in {out}", soft_wrap=True)
+        console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
 
 
 def _tell(console: Console, row: DriveTrialRow) -> None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -26,7 +25,7 @@ from automotive_cosim.cli.batches import (
     words,
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
-from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, number, whole_number
+from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, number, print_json, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
@@ -34,16 +33,12 @@ from automotive_cosim.errors import InfrastructureError
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
+    from automotive_cosim.run.forecast import Forecast
     from automotive_cosim.run.plan import Plan
     from automotive_cosim.run.trial_row import TrialRow
 
-EPISODE_S, WARM_UP_S = 2.0, 10.0
-"""Seconds that an episode in warm traffic and a warm-up take on one core, agents on `rules` included; rounded up
-from measurements on two shared cores, for the estimate of a dry run."""
-GRID_EPISODE_S, GRID_WARM_UP_S = 0.5, 2.0
-"""The same on the small grid."""
-DRIVE_S = 60.0
-"""The same for a drive."""
+PICTURED = 50
+"""Evaluations of up to this many runs keep all pictures by default: few enough to look at each."""
 
 
 @takes_conditions(lists=True)
@@ -141,8 +136,12 @@ def evaluate(
         ),
     ] = None,
     pictures: Annotated[
-        str, typer.Option(help="Keep the screenshots, and the road with its vehicles, of: none, failures or all.")
-    ] = "none",
+        str | None,
+        typer.Option(
+            help="Keep the screenshots, and the road with its vehicles, of: none, failures or all.",
+            show_default=f"all of up to {PICTURED} runs, none of more",
+        ),
+    ] = None,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -165,17 +164,20 @@ def evaluate(
     """Run agents over tasks, scenarios and seeds, or over drives. Rerun the command to resume."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.errors import UnknownNameError
+    from automotive_cosim.report.answer import answer
     from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
     from automotive_cosim.run.coverage import unit_of
+    from automotive_cosim.run.forecast import forecast
     from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan, read_plan, with_preset
+    from automotive_cosim.run.rows import read_trials
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenery import open_scenario
 
-    if pictures not in set(Pictures):
+    if pictures is not None and pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
     named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "drives": drives}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
@@ -197,10 +199,17 @@ def evaluate(
     check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
+    kept = Pictures(pictures or (Pictures.ALL if len(plan.jobs()) <= PICTURED else Pictures.NONE))
     if dry_run:
-        console.print(_time_in_words(plan, workers or 1), soft_wrap=True)
+        rows = read_trials(folder).values() if (folder / "manifest.json").is_file() else ()
+        needs = forecast(plan.jobs(), workers or 1, rows)
+        lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
+        for line in _forecast_in_words(needs, workers or 1):
+            console.print(line, soft_wrap=True)
         for lack in lacks:
             console.print(f"to fix before it can run: {lack}", soft_wrap=True, markup=False)
+        if as_json:
+            print_json({**needs.as_json(), "to_fix": lacks, "out": str(folder)})
         return
     with where, ProgressView(console, f"{unit}s", _said) as view:
         try:
@@ -209,7 +218,7 @@ def evaluate(
                 folder,
                 executor=where,
                 retries=retries,
-                pictures=Pictures(pictures),
+                pictures=kept,
                 budget=budget,
                 tell=view.tell,
             )
@@ -224,6 +233,7 @@ def evaluate(
         told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
         typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
     else:
+        console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")
         for line in (*standings(found), *drive_standings(found.drives)):
             console.print(f"  {line}", soft_wrap=True)
@@ -307,24 +317,19 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         console.print("rules is a deterministic stand-in: its results say nothing about a language model.")
 
 
-def _time_in_words(plan: Plan, workers: int) -> str:
-    from automotive_cosim.run.jobs import EpisodeJob
-
-    jobs = plan.jobs()
-    places = Counter(job.scenario for job in jobs if isinstance(job, EpisodeJob))
-    drives = len(jobs) - sum(places.values())
-    warm = {job.simulation for job in jobs}
-    own_s = sum(count * (GRID_EPISODE_S if place == "grid" else EPISODE_S) for place, count in places.items())
-    own_s += drives * DRIVE_S
-    warm_s = sum(GRID_WARM_UP_S if place == "grid" else WARM_UP_S for place, _ in warm)
-    minutes = (own_s + warm_s) / min(workers, len(warm)) / 60
-    told = "less than a minute" if minutes < 1 else f"about {counted(round(minutes), 'minute')}"
-    slow = any(job.setup.model not in ("rules", "none") for job in jobs)
-    return (
-        f"time: {told} with {counted(workers, 'worker')}, within a factor of two on an idle machine"
-        + (", plus the time that the models take to answer" if slow else "")
-        + "; nothing was run"
-    )
+def _forecast_in_words(told: Forecast, workers: int) -> Iterator[str]:
+    """Lines on what a plan will take."""
+    minutes = [seconds / 60 for seconds in (told.wall_s.low, told.wall_s.high)]
+    time = "less than a minute" if minutes[1] < 1 else f"{minutes[0]:.0f} to {counted(round(minutes[1]), 'minute')}"
+    slow = ", plus the time that the models take to answer" if told.asks_models else ""
+    yield f"time: {time} with {counted(workers, 'worker')} on an idle machine{slow}"
+    if told.asks_models:
+        yield f"tokens: {told.tokens.low / 1e6:,.2f} to {told.tokens.high / 1e6:,.2f} million"
+        if told.usd.high:
+            yield f"cost: ${told.usd.low:,.2f} to ${told.usd.high:,.2f}"
+        else:
+            yield "cost: unknown; a model's name takes ?usd_per_million_in=...&usd_per_million_out=..."
+    yield "nothing was run"
 
 
 def _folder(plan: Plan) -> Path:

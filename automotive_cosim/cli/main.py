@@ -25,6 +25,7 @@ from automotive_cosim.cli import (
     evaluate,
     functions,
     mcp,
+    measures,
     memory,
     playback,
     publish,
@@ -33,14 +34,16 @@ from automotive_cosim.cli import (
     scenarios,
     schema,
     screens,
+    search,
     serve,
     signals,
     study,
     tasks,
     validate,
 )
-from automotive_cosim.cli.terminal import discard_output, open_streams, plain, plain_streams
+from automotive_cosim.cli.terminal import discard_output, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.formats.plain import plain
 
 INTERRUPTED = 130
 """Typer's exit code for Ctrl-C: 128 plus the signal's number, as in shells."""
@@ -60,6 +63,8 @@ app.command()(run.run)
 app.command()(drive.drive)
 app.command()(validate.validate)
 app.command("eval")(evaluate.evaluate)
+app.command()(search.search)
+app.command()(measures.measures)
 app.command()(results.report)
 app.command()(compare.compare)
 app.command()(results.replay)

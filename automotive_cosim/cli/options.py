@@ -26,7 +26,10 @@ LARGE_BYTES = 4_000_000
 def _use_tasks_from(folder: Path | None) -> None:
     """Sets the variable before anything imports the catalogue; worker processes inherit it."""
     if folder is not None:
-        os.environ["AUTOMOTIVE_COSIM_TASKS"] = str(folder.resolve())
+        from automotive_cosim.tasking.own_files import VARIABLE, own_files
+
+        own_files(folder)
+        os.environ[VARIABLE] = str(folder.resolve())
 
 
 TasksFrom = Annotated[

@@ -3,15 +3,25 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
+from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
 from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, lon_lat, tell_opening, whole_number
+from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import PLACE, GeoInput
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import InfrastructureError, UserError
+
+if TYPE_CHECKING:
+    from automotive_cosim.agents import Agent
+    from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup
+    from automotive_cosim.traffic.fork import Simulations
 
 HEADLINE = (
     "task",
@@ -32,6 +42,9 @@ HEADLINE = (
     "cost_usd",
 )
 
+
+PAIR_TITLES = ("Knows its place", "The same agent, place withheld")
+PAIR_FOLDERS = ("with_place", "without_place")
 
 DEFAULT_TASK = "road_speed_80_in_50"
 ANYWHERE = "hvac_fan_max"
@@ -112,6 +125,12 @@ def run(
         Path | None,
         typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<half>-<agent>-seed<seed>"),
     ] = None,
+    pair: Annotated[
+        bool,
+        typer.Option(
+            "--pair", help="Run the agent twice from the same instant, with its place and without, side by side."
+        ),
+    ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the results in --out.")] = False,
     as_json: AsJson = False,
     actions: Annotated[
@@ -129,21 +148,23 @@ def run(
     tell_opening(*filter(None, [scenario]))
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import parts
-    from automotive_cosim.cli.console import Console
-    from automotive_cosim.cli.live import Live, Notes
-    from automotive_cosim.report.film import Film
-    from automotive_cosim.report.page import write_page
-    from automotive_cosim.run.episode import EpisodeSetup, run_episode
-    from automotive_cosim.run.record import Recorder, check_folder, default_folder
-    from automotive_cosim.run.road_recorder import RoadRecorder
+    from automotive_cosim.run.episode import EpisodeSetup
+    from automotive_cosim.run.record import check_folder, default_folder
     from automotive_cosim.run.script import read_script
+    from automotive_cosim.traffic.fork import Simulations
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
     off = parts(name.strip() for name in without.split(",") if name.strip())
     under = Conditions.named(given(conditions))
-    settings = AgentSettings(under, off, memory, seed, most_tokens, float(most_seconds))
-    player = read_script(actions) if actions else make_agent(agent, model, settings)
+
+    def player_under(each: Conditions) -> Agent:
+        settings = AgentSettings(each, off, memory, seed, most_tokens, float(most_seconds))
+        return read_script(actions) if actions else make_agent(agent, model, settings)
+
+    player = player_under(under)
+    if pair:
+        _check_pair(player, under)
     setup = EpisodeSetup(
         task or _default_task(half, scenario, bool(from_place or to_place)),
         half,
@@ -159,14 +180,64 @@ def run(
         without=tuple(sorted(off)),
     )
     setup.session(frozenset(player.channels))
-    folder = out or default_folder(setup)
+    folder = out or default_folder(setup, "-pair" if pair else "")
     check_folder(folder, force=force)
-    recorder = Recorder(folder, setup, {"actions": str(actions) if actions else None, "out": str(folder)})
+    arguments = {"actions": str(actions) if actions else None}
+    with closing(Simulations()) as simulations:
+        if pair:
+            blind = replace(under, geo=GeoInput.NONE)
+            both = ((setup, player), (replace(setup, conditions=blind), player_under(blind)))
+            results, page = _recorded_pair(folder, both, simulations, as_json=as_json)
+        else:
+            results = [_recorded(folder, setup, player, arguments, simulations, as_json=as_json)]
+            page = folder / "summary.html"
+    has_begun = results[0].trace_sha256 is not None
+    if has_begun and task is None and setup.task == ANYWHERE:
+        typer.echo(f"no --task was given: this was {ANYWHERE}, which comes about on any road", err=True)
+    if as_json:
+        told = [{**_headline(result), "out": str(folder)} for result in results]
+        typer.echo(json.dumps({"pair": told, "out": str(folder)} if pair else told[0]))
+    elif has_begun:
+        typer.echo(f"Recorded in {folder}; open {page}")
+    for result in results:
+        if result.error is not None:
+            raise InfrastructureError(result.error)
+
+
+def _check_pair(player: Agent, under: Conditions) -> None:
+    if player.name in ("human", "script"):
+        raise UserError(f"--pair runs an agent twice; omit it with {player.name}")
+    if under.geo is not GeoInput.FULL:
+        raise UserError(f"--pair compares --geo full with --geo none; omit --geo {under.geo}")
+    if not PLACE & set(player.channels):
+        raise UserError(f"--pair withholds the place, of which {player.name} is never told; use another --agent")
+
+
+def _recorded(
+    folder: Path,
+    setup: EpisodeSetup,
+    player: Agent,
+    arguments: Json,
+    simulations: Simulations,
+    more: Sequence[EpisodeObserver] = (),
+    *,
+    as_json: bool,
+) -> EpisodeResult:
+    """Runs an episode and records it."""
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.cli.live import Live, Notes
+    from automotive_cosim.report.film import Film
+    from automotive_cosim.report.page import write_page
+    from automotive_cosim.run.episode import run_episode
+    from automotive_cosim.run.record import Recorder
+    from automotive_cosim.run.road_recorder import RoadRecorder
+
+    recorder = Recorder(folder, setup, {**arguments, "out": str(folder)})
     # A panel that redraws itself would interfere with a person who types.
     view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
-    watchers = [recorder, RoadRecorder(folder, setup), Film(folder), Notes() if as_json else view]
+    watchers = [recorder, RoadRecorder(folder, setup), Film(folder), Notes() if as_json else view, *more]
     try:
-        result = run_episode(setup, player, watchers)
+        result = run_episode(setup, player, watchers, simulations=simulations)
     except KeyboardInterrupt:
         if recorder.begun:
             write_page(folder)
@@ -174,16 +245,34 @@ def run(
         raise
     if recorder.begun:
         write_page(folder)
-        if task is None and setup.task == ANYWHERE:
-            typer.echo(f"no --task was given: this was {ANYWHERE}, which comes about on any road", err=True)
-    if as_json:
-        whole = result.as_json()
-        told = {name: whole[name] for name in HEADLINE} | under.as_json()
-        typer.echo(json.dumps(told | {"out": str(folder)}))
-    elif recorder.begun:
-        typer.echo(f"Recorded in {folder}; open {folder / 'summary.html'}")
-    if result.error is not None:
-        raise InfrastructureError(result.error)
+    return result
+
+
+def _recorded_pair(
+    folder: Path, both: Sequence[tuple[EpisodeSetup, Agent]], simulations: Simulations, *, as_json: bool
+) -> tuple[list[EpisodeResult], Path]:
+    """Runs two episodes from the same instant and records both, with the film and the page that show them."""
+    from automotive_cosim.report.frames import Frames
+    from automotive_cosim.report.pair import Side, screen_size, sentence, write_pair
+
+    sides: list[Side] = []
+    for title, name, (setup, player) in zip(PAIR_TITLES, PAIR_FOLDERS, both, strict=True):
+        if not as_json:
+            typer.echo(f"{title}:")
+        frames = Frames(screen_size())
+        result = _recorded(folder / name, setup, player, {"pair": name}, simulations, [frames], as_json=as_json)
+        if result.trace_sha256 is None:
+            return [result], folder
+        sides.append(Side(title, folder / name, frames, result))
+    page = write_pair(folder, sides)
+    if not as_json:
+        typer.echo(sentence(sides))
+    return [side.result for side in sides], page
+
+
+def _headline(result: EpisodeResult) -> Json:
+    whole = result.as_json()
+    return {name: whole[name] for name in HEADLINE} | result.conditions.as_json()
 
 
 def _default_task(half: str, scenario: str | None, on_another_way: bool) -> str:

@@ -1,8 +1,7 @@
-"""Makes what reaches a terminal plain text. Names of streets, answers of models and messages of SUMO come from
-others, and a terminal obeys control characters: it moves the cursor, sets its title, hides a line.
+"""Makes what reaches a terminal plain text.
 
-    print, typer.echo -> Plain -> the stream
-    rich -> console.Console -> the stream, with rich's own controls
+print, typer.echo -> Plain -> the stream
+rich -> console.Console -> the stream, with rich's own controls
 """
 
 from __future__ import annotations
@@ -13,24 +12,12 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from typing import Any, TextIO, cast
 
-SHOWN_AS = "\N{REPLACEMENT CHARACTER}"
-OBEYED = (
-    *range(0x20),
-    *range(0x7F, 0xA0),  # delete, and the second set of controls
-    *range(0x202A, 0x202F),  # reverse the direction of writing
-    *range(0x2066, 0x206A),
-)
-_PLAIN = dict.fromkeys(set(OBEYED) - {ord("\n"), ord("\t")}, SHOWN_AS)
-
-
-def plain(text: str) -> str:
-    """The text with a replacement character for each control character, except line ends and tabs."""
-    return text if text.isprintable() else text.translate(_PLAIN)
+from automotive_cosim.formats.plain import OBEYED, plain
 
 
 def escaped(text: str) -> str:
     """A text of JSON with its control characters in JSON's notation."""
-    return "".join(f"\\u{ord(each):04x}" if ord(each) in _PLAIN else each for each in text)
+    return OBEYED.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
 
 
 class Plain:

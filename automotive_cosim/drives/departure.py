@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from datetime import datetime
 
 from automotive_cosim.cockpit.cockpit import Cockpit
@@ -36,6 +37,9 @@ def depart(script: DriveScript, simulations: Simulations, listener: Listener | N
     """
     listener = listener or Listener()
     scenario = open_scenario(script.scenario, origin=script.origin)
+    if script.density != 1.0:
+        scale = scenario.sumo.scale * script.density
+        scenario = replace(scenario, sumo=replace(scenario.sumo, scale=scale))
     draws = Draws(script.family, script.seed)
     ego = _ego_plan(script, scenario, draws)
     listener.loading(scenario)

@@ -10,12 +10,10 @@ from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import WatchAct
 from automotive_cosim.geo.breaches import binding_limit
+from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 
-SHORT_TTC_S = 3.0
-"""Time to collision below which a driver is exposed (Minderhoud and Bovy, 2001, threshold of TET)."""
-HARD_MPS2 = 3.4
-"""Deceleration needed to avoid a crash from which a conflict is serious (Archer, 2005: 3.35). Without it,
-every gentle stop behind a queue counts: who brakes from v with a is v / 2a from a collision."""
+HARD_MPS2 = DEFAULT_THRESHOLDS.drac_mps2
+"""Without it, every gentle stop behind a queue counts: who brakes from v with a is v / 2a from a collision."""
 GLANCE_S = 2.0
 """One glance at the screen (NHTSA driver distraction guidelines, 2013)."""
 WORDS_PER_S = 4.0
@@ -50,7 +48,9 @@ def harm(drive: Sequence[Moment]) -> Harm:
             over_m += excess_kmh / KMH_PER_MPS * dt_s
         leader = now.driving.around.leader
         if leader is not None and leader.time_to_collision_s is not None:
-            is_near = leader.time_to_collision_s < SHORT_TTC_S and (leader.drac_mps2 or 0.0) >= HARD_MPS2
+            is_near = (
+                leader.time_to_collision_s < DEFAULT_THRESHOLDS.ttc_s and (leader.drac_mps2 or 0.0) >= HARD_MPS2
+            )
             short_s += dt_s if is_near else 0.0
     first, last = drive[0], drive[-1]
     return Harm(

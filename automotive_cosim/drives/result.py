@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, replace
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.cosim.exposed import states_of, stretches
 from automotive_cosim.drives.harm import Harm, distraction_s
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.specification import End
+from automotive_cosim.measures import ExposureCell, FollowingFigures, exposure, following_figures
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -35,6 +37,10 @@ class DriveResult:
     wakes: int
     """Waits and acts after which something had changed."""
     trace_sha256: str
+    measures: FollowingFigures
+    """How close the car came to those in front and behind."""
+    exposure: tuple[ExposureCell, ...]
+    """How long and how far it drove in which conditions."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +86,8 @@ def result_of(watch: Watch) -> DriveResult:
         waits=watch.waits,
         wakes=watch.wakes,
         trace_sha256=watch.trace_sha256,
+        measures=following_figures(states_of(watch.moments)),
+        exposure=exposure(stretches(watch.moments)),
     )
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Annotated
 
-from annotated_types import Ge, Le, MinLen
+from annotated_types import Ge, Gt, Le, MinLen
 
 from automotive_cosim.cockpit.aboard import Occupant
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
@@ -62,6 +62,8 @@ class DriveScript:
     """The weather, in the order of the times; the first entry's is 0."""
     origin: tuple[Longitude, Latitude] | None = None
     """Longitude and latitude that the network's middle is moved to; None leaves it where it is."""
+    density: Annotated[float, Gt(0)] = 1.0
+    """Factor on the scenario's traffic."""
     driver: str = "average"
     """Name of a driver profile."""
     moods: tuple[DriverAt, ...] = ()

@@ -27,6 +27,11 @@ class Darkness(StrEnum):
     ASTRONOMICAL_TWILIGHT = "astronomical twilight"
     NIGHT = "night"
 
+    @classmethod
+    def at(cls, elevation_deg: float) -> Darkness:
+        """How dark the sky is with the sun's centre at an elevation."""
+        return next((each for from_deg, each in _DARKNESS_FROM_DEG if elevation_deg > from_deg), cls.NIGHT)
+
 
 _DARKNESS_FROM_DEG = (
     (0.0, Darkness.DAY),
@@ -48,10 +53,7 @@ class Sun:
     @property
     def darkness(self) -> Darkness:
         """How dark the sky is."""
-        for from_deg, darkness in _DARKNESS_FROM_DEG:
-            if self.elevation_deg > from_deg:
-                return darkness
-        return Darkness.NIGHT
+        return Darkness.at(self.elevation_deg)
 
     @property
     def is_set(self) -> bool:

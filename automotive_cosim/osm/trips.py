@@ -22,8 +22,9 @@ MIN_END_M = 20.0
 
 def pick(routes: Sequence[DrawnRoute], rng: np.random.Generator) -> tuple[Trip, ...]:
     """Up to four long routes that share as few roads as possible, one of them through a tunnel if possible."""
-    roomy = [route for route in routes if min(route.way[end].length_m for end in (0, -1)) >= MIN_END_M]
-    by_length = sorted(roomy or routes, key=lambda route: -route.length_m)
+    different = list(dict.fromkeys(routes))
+    roomy = [route for route in different if min(route.way[end].length_m for end in (0, -1)) >= MIN_END_M]
+    by_length = sorted(roomy or different, key=lambda route: -route.length_m)
     long = by_length[: max(TRIPS, round(LONG_SHARE * len(by_length)))]
     order = [long[index] for index in rng.permutation(len(long))]
     tunnels = [route for route in order if any(edge.in_tunnel for edge in route.way)]

@@ -19,7 +19,7 @@ from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.traffic.fork import Simulations
 
-PLANNED = ("family", "season", "scenario", "agent", "model", "conditions", "seed", "repeat", "split")
+PLANNED = ("family", "season", "scenario", "settings", "agent", "model", "conditions", "seed", "repeat", "split")
 """Fields of a row that the plan determines."""
 UNJUDGED = ("score", "value", "harm", "baseline_harm", "events", "acts", "trace_sha256")
 """Fields of a row that a drive without a judgement leaves at their defaults."""

@@ -9,17 +9,18 @@ from pathlib import Path
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType, Feedback, FeedbackCode, Json
+from automotive_cosim.drives.families import family_named
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.files import CHUNK_BYTES, opened
 from automotive_cosim.interface.trace import SAID, Step, plain, sha256
+from automotive_cosim.measures import nearest_s
 from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
 from automotive_cosim.report.page import element
 from automotive_cosim.run.collect import alerts, questioned
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.harm import nearest_s
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
 from automotive_cosim.run.load import driver_load
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
@@ -35,8 +36,8 @@ from automotive_cosim.tasking.instance import Instance, phrased
 STEP_BYTES, SPARE_STEPS = 2**20, 4
 """Bytes that a step may have in a trace, on average: a full screen has 40 kB, a question to a model 100 kB."""
 SECOND_BYTES, SPARE_S = 2**15, 120.0
-"""The same for a second of the agent's drive and of the baseline run; a dense city has 10 kB. The last answer may
-take an episode beyond its limit."""
+"""The same for a second of an episode's moments, of which a dense city has 10 kB, and of a drive's trace and facts,
+which have 1 kB. The last answer may take an episode beyond its limit."""
 PLANNED = (
     "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
     "conditions", "seed", "repeat", "split",
@@ -82,11 +83,11 @@ def check_trial(folder: Path, job: TrialJob, row: TrialRow) -> tuple[Problem, ..
         row: its row.
     """
     try:
+        if large := _too_large(folder, job):
+            return (large,)
         if isinstance(job, DriveJob) and isinstance(row, DriveTrialRow):
             return tuple(drive_problems(folder, job, row))
         if isinstance(job, EpisodeJob) and isinstance(row, EpisodeRow):
-            if large := _too_large(folder, job, row):
-                return (large,)
             return tuple(_problems(folder, job, row))
         return (Problem(ROWS, row.id, "is of another kind than the plan says"),)
     except (
@@ -97,13 +98,16 @@ def check_trial(folder: Path, job: TrialJob, row: TrialRow) -> tuple[Problem, ..
         return (Problem(f"traces/{row.id}", "", f"cannot be checked: {why}"),)
 
 
-def _too_large(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Problem | None:
-    """The first file of an episode that is larger than its plan allows."""
-    steps = job.setup.max_steps or job.task.max_steps
-    for path, most in (
-        (trace_file(folder, row.id), STEP_BYTES * (steps + SPARE_STEPS)),
-        (judged_file(folder, row.id), SECOND_BYTES * (job.limits.sim_s + SPARE_S)),
-    ):
+def _too_large(folder: Path, job: TrialJob) -> Problem | None:
+    """The first file of a trial that is larger than its plan allows."""
+    if isinstance(job, DriveJob):
+        of_trace = of_moments = SECOND_BYTES * (
+            family_named(job.setup.family).draw(job.setup.seed).duration_s + SPARE_S
+        )
+    else:
+        of_trace = STEP_BYTES * ((job.setup.max_steps or job.task.max_steps) + SPARE_STEPS)
+        of_moments = SECOND_BYTES * (job.limits.sim_s + SPARE_S)
+    for path, most in ((trace_file(folder, job.id), of_trace), (judged_file(folder, job.id), of_moments)):
         if path.is_file():
             left = most
             with opened(path) as file:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Callable, Sequence
 from io import StringIO
 from typing import TYPE_CHECKING, Any
@@ -191,9 +192,11 @@ def drawn(name: str, drawing: Drawing, width_in: float) -> str:
         "svg.hashsalt": f"{name} {width_in}",
         "font.family": "sans-serif",
         "font.size": 10,
+        "text.parse_math": False,  # names of agents may hold dollars
         **dict.fromkeys(("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color"), INK),
     }
-    with mpl.rc_context(style):
+    with mpl.rc_context(style), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", "Glyph")  # a reader's fonts show the texts, not ours
         figure = Figure(figsize=(width_in, height_in), layout="constrained")
         axes = figure.subplots()
         axes.grid(axis="x", color=INK, alpha=0.15, linewidth=0.8)

@@ -12,6 +12,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.score import Score, together
+from automotive_cosim.measures.exposure import summed
+from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.drivechart import timeline_chart
 from automotive_cosim.report.results import Contestant, contestant
@@ -167,7 +169,18 @@ def told(rows: Sequence[DriveTrialRow], figure: Figure, form: str, *, bounded: b
 def tables(rows: Sequence[DriveTrialRow]) -> list[Table]:
     """Every table of the report, the most important first."""
     groups = grouped(rows)
-    return [table for table in (_watchers(groups), _kinds(groups), _families(groups), _errors(rows)) if table.rows]
+    return [
+        table
+        for table in (
+            _watchers(groups),
+            _kinds(groups),
+            _families(groups),
+            _measures(groups),
+            _exposed(groups),
+            _errors(rows),
+        )
+        if table.rows
+    ]
 
 
 def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
@@ -224,6 +237,56 @@ def _families(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         of = [[row for row in mine if row.family == family] for mine in groups.values()]
         lines.append((family, *(told(rows, _value, ".0f", bounded=False) if rows else "–" for rows in of)))
     return Table("families", "Score by family", ("Family", *(each.label for each in groups)), tuple(lines))
+
+
+def _measures(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
+    """How close the cars came to those in front and behind."""
+    lines = []
+    for each, rows in groups.items():
+        found = [row.measures for row in rows if row.measures is not None]
+        hours = sum(cell.hours for row in rows for cell in row.exposure)
+        if not found or not hours:
+            continue
+        least = [min((v for m in found if (v := getattr(m, name)) is not None), default=None) for name in LEAST]
+        most = [max((v for m in found if (v := getattr(m, name)) is not None), default=None) for name in MOST]
+        sums = [sum(getattr(m, name) for m in found) / hours for name in PER_HOUR]
+        values = (*least, *most, *sums)
+        lines.append((each.label, *("–" if value is None else f"{value:.1f}" for value in values)))
+    heads = (
+        "Min TTC s",
+        "Min gap time s",
+        "Min TTC behind s",
+        "Max DRAC m/s2",
+        "Max MDRAC m/s2",
+        "TET s/h",
+        "TIT s2/h",
+    )
+    note = f"TET and TIT: below {DEFAULT_THRESHOLDS.ttc_s:g} s to the vehicle in front."
+    return Table("measures", "Surrogate measures of safety", ("Watcher", *heads), tuple(lines), note)
+
+
+LEAST = "min_ttc_s", "min_gap_time_s", "min_ttc_behind_s"
+MOST = "max_drac_mps2", "max_mdrac_mps2"
+PER_HOUR = "tet_s", "tit_s2"
+"""Fields of ``FollowingFigures`` by how several drives are summed up."""
+
+
+def _exposed(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
+    """Hours and kilometres by condition."""
+    lines = tuple(
+        (
+            *(each.label, cell.road_class or "unknown", cell.weather, cell.light, cell.speed_band),
+            *(f"{cell.hours:.2f}", f"{cell.kilometres:.1f}"),
+        )
+        for each, rows in groups.items()
+        for cell in summed(cell for row in rows for cell in row.exposure)
+        if cell.hours >= LEAST_HOURS
+    )
+    heads = "Watcher", "Road", "Weather", "Light", "Speed km/h", "Hours", "Kilometres"
+    return Table("exposure", "Exposure", heads, lines, "What was driven for less than 20 s is left out.", heads=5)
+
+
+LEAST_HOURS = 0.005
 
 
 def _errors(rows: Sequence[DriveTrialRow]) -> Table:

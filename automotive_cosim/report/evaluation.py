@@ -10,6 +10,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import told
 from automotive_cosim.errors import UserError
 from automotive_cosim.report import drives, findings
+from automotive_cosim.report.answer import answer
 from automotive_cosim.report.case import contrast
 from automotive_cosim.report.charts import INK, charts
 from automotive_cosim.report.failures import FailureClass
@@ -102,6 +103,7 @@ def _page(
     return render(
         "report/evaluation.html",
         results=results,
+        answer=answer(results),
         coverage=results.coverage,
         tables=[table for table in linked if table[0].name not in (*PUBLISHED, "errors")],
         published=[table for table in made if table.name in PUBLISHED],
@@ -132,6 +134,7 @@ def _drives_page(results: Results, made: Sequence[Table], plots: Plots) -> str:
     return render(
         "report/drives.html",
         rows=rows,
+        answer=answer(results),
         errors=sum(row.error is not None for row in rows),
         tables=made,
         plots=plots,

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from itertools import pairwise
+from collections.abc import Mapping, Sequence
+from itertools import chain, pairwise
 
 from PIL import Image, ImageDraw
 
@@ -27,23 +27,44 @@ def speed_plot(path: Sequence[Sample], shown: int, width: int, height: int, scal
         height: in pixels.
         scale: pixels per logical pixel.
     """
-    plot = _Plot(path, width * FINE, height * FINE, scale * FINE)
+    plot = _Plot([path], width * FINE, height * FINE, scale * FINE)
     plot.axes()
-    plot.limit()
-    plot.speed(path[:shown])
+    plot.limits()
+    plot.speed(path[:shown], above=NIGHT.warning, below=NIGHT.good)
+    return plot.image.reduce(FINE)
+
+
+def speeds_plot(
+    paths: Mapping[Colour, Sequence[Sample]], until_s: float, width: int, height: int, scale: float
+) -> Image.Image:
+    """The plot of several drives over the same time, each in its colour.
+
+    Args:
+        paths: the drives, which set the axes.
+        until_s: how far each is drawn, seconds since the hand-over.
+        width: in pixels.
+        height: in pixels.
+        scale: pixels per logical pixel.
+    """
+    plot = _Plot(list(paths.values()), width * FINE, height * FINE, scale * FINE)
+    plot.axes()
+    plot.limits()
+    for colour, path in reversed(list(paths.items())):  # the first on top
+        plot.speed([sample for sample in path if sample.at_s <= until_s], above=colour, below=colour)
     return plot.image.reduce(FINE)
 
 
 class _Plot:
-    def __init__(self, path: Sequence[Sample], width: int, height: int, scale: float) -> None:
-        self._path = path
+    def __init__(self, paths: Sequence[Sequence[Sample]], width: int, height: int, scale: float) -> None:
+        self._paths = paths
         self._scale = scale
         self.image = Image.new("RGB", (width, height), NIGHT.surface)
         self._brush = ImageDraw.Draw(self.image)
         self._left, self._right = LEFT * scale, width - RIGHT * scale
         self._top, self._bottom = TOP * scale, height - BOTTOM * scale
-        self._begin, self._end = path[0].at_s, max(path[-1].at_s, path[0].at_s + 1)
-        self._speeds = SpeedAxis.of(path)
+        self._begin = min(path[0].at_s for path in paths)
+        self._end = max(self._begin + 1, *(path[-1].at_s for path in paths))
+        self._speeds = SpeedAxis.of([sample for path in paths for sample in path])
 
     def axes(self) -> None:
         for speed, speed_kmh in self._speeds.lines:
@@ -63,8 +84,8 @@ class _Plot:
         x = self._x(0)
         self._brush.line((x, self._top, x, self._bottom), NIGHT.muted, round(self._scale))
 
-    def limit(self) -> None:
-        for before, after in pairwise(self._path):
+    def limits(self) -> None:
+        for before, after in chain.from_iterable(map(pairwise, self._paths)):
             if before.limit_kmh is None:
                 continue
             x, y, until = self._x(before.at_s), self._y(before.limit_kmh), self._x(after.at_s)
@@ -72,7 +93,8 @@ class _Plot:
             if after.limit_kmh is not None:
                 self._stroke(until, y, until, self._y(after.limit_kmh), NIGHT.critical, 2)
 
-    def speed(self, driven: Sequence[Sample]) -> None:
+    def speed(self, driven: Sequence[Sample], *, above: Colour, below: Colour) -> None:
+        """The speed so far, in one colour above the limit and in one below it."""
         for before, after in pairwise(driven):
             over = is_over(after.speed_kmh, after.limit_kmh)
             self._stroke(
@@ -80,7 +102,7 @@ class _Plot:
                 self._y(before.speed_kmh),
                 self._x(after.at_s),
                 self._y(after.speed_kmh),
-                NIGHT.warning if over else NIGHT.good,
+                above if over else below,
                 3,
             )
         if driven:

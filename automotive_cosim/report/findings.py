@@ -106,7 +106,7 @@ def place_effect(results: Results) -> Table:
     columns = ("Contestant", "Compared with geo", "Pairs that depend on place", "Placebo: the other pairs")
     note = (
         f"Pair success with full geo-context minus that under the other geo control, on the same pairs, with 95 % "
-        f"intervals over tasks, and McNemar's exact p. Pairs tagged “{PLACE}” depend on place; in the others "
+        f"intervals over tasks. Pairs tagged “{PLACE}” depend on place; in the others "
         "the screens decide, so place should make no difference."
     )
     return Table("place_effect", "Effect of place", columns, tuple(rows), note, heads=2)
@@ -159,7 +159,7 @@ def _effect(results: Results, full: Contestant, other: Contestant, decided: bool
     ids = tuple(half.id for side in (ones, others) for key in shared for half in side[key][1])
     bounds = found.interval
     told = f"{found.difference:+.0%} ({bounds.low:+.0%} to {bounds.high:+.0%})"
-    return Cell(f"{told}, n={found.count}, p={found.p_value:.2g}", ids)
+    return Cell(f"{told}, n={found.count}", ids)
 
 
 def by_label(results: Results, title: str, of: Callable[[EpisodeRow], Sequence[str]]) -> Table:

@@ -211,10 +211,26 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
         f"\n{problem}\n" for problem in dict.fromkeys(each for one in found for each in one.problems)
     )
     return (
-        table.markdown()
+        f"**{sentence(found, allowed)}**\n\n"
+        + table.markdown()
         + unknown
         + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
     )
+
+
+def sentence(found: Sequence[SuccessChange], allowed: float) -> str:
+    """The result in a sentence: each contestant that is worse or incomplete, by how much, or that none is."""
+    told = [
+        f"{each.contestant.label} is {each.outcome(allowed)}: {_before_and_after(each)}"
+        for each in found
+        if each.outcome(allowed) != "as good"
+    ]
+    return "; ".join(told or [f"No contestant is worse: {_before_and_after(found[-1])}"]) + "."
+
+
+def _before_and_after(each: SuccessChange) -> str:
+    shares = " before, ".join("–" if rate.value is None else f"{rate.value:.0%}" for rate in each.rates)
+    return f"{shares} after, of {each.rates[1].planned:,} {each.unit}"
 
 
 def mixed_versions(found: Sequence[SuccessChange]) -> str:
@@ -257,6 +273,7 @@ def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
     ]
     return {
         "ok": all(each["outcome"] == "as good" for each in contestants),
+        "answer": sentence(found, allowed),
         "versions": list(found[0].versions),
         "mixed_versions": bool(mixed_versions(found)),
         "contestants": contestants,
@@ -264,7 +281,10 @@ def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
 
 
 def junit(found: Sequence[SuccessChange]) -> str:
-    """JUnit XML, one suite per contestant, one case per instance; lost ones fail, ones not judged are errors."""
+    """JUnit XML, one suite per contestant, one case per instance; lost ones fail, ones not judged are errors.
+
+    What was not solved before either passes: the change made nothing worse.
+    """
     root = ElementTree.Element("testsuites", name="automotive-cosim compare")
     for each in found:
         suite = ElementTree.SubElement(
@@ -274,13 +294,11 @@ def junit(found: Sequence[SuccessChange]) -> str:
             tests=str(len(each.cases)),
             failures=str(each.count("lost")),
             errors=str(each.count("error")),
-            skipped=str(each.count("not solved")),
         )
         for case in each.cases:
             entry = ElementTree.SubElement(suite, "testcase", name=case.name, classname=case.before.subject)
-            element = {"lost": "failure", "error": "error", "not solved": "skipped"}.get(case.kind)
+            element = {"lost": "failure", "error": "error"}.get(case.kind)
             if element:
-                said = case.why if element != "skipped" else "not solved before either"
-                ElementTree.SubElement(entry, element, message=said or "not solved now")
+                ElementTree.SubElement(entry, element, message=case.why or "not solved now")
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"

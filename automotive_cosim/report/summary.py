@@ -277,14 +277,13 @@ def comparisons(results: Results) -> Table:
                     str(found.count),
                     Cell(f"{found.difference:+.0%} ({interval.low:+.0%} to {interval.high:+.0%})", ids),
                     f"{found.only_first} : {found.only_second}",
-                    f"{found.p_value:.3g}",
                 )
             )
-    columns = ("First", "Second", "Instances", "Difference", "Won by only one", "p")
+    columns = ("First", "Second", "Instances", "Difference", "Won by only one")
     note = (
         "Success of the first minus that of the second on the same task, half, scenario, seed and repeat, with a "
-        "95 % bootstrap interval over tasks, or Newcombe's if all tasks agree; p is McNemar's exact test, not "
-        "corrected for the number of comparisons."
+        "95 % bootstrap interval over tasks, or Newcombe's if all tasks agree; not corrected for the number of "
+        "comparisons."
     )
     return Table("comparisons", "Compared on the same instances", columns, tuple(rows), note, heads=2)
 

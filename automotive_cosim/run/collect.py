@@ -13,11 +13,13 @@ from PIL import Image
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Json
+from automotive_cosim.cosim.exposed import states_of, stretches
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.measures import exposure, following_figures
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, Shot
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.harm import nearest_s, overspeed, states_of
+from automotive_cosim.run.harm import overspeed
 from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.taps import pixel_taps
@@ -106,6 +108,7 @@ class Collector(EpisodeObserver):
     def row(self, job: EpisodeJob, result: EpisodeResult) -> EpisodeRow:
         """The episode's row, without the fields that the batch adds."""
         episode, judged, load = self._episode, result.verdict, result.load
+        measured = following_figures(states_of(self._moments)) if self._moments else None
         return replace(
             job.planned(),
             scenario=result.scenario,
@@ -125,7 +128,9 @@ class Collector(EpisodeObserver):
             sim_seconds=result.sim_seconds,
             thought_s=0.0 if episode is None else round(sum(step.thought_s for step in episode.steps), 1),
             speed_compliance=compliance(self._moments),
-            min_time_to_collision_s=nearest_s(states_of(self._moments)),
+            min_time_to_collision_s=None if measured is None else measured.min_ttc_s,
+            measures=measured,
+            exposure=exposure(stretches(self._moments)),
             drive=result.drive,
             baseline_drive=result.baseline_drive,
             interaction_s=load.interaction_s if load else None,

@@ -83,9 +83,12 @@ def coverage(manifest: Json, rows: Mapping[str, TrialRow]) -> Coverage:
 
 def unit_of(plan: Json) -> str:
     """What a plan's trials are called."""
-    if not plan.get("drives"):
+    single = plan.get("trials", ())
+    drives = bool(plan.get("drives")) or any(each.get("drive") for each in single)
+    tasks = bool(plan.get("tasks")) or any(each.get("task") for each in single)
+    if not drives:
         return "episode"
-    return "trial" if plan.get("tasks") else "drive"
+    return "trial" if tasks else "drive"
 
 
 def _drift(manifest: Json, rows: Mapping[str, TrialRow], jobs: Mapping[str, TrialJob]) -> str:

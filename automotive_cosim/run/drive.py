@@ -19,6 +19,7 @@ from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, facts_of, judg
 from automotive_cosim.drives.result import DriveResult, judged_since, result_of
 from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.script import DriveScript
+from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watch import Watch
@@ -45,6 +46,19 @@ class DriveSetup:
     conditions: Conditions = Conditions()  # noqa: RUF009, frozen
     scenario: str = ""
     """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
+    settings: DriveSettings = AS_SCRIPTED
+    """What is set otherwise than the family's script has it."""
+
+    @property
+    def script(self) -> DriveScript:
+        """The drive that these words name.
+
+        Raises:
+            UserError: something in the setup does not exist.
+        """
+        drawn = family_named(self.family).draw(self.seed)
+        placed = elsewhere(drawn, self.scenario) if self.scenario else drawn
+        return placed if self.settings == AS_SCRIPTED else self.settings.applied(placed)
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,12 +181,10 @@ def run_drive(
         InfrastructureError: traffic or model failed.
     """
     listener = Listeners(observers)
-    if setup.scenario and plan is None:
-        plan = elsewhere(family_named(setup.family).draw(setup.seed), setup.scenario)
     spec = DriveSpec(setup.family, setup.seed, setup.conditions)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
-        watch = spec.begin(own, agent.channels, listener, plan)
+        watch = spec.begin(own, agent.channels, listener, plan or setup.script)
         ends.callback(watch.close)
         meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
         agent.reset(watch.goal)

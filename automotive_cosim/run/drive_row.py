@@ -9,6 +9,7 @@ from typing import Annotated
 from automotive_cosim.drives.harm import Harm
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.drives.score import Score
+from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.run.row import InColumns
 from automotive_cosim.run.trial_row import TrialRow
@@ -21,6 +22,8 @@ class DriveTrialRow(TrialRow):
     family: str
     """Family of drives that it was drawn from."""
     season: str
+    settings: Annotated[DriveSettings, InColumns("set")] = AS_SCRIPTED
+    """What was set otherwise than the family's script has it."""
     score: Annotated[Score | None, InColumns("score")] = None
     """None without a judgement."""
     value: float | None = None
@@ -50,7 +53,7 @@ class DriveTrialRow(TrialRow):
     @property
     def instance(self) -> tuple[Hashable, ...]:
         """What two contestants must share to be compared."""
-        return self.family, self.scenario, self.seed, self.repeat
+        return self.family, self.scenario, self.settings, self.seed, self.repeat
 
     @property
     def outcome(self) -> bool | None:

@@ -6,7 +6,7 @@ agent's doing.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 from math import inf
@@ -15,9 +15,11 @@ import numpy as np
 
 from automotive_cosim.cockpit.signals import ENERGY
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
-from automotive_cosim.contracts import DrivingState, EgoEnd
+from automotive_cosim.contracts import EgoEnd
+from automotive_cosim.cosim.exposed import states_of
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.breaches import limit_at
+from automotive_cosim.measures.following import nearest_s
 
 TOLERANCE_S = 1e-6
 """Tolerance between times that are sums of the same steps."""
@@ -61,12 +63,6 @@ def drive_figures(moments: Sequence[Moment], until_s: float) -> DriveFigures:
     )
 
 
-def states_of(moments: Sequence[Moment]) -> list[DrivingState]:
-    """Every step of a drive, from the first moment on; none of a drive that never began."""
-    first = [moment.driving for moment in moments[:1]]
-    return first + [state for moment in moments[1:] for state in moment.passed]
-
-
 def overspeed(moments: Sequence[Moment], until_s: float = inf) -> tuple[float, float]:
     """Metres driven above the limit that binds (``limit_at``), and the seconds for which there was one.
 
@@ -89,9 +85,3 @@ def overspeed(moments: Sequence[Moment], until_s: float = inf) -> tuple[float, f
                 whole_s += dt_s
                 over_m += max(0.0, now.speed_mps - limit_mps) * dt_s
     return over_m, whole_s
-
-
-def nearest_s(states: Iterable[DrivingState]) -> float | None:
-    """The minimum time to collision with the car in front; None if none came nearer."""
-    times = [state.around.leader.time_to_collision_s for state in states if state.around.leader is not None]
-    return min((round(time_s, 3) for time_s in times if time_s is not None), default=None)

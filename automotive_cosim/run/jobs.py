@@ -209,7 +209,7 @@ class DriveJob:
     @property
     def instance(self) -> Hashable:
         """What an instance is identified by; the same for every contestant."""
-        return self.setup.family, self.scenario, self.setup.seed, self.repeat
+        return self.setup.family, self.scenario, self.setup.settings, self.setup.seed, self.repeat
 
     @property
     def wall_s(self) -> float:
@@ -231,6 +231,7 @@ class DriveJob:
                     f"r{self.repeat}",
                 ),
                 *([setup.scenario] if setup.scenario else []),
+                *setup.settings.tags,
                 *replace(setup.conditions, geo=GeoInput.FULL).tags,
             )
         )
@@ -242,6 +243,7 @@ class DriveJob:
             id=self.id,
             family=setup.family,
             season=family_named(setup.family).season,
+            settings=setup.settings,
             scenario=self.scenario,
             agent=setup.agent,
             model=setup.model,

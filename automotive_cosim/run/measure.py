@@ -27,6 +27,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.confinement import confined
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.options import Setup, command_line, copied, read_configuration, run_options
 
@@ -159,7 +160,7 @@ def _bare(scenario: Scenario, steps: int) -> tuple[float | None, str | None]:
 
 def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: float, scratch: Path) -> float:
     """The time that SUMO reports, without loading; its real time factor has more digits than its duration."""
-    command = [str(program), "--verbose", *command_line(options)[1:]]
+    command = confined(scratch, [str(program), "--verbose", *command_line(options)[1:]])
     environment = sumo_programs.environment()
     done = subprocess.run(command, cwd=scratch, env=environment, capture_output=True, text=True, check=False)
     factor = re.search(r"Real time factor: ([\d.]+)", done.stdout)

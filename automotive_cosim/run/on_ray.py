@@ -20,7 +20,7 @@ from automotive_cosim.errors import InfrastructureError, SetupError, UserError
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
 from automotive_cosim.run.meter import Budget, Meter, MeterHandle, Spent
 from automotive_cosim.run.store import keep_files, stamp
-from automotive_cosim.tasks.folder import VARIABLE
+from automotive_cosim.tasking.own_files import VARIABLE
 
 # Read when Ray is imported or started: no usage statistics, and no printing into our output.
 os.environ.setdefault("RAY_USAGE_STATS_ENABLED", "0")

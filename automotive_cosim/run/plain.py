@@ -10,8 +10,10 @@ from __future__ import annotations
 import json
 import os
 import sys
+from pathlib import Path
 from time import perf_counter
 
+from automotive_cosim.traffic.confinement import confine
 from automotive_cosim.traffic.sumo import load_library
 
 
@@ -20,6 +22,7 @@ def main() -> None:
     job = json.loads(sys.argv[1])
     sumo = load_library()
     os.chdir(job["folder"])
+    confine([Path(job["folder"])])
     sumo.start(job["command"])
     for _ in range(job["warm_up_steps"]):
         sumo.step()

@@ -19,8 +19,9 @@ from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
+from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
-from automotive_cosim.episode.conditions import ConditionLists, combined, lists_of
+from automotive_cosim.episode.conditions import ConditionLists, Conditions, combined, lists_of
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
@@ -47,6 +48,72 @@ SPARE_TRAFFIC = (1_000_001, 1_000_002)
 """Far from the seeds that people choose."""
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedTrial:
+    """One ``[[trials]]`` of a plan, run by every agent and model of it: a half of a task, or a drive."""
+
+    task: str = ""
+    """Id of the task; empty for a drive."""
+    half: Annotated[str, OneOf(("first", "second"), "half")] = "first"
+    drive: str = ""
+    """Family of drives; empty for a task."""
+    scenario: str = ""
+    """Where to run it instead of in the task's or the drive's own scenario."""
+    seed: Annotated[int, Ge(0), Le(2**31 - 1)] = 0
+    """Seed of the traffic, and of everything that is drawn."""
+    repeat: Annotated[int, Ge(0), Le(1000)] = 0
+    """Which run of the same it is; the plan's repeats count from here."""
+    held_out: bool = False
+    """Whether the driver says the task's held-out phrasing."""
+    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
+    """What the agent is given, and at what speed."""
+    settings: DriveSettings = AS_SCRIPTED
+    """What is set otherwise than the drive's script has it."""
+
+    @property
+    def words(self) -> str:
+        """What it is, for messages."""
+        where = f" in {self.scenario}" if self.scenario else ""
+        return f"{self.task or self.drive}{where}, seed {self.seed}"
+
+    def job(self, agent: str, model: str, repeat: int, limits: Limits, spare: tuple[int, ...]) -> TrialJob:
+        """The trial of one agent.
+
+        Raises:
+            UserError: it names no task and no drive, or both, or something that does not exist or cannot be set.
+        """
+        if bool(self.task) == bool(self.drive):
+            raise UserError("an entry of [[trials]] names a task or a drive; give one of the two")
+        named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
+        if self.drive:
+            family_named(self.drive)
+            setup = DriveSetup(self.drive, self.seed, agent, named, self.conditions, self.scenario, self.settings)
+            return DriveJob(setup, self.repeat + repeat, limits.of_drives)
+        if self.settings != AS_SCRIPTED:
+            raise UserError(f"{self.task}: {self.settings.words} can be set for drives alone; omit it")
+        if self.task not in CATALOGUE:
+            raise UnknownNameError("task", self.task, CATALOGUE, "automotive-cosim tasks list")
+        task = CATALOGUE[self.task]
+        half = task.half(self.half)
+        if self.conditions.language not in task.languages:
+            raise UserError(f"{self.task} has no phrasings in {languages_in_words([self.conditions.language])}")
+        scenario = None if self.scenario in ("", half.start.scenario) else self.scenario
+        episode = EpisodeSetup(
+            task.id,
+            self.half,
+            scenario,
+            agent=agent,
+            model=named,
+            seed=self.seed,
+            max_steps=limits.hard_steps if task.suite is Suite.HARD else limits.steps,
+            max_sim_s=limits.sim_s,
+            conditions=self.conditions,
+            held_out=self.held_out,
+            spare_traffic=spare if scenario is None or scenario in task.runs_in else (),
+        )
+        return EpisodeJob(episode, self.repeat + repeat, limits)
+
+
 @dataclass(frozen=True, slots=True)
 class Plan(ConditionLists):
     """The content of a ``plan.toml``; every list is combined with every other, the conditions' too."""
@@ -55,7 +122,7 @@ class Plan(ConditionLists):
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
     tasks: tuple[str, ...] = ()
     """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``;
-    empty for all, or for none beside drives."""
+    empty for all, or for none beside drives and trials."""
     drives: tuple[str, ...] = ()
     """Families of drives, patterns such as ``grid_*``, scenarios, seasons, or ``all``."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
@@ -72,6 +139,8 @@ class Plan(ConditionLists):
     spare_traffic: tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...] = SPARE_TRAFFIC
     """Seeds of traffic that replace a seed's own, in turn, if the situation does not occur in it although the task
     lists the scenario. Every agent gets the same; the row says which."""
+    trials: tuple[PlannedTrial, ...] = ()
+    """Single tasks and drives beside those combined from the lists."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each task and drive, for models that do not answer the same twice."""
     held_out: bool = False
@@ -84,6 +153,8 @@ class Plan(ConditionLists):
     def as_json(self) -> Json:
         """The plan as a JSON object, for the manifest."""
         made: Json = json.loads(json.dumps(asdict(self)))  # words in place of enumerations
+        if not self.trials:
+            del made["trials"]  # as in plans from before there were any
         return made
 
     def check(self, *, dry: bool = False) -> tuple[str, ...]:
@@ -138,7 +209,7 @@ class Plan(ConditionLists):
         lists = (self.agents, self.models, [*self._placed(), *self._driven()], self.seeds, *lists_of(self).values())
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
-        every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives())
+        every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives(), *self._single())
         jobs = {job.id: job for job in every if self.split in (BOTH, job.split)}
         return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
 
@@ -204,7 +275,7 @@ class Plan(ConditionLists):
 
     def _chosen(self) -> tuple[str, ...]:
         """Ids of the chosen tasks."""
-        return choose(self.tasks or (() if self.drives else ("all",)), self.suite)
+        return choose(self.tasks or (() if self.drives or self.trials else ("all",)), self.suite)
 
     def _driven(self) -> list[tuple[str, str]]:
         """Each family of drives with each scenario that it runs in; empty for its own."""
@@ -217,6 +288,10 @@ class Plan(ConditionLists):
             named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
             setup = DriveSetup(family, seed, agent, named, conditions, scenario)
             yield DriveJob(setup, repeat, self.limits.of_drives)
+
+    def _single(self) -> Iterator[TrialJob]:
+        for agent, model, trial, repeat in product(self.agents, self.models, self.trials, range(self.repeats)):
+            yield trial.job(agent, model, repeat, self.limits, self.spare_traffic)
 
     def _episodes(self) -> Iterator[EpisodeJob]:
         for agent, model, (task, scenario), seed, conditions, repeat in product(

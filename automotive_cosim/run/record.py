@@ -24,6 +24,7 @@ from PIL import Image
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.plain import plain
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot
 from automotive_cosim.run.versions import installed
 
@@ -32,10 +33,14 @@ OURS = ("episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.
 STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
 
 
-def default_folder(setup: EpisodeSetup) -> Path:
-    """``runs/<timestamp>-<task>-<half>-<agent>-seed<seed>``; a second run in the same second gets a number."""
-    stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
-    folder = Path("runs") / f"{stamp}-{setup.task}-{setup.half}-{setup.agent}-seed{setup.seed}"
+def default_folder(setup: EpisodeSetup, ending: str = "") -> Path:
+    """``runs/<timestamp>-<task>-<half>-<agent>-seed<seed><ending>``."""
+    return stamped_folder(f"{setup.task}-{setup.half}-{setup.agent}-seed{setup.seed}{ending}")
+
+
+def stamped_folder(name: str) -> Path:
+    """``runs/<timestamp>-<name>``; a second one in the same second gets a number."""
+    folder = Path("runs") / f"{datetime.now():%Y%m%d-%H%M%S}-{name}"
     number = 2
     while folder.exists():
         folder = folder.with_name(f"{folder.name.removesuffix(f'-{number - 1}')}-{number}")
@@ -131,9 +136,9 @@ def screenshot(folder: Path, step: int) -> Path:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Writes a file completely or not at all."""
+    """Writes a file of plain text completely or not at all."""
     draft = path.with_name(f".{path.name}.part")
-    draft.write_text(text, encoding="utf-8", newline="\n")
+    draft.write_text(plain(text), encoding="utf-8", newline="\n")
     draft.replace(path)
 
 

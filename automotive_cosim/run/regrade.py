@@ -14,7 +14,9 @@ from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.moments import Judged, judged_file, read_judged, read_value
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_evaluation
+from automotive_cosim.tasking.binding import UnmetNeedError, bound
 from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.task import Half
 from automotive_cosim.tasking.verdict import Verdict, judge
 from automotive_cosim.tasks import CATALOGUE
 
@@ -69,11 +71,14 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
     """The verdict on an episode's stored moments by the current checks.
 
     Raises:
-        UserError: the task no longer exists, or the commands that it allows have changed.
+        UserError: the task no longer exists, the commands that it allows have changed, or the place where it was
+            handed over has no sign or law on which it rests.
     """
     assert stored.counterfactual is not None
     spoken = row.conditions.language
-    instance = Instance(CATALOGUE[row.task], row.half, stored.goal, stored.parameters, language=spoken)
+    task = CATALOGUE[row.task]
+    rule = _rule_elsewhere(row, task.half(row.half), stored)
+    instance = Instance(task, row.half, stored.goal, stored.parameters, rule=rule, language=spoken)
     if stored.allowed_writes != instance.half.allowed_writes:
         raise UserError(f"the commands that {row.task} allows have changed; rerun {row.id}")
     return judge(
@@ -86,6 +91,16 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
         row.agent_error,
         stored.said,
     )
+
+
+def _rule_elsewhere(row: EpisodeRow, half: Half, stored: Judged) -> str:
+    """The sign or law on which a half rests where it was handed over; empty in its own scenario."""
+    if row.scenario == half.start.scenario:
+        return ""
+    try:
+        return bound(half, stored.trace[0].context)
+    except UnmetNeedError as missing:
+        raise UserError(f"{row.id} cannot be judged: {missing}") from missing
 
 
 def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:

@@ -139,7 +139,7 @@ def _single_drive(folder: Path, drive: str) -> list[Compared]:
         raise UserError(f"cannot read the drive in {folder}: {error}") from error
     own = family_named(row.family).scenario
     scenario = "" if row.scenario == own else row.scenario
-    setup = DriveSetup(row.family, row.seed, row.agent, row.model, row.conditions, scenario)
+    setup = DriveSetup(row.family, row.seed, row.agent, row.model, row.conditions, scenario, row.settings)
     return _drive_again(row, DriveJob(setup, row.repeat), steps)
 
 

@@ -8,6 +8,7 @@ from typing import Annotated
 
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.specification import End
+from automotive_cosim.measures import ExposureCell, FollowingFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile
 from automotive_cosim.tasking.split import Split
 
@@ -35,6 +36,10 @@ class TrialRow(JobRow):
     tokens_out: int = 0
     cost_usd: float = 0.0
     trace_sha256: str | None = None
+    measures: Annotated[FollowingFigures | None, InColumns("measure")] = None
+    """How close the car came to those in front and behind; None if it never drove."""
+    exposure: tuple[ExposureCell, ...] = ()
+    """How long and how far it drove in which conditions."""
     model_seconds: Volatile[float] = 0.0
     """Total wait for the model."""
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from automotive_cosim.agents import PROFILES
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.templates import render
@@ -16,10 +17,10 @@ from automotive_cosim.studies.data import write_data
 from automotive_cosim.studies.decisions import write_decisions
 from automotive_cosim.studies.demand import demand_table, read_demand
 from automotive_cosim.studies.effects import effects
-from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS
+from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.plan import named
 from automotive_cosim.studies.results import Study, read_study
-from automotive_cosim.studies.tables import tables
+from automotive_cosim.studies.tables import STAYING, groups, tables, time_saved_s
 from automotive_cosim.traffic.chance import Fresh
 
 
@@ -52,6 +53,7 @@ def write_study(folder: Path) -> Path:
         text = render(
             "studies/study.html",
             study=study,
+            answer=answer(study),
             count=len(study.decisions),
             tables=made,
             plots=plots,
@@ -65,6 +67,24 @@ def write_study(folder: Path) -> Path:
     except OSError as error:
         raise cannot_write(folder, error) from error
     return page
+
+
+def answer(study: Study) -> str:
+    """What the study found, in a sentence: which policy saves the ego how much for each decision."""
+    best: tuple[str, SeedMean] | None = None
+    for _, policy, _, chosen in groups(study):
+        found = seed_mean((each.seed, time_saved_s(each)) for each in chosen)
+        if policy not in STAYING and found is not None and (best is None or found.value > best[1].value):
+            best = policy, found
+    if best is None:
+        return "No decision to reroute was compared."
+    policy, found = best
+    bounds = found.interval
+    sure = "" if bounds is None else f" ({bounds.low:.0f} to {bounds.high:.0f})".replace("-", "−")
+    verb = "saves" if found.value >= 0 else "costs"
+    told = f"Rerouting by “{policy}” {verb} {abs(found.value):.0f} s{sure} a decision"
+    over = f"{counted(found.count, 'decision')} of {counted(found.seeds, 'seed')}"
+    return f"{told}, over {over}" + ("." if bounds else f"; {LEAST_SEEDS} seeds give an interval.")
 
 
 def warnings(study: Study) -> list[str]:

@@ -51,10 +51,13 @@ class MessageChannel:
             timeout_s: longest silence; None waits forever.
 
         Raises:
-            ClosedError: the other side is gone.
+            ClosedError: the other side is gone, or this one is closed, as at the end of the program.
             TimeoutError: nothing came in time.
         """
-        self._socket.settimeout(timeout_s)
+        try:
+            self._socket.settimeout(timeout_s)
+        except OSError as error:
+            raise ClosedError from error
         (length,) = _LENGTH.unpack(self._read(_LENGTH.size))
         return pickle.loads(self._read(length))
 

@@ -18,19 +18,16 @@ from dataclasses import dataclass, field
 
 from shapely import LineString, Point
 
+from automotive_cosim.measures.encounters import CREEPING_MPS, LONGEST_PET_S
+from automotive_cosim.measures.formulas import swept_pet_s
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.instant import Seen
 from automotive_cosim.traffic.sumo import LibSumo
 
 LOOK_S = 0.5
-LONGEST_PET_S = 5.0
-"""A longer time is not a conflict."""
 
 NEAR_M = 30.0
 """Distance from which the junction ahead is watched, or ``LONGEST_PET_S`` before it."""
-
-CREEPING_MPS = 0.5
-"""Minimum speed of a vehicle, so that passages stay finite."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,15 +62,12 @@ class _Sight:
 
     def passage(self, point_m: float) -> tuple[float, float]:
         """When its front reached or will reach a point, and when its rear leaves it."""
-        reached_s = self.time_s + (point_m - self.position_m) / self._moving_mps
-        return reached_s, reached_s + self.length_m / self._moving_mps
-
-    def half_width_s(self, of: _Sight) -> float:
-        """Time in which it drives half the other's width."""
-        return of.width_m / 2 / self._moving_mps
+        reached_s = self.time_s + (point_m - self.position_m) / self.moving_mps
+        return reached_s, reached_s + self.length_m / self.moving_mps
 
     @property
-    def _moving_mps(self) -> float:
+    def moving_mps(self) -> float:
+        """Its speed, and at least a creep."""
         return max(CREEPING_MPS, self.speed_mps)
 
 
@@ -165,7 +159,7 @@ class Conflicts:
                 if 0.0 <= pet_s <= LONGEST_PET_S:
                     way.told.add(vehicle)
                     first, second = (sight, way.ego) if order == "after" else (way.ego, sight)
-                    swept_s = pet_s - first.half_width_s(second) - second.half_width_s(first)
+                    swept_s = swept_pet_s(pet_s, first.moving_mps, first.width_m, second.moving_mps, second.width_m)
                     does = "merges" if crossing.merges else "crosses"
                     words = (
                         f"the ego {does} {pet_s:.2f} s {order} vehicle {vehicle} ({swept_s:.2f} s by swept area)"

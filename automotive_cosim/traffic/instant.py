@@ -12,10 +12,10 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from automotive_cosim.contracts import DrivingState, EgoEnd, Limit, OtherVehicle
+from automotive_cosim.measures.formulas import drac_mps2, time_to_collision_s
 from automotive_cosim.traffic.congestion import Route
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.records import make_around, make_light, make_other, make_road, make_state
-from automotive_cosim.traffic.surrogates import drac_mps2, time_to_collision_s
 
 TOUCHING_M = 0.1
 """Minimum gap in the DRAC, so that it stays finite."""

@@ -191,7 +191,7 @@ class NetworkReader:
         Args:
             path: the file, for errors.
         """
-        self._path = path
+        self.path = path
         self._depth = 0
         self._edge: Attributes = {}
         self._lanes: list[Attributes] = []
@@ -226,7 +226,7 @@ class NetworkReader:
                 self._params[attributes.get("key", "")] = attributes.get("value", "")
         elif self._depth == 1:
             if name != "net":
-                raise ScenarioError(f"{self._path} is not a SUMO network: its root is <{name}>, not <net>")
+                raise ScenarioError(f"{self.path} is not a SUMO network: its root is <{name}>, not <net>")
             self.left_hand = attributes.get("lefthand") in ("true", "1")
 
     def end(self, name: str) -> None:
@@ -243,13 +243,13 @@ class NetworkReader:
             ScenarioError: it has no road for cars, or no valid location.
         """
         if not self.edges:
-            raise ScenarioError(f"{self._path} has no road that cars may use")
+            raise ScenarioError(f"{self.path} has no road that cars may use")
         try:
             roads = _map(self)
             doubt = georeference.doubt(roads, self.location)
         except ValueError as error:
             raise ScenarioError(
-                f"{self._path} has no valid location ({error}); build it again with netconvert"
+                f"{self.path} has no valid location ({error}); build it again with netconvert"
             ) from error
         if doubt:
             roads = replace(roads, projection=None)
@@ -388,12 +388,21 @@ def _crossings(reading: NetworkReader) -> dict[str, dict[str, Crossing]]:
     """Adds up the inner lanes of each connection through a junction; a waiting position splits it in two.
 
     A connection from or to a lane that is closed to cars is none for them.
+
+    Raises:
+        ScenarioError: a connection names an edge that the network does not have.
     """
     onward = {link.from_lane: link.via for link in reading.connections if link.from_edge.startswith(":")}
     lanes = {lane for edge in reading.edges.values() for lane in edge.lane_ids}
     links: dict[str, dict[str, list[_Connection]]] = {}
     for link in reading.connections:
         if link.from_lane in lanes and link.to_lane in lanes:
+            for edge_id in (link.from_edge, link.to_edge):
+                if edge_id not in reading.edges:
+                    raise ScenarioError(
+                        f"{reading.path} has a connection of the edge {edge_id!r}, which is not in it; "
+                        "build the network anew with netconvert"
+                    )
             links.setdefault(link.from_edge, {}).setdefault(link.to_edge, []).append(link)
     return {
         here: {there: _through(between, onward, reading) for there, between in ways.items()}

@@ -121,7 +121,7 @@ OTHERS = {
     ("mcp",), ("serve",),
     ("report",), ("playback",), ("screens",), ("schema",), ("study", "report"), ("tasks", "export"),
     ("signals", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
-    ("scenarios", "download"), ("bundle",), ("leaderboard",),
+    ("scenarios", "download"), ("bundle",), ("leaderboard",), ("measures",),
 }  # fmt: skip
 """Commands whose result is a file, or a server."""
 

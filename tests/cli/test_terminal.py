@@ -26,7 +26,8 @@ from automotive_cosim import scenarios
 from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.live import Live
 from automotive_cosim.cli.main import CLOSED_PIPE
-from automotive_cosim.cli.terminal import Plain, escaped, plain
+from automotive_cosim.cli.terminal import Plain, escaped
+from automotive_cosim.formats.plain import plain
 
 EVIL = "\x1b[2J\x1b]0;owned\x07\x9b1A\r\x08\u202e"
 

@@ -19,9 +19,9 @@ from typer import TyperException
 from typer.main import get_command
 
 from automotive_cosim.cli.main import app
+from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
-from automotive_cosim.tasks.folder import VARIABLE
 from tests.laws import over
 
 TOP = Path(__file__).parents[2]
@@ -98,6 +98,12 @@ DRY = ("--dry-run",)
 HELP = ("--help",)
 
 TREATED: list[tuple[str, tuple[str, ...], str]] = [
+    (r"eval .*failures/", HELP, "needs a search; tests/safety/test_trying.py has one"),
+    (
+        r"(search|measures)",
+        HELP,
+        "takes minutes; tests/safety and tests/measures try them",
+    ),
     (r"eval .*--executor ray", HELP, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
@@ -274,7 +280,7 @@ def test_pages_count_the_tasks_as_they_are():
 )
 @pytest.mark.slow
 def test_pages_count_the_episodes_as_they_are(cli, line, words):
-    planned = re.search(r"episodes +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
+    planned = re.search(r"runs +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
     assert planned is not None
     text = (TOP / "docs/evaluation.md").read_text(encoding="utf-8")
     assert f"automotive-cosim eval {line}" in text

@@ -51,6 +51,10 @@ def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(ev
     cases = ElementTree.parse(tmp_path / "first/compare.xml").findall(".//testcase")
     assert len(cases) == 3
     assert "as good" in (tmp_path / "first/compare.md").read_text(encoding="utf-8")
+    won = sum(
+        json.loads(row)["success"] for row in (tmp_path / "first/after/episodes.jsonl").read_text().splitlines()
+    )
+    assert won >= 2, "it solves most of its tasks"
     agent = tmp_path / "checkout/my_agent.py"
     agent.write_text(agent.read_text(encoding="utf-8").replace('"Max"', '"None such"'), encoding="utf-8")
     worse = evaluate("checkout", "checkout/plan.toml", "second", "first/after")

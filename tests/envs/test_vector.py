@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
-from automotive_cosim.envs.flat import FlatEnv
+from automotive_cosim.contracts import GoalStatus
+from automotive_cosim.envs.flat import APPS, CONTROLS, ENDS, FlatEnv
 from automotive_cosim.envs.pool import SharedPool
 from automotive_cosim.envs.vector import ConcurrentVectorEnv
 from automotive_cosim.errors import ActionError, TrafficError, UserError
@@ -31,7 +32,10 @@ def make(simulations: Simulations) -> Make:
 
 @pytest.fixture(scope="module")
 def actions() -> Any:
-    return np.random.default_rng(5).integers(40, size=(ROUNDS, COUNT))
+    moves = len(APPS) + len(CONTROLS)
+    drawn = np.random.default_rng(5).integers(moves, size=(ROUNDS, COUNT))
+    drawn[2, 0] = drawn[9, 2] = moves + ENDS.index(GoalStatus.COMPLETE)
+    return drawn
 
 
 def played(envs: SyncVectorEnv, actions: Any) -> Iterator[Any]:

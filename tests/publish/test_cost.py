@@ -17,10 +17,12 @@ from automotive_cosim.formats.files import MOST_VALUES, open_file, parse_json, r
 from automotive_cosim.publish import archive, limited
 from automotive_cosim.publish.bundle import write_bundle
 from automotive_cosim.publish.contents import NAME, file_sha256, read_contents
-from automotive_cosim.publish.episodes import ROWS
+from automotive_cosim.publish.episodes import ROWS, check_trial
 from automotive_cosim.publish.limited import LimitedProcesses
 from automotive_cosim.publish.verify import verify
+from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.store import read_rows, trace_file
 
@@ -115,6 +117,17 @@ def test_a_file_that_unpacks_to_more_than_its_plan_allows_is_named(unpacked, tmp
     padded = b'{"pad": "' + b"x" * (25 << 20) + b'"}\n'
     path.write_bytes(lzma.compress(padded, preset=0) if path.suffix == ".xz" else gzip.compress(padded, 1))
     (problem,) = verify(renewed(unpacked, tmp_path / "b.bundle")).problems
+    assert str(problem).startswith(f"traces/{path.name}: unpacks to over ")
+
+
+@pytest.mark.parametrize("file", [judged_file, trace_file])
+def test_so_is_that_of_a_drive(tmp_path, file):
+    job = DriveJob(DriveSetup("grid_january", agent="no-op"))
+    path = file(tmp_path, job.id)
+    path.parent.mkdir()
+    padded = b"x" * (70 << 20)
+    path.write_bytes(lzma.compress(padded, preset=0) if path.suffix == ".xz" else gzip.compress(padded, 1))
+    (problem,) = check_trial(tmp_path, job, job.planned())
     assert str(problem).startswith(f"traces/{path.name}: unpacks to over ")
 
 

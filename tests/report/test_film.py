@@ -9,7 +9,7 @@ import pytest
 from PIL import Image
 
 from automotive_cosim.contracts import RoadNetwork
-from automotive_cosim.report import film as films
+from automotive_cosim.report import frames
 from automotive_cosim.report.film import Film
 from automotive_cosim.run.timeline import Sample
 
@@ -23,14 +23,14 @@ def _film(
     """Times of the frames of a film that was handed over at 100 s."""
     shown: list[float] = []
 
-    def compose(self: Film, frame: films.FilmFrame, result: Any, painter: Any) -> Image.Image:
-        assert [sample for sample in result.path if sample.at_s <= frame.time_s - 100.0 + films.SAME_TIME_S]
-        shown.append(frame.time_s)
+    def compose(self: Film, frame: frames.FilmFrame, result: Any, painter: Any) -> Image.Image:
+        assert [sample for sample in result.path if sample.at_s <= frame.at_s + frames.SAME_TIME_S]
+        shown.append(100.0 + frame.at_s)
         return Image.new("RGB", (8, 8))
 
     monkeypatch.setattr(Film, "_compose", compose)
-    monkeypatch.setattr(films, "_outcome", lambda result: "")
-    monkeypatch.setattr(films, "_why", lambda result: "")
+    monkeypatch.setattr(frames, "outcome", lambda result: "")
+    monkeypatch.setattr(frames, "why", lambda result: "")
     film = Film(folder)
     cockpit = cast("Any", SimpleNamespace(screenshot=lambda: SCREEN))
     for time_s in moments_s:

@@ -10,15 +10,12 @@ from automotive_cosim.report import stats
 
 @pytest.mark.parametrize(("successes", "count"), [(0, 7), (7, 7), (3, 7), (40, 50), (1, 1000), (500, 1000)])
 @pytest.mark.parametrize("confidence", [0.9, 0.95, 0.99])
-def test_wilson_agrees_with_scipy_and_statsmodels(successes, count, confidence):
-    from scipy.stats import binomtest  # here and below: seconds, in the one worker that needs them
-    from statsmodels.stats.proportion import proportion_confint
+def test_wilson_agrees_with_scipy(successes, count, confidence):
+    from scipy.stats import binomtest  # a second, in the one worker that needs it
 
     ours = stats.wilson(successes, count, confidence)
     theirs = binomtest(successes, count).proportion_ci(confidence, method="wilson")
     assert (ours.low, ours.high) == pytest.approx((theirs.low, theirs.high), abs=1e-9)
-    others = proportion_confint(successes, count, alpha=1 - confidence, method="wilson")
-    assert (ours.low, ours.high) == pytest.approx(others, abs=1e-9)
 
 
 def test_wilson_on_a_published_example():
@@ -90,15 +87,12 @@ def test_a_rate_divides_by_what_was_planned(outcomes, not_run):
 
 
 @pytest.mark.parametrize(("both", "b", "c", "neither"), [(3, 9, 1, 4), (0, 5, 5, 0), (10, 0, 6, 10), (4, 0, 0, 4)])
-def test_paired_comparisons_agree_with_statsmodels(both, b, c, neither):
-    from statsmodels.stats.contingency_tables import mcnemar
-
+def test_a_difference_lies_within_its_interval(both, b, c, neither):
     cells = [(True, True)] * both + [(True, False)] * b + [(False, True)] * c + [(False, False)] * neither
     first = dict(enumerate(one for one, _ in cells))
     second = dict(enumerate(other for _, other in cells))
     found = stats.compare(first, second, {i: i for i in first})
     assert found is not None
-    assert found.p_value == pytest.approx(float(mcnemar([[both, b], [c, neither]], exact=True).pvalue))
     assert found.difference == pytest.approx((b - c) / len(cells))
     assert found.interval.low <= found.difference <= found.interval.high
 

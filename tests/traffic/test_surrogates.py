@@ -10,16 +10,16 @@ from xml.etree import ElementTree
 
 import pytest
 
+from automotive_cosim.measures.formulas import (
+    crossing_time_to_collision_s,
+    drac_mps2,
+    mdrac_mps2,
+    time_exposed,
+    time_to_collision_s,
+)
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.sumo import load_library, start
-from automotive_cosim.traffic.surrogates import (
-    crossing_time_to_collision_s,
-    drac_mps2,
-    exposure,
-    mdrac_mps2,
-    time_to_collision_s,
-)
 
 LENGTH_M, WIDTH_M = 5.0, 1.8
 SPAN_M = 20.0
@@ -102,10 +102,10 @@ def test_without_closing_or_time_to_react_there_is_none() -> None:
 def test_constant_closing_exposes_for_the_time_below_the_threshold() -> None:
     step_s, threshold_s, nearest_s = 0.001, 3.0, 0.5
     steps = [(i * step_s, 5.0 - i * step_s) for i in range(round((5.0 - nearest_s) / step_s) + 1)]
-    tet_s, tit_s2 = exposure(steps, threshold_s)
+    tet_s, tit_s2 = time_exposed(steps, threshold_s)
     assert tet_s == pytest.approx(threshold_s - nearest_s, abs=2 * step_s)
     assert tit_s2 == pytest.approx((threshold_s - nearest_s) ** 2 / 2, abs=0.01)
-    assert exposure([(0.0, None), (1.0, 9.0)], threshold_s) == (0.0, 0.0)
+    assert time_exposed([(0.0, None), (1.0, 9.0)], threshold_s) == (0.0, 0.0)
 
 
 def test_a_crossing_collides_if_the_first_is_still_there() -> None:

@@ -20,6 +20,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
 from automotive_cosim.drives.events.law import REACTION_S, certain, seen, speed_kmh, time_left_s
+from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 
 NEAR_M = 500.0
 """A tunnel is announced on the map from this distance."""
@@ -39,8 +40,7 @@ CLOSE_S = 1.0
 GAP_HOLD_S = 3.0
 """Time to reopen a gap after another vehicle cuts in; our choice, as in the checks of law."""
 GAP_FROM_KMH = 30.0
-HARD_MPS2 = 3.4
-"""Deceleration to avoid a crash from which a conflict is serious (Archer, 2005: 3.35)."""
+HARD_MPS2 = DEFAULT_THRESHOLDS.drac_mps2
 STANDING_ALERTS = frozenset(
     {
         AlertKind.MOVE_OVER,

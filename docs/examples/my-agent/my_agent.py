@@ -2,8 +2,8 @@
 
 from automotive_cosim import Action, ActionType, Channel, GoalStatus, Observation, Reason
 
-KNOWN = {"blow": "Max", "fan": "Max"}
-"""What is written on the button of the climate screen that a word of the driver's asks for."""
+KNOWN = {"seat": "Seat heat", "hands": "Wheel", "fan": "Max", "blow": "Max", "air flow": "Max"}
+"""How the button of the climate screen begins that a word of the driver's asks for."""
 
 
 class Careful:
@@ -24,7 +24,7 @@ class Careful:
         if self.tapped:
             return Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
         for index, element in enumerate(observation.elements):
-            if element.text == self.wanted:
+            if element.text.startswith(self.wanted):
                 self.tapped = True
                 return Action(ActionType.CLICK, index=index)
         return Action(ActionType.OPEN_APP, app_name="climate")

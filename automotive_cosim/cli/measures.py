@@ -1,0 +1,69 @@
+"""``automotive-cosim measures``: surrogate measures of safety of a recorded trial, as CSV."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from automotive_cosim.cli.options import number
+from automotive_cosim.errors import UserError
+from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS, Thresholds
+
+Above = number(0.001, 10_000)
+
+
+def measures(
+    record: Annotated[
+        Path,
+        typer.Argument(
+            help="Folder of `run` or `drive` with --out, of one trial in pictures/ of `eval`, or a road.jsonl.gz.",
+            show_default=False,
+        ),
+    ],
+    everyone: Annotated[
+        bool, typer.Option("--everyone", help="All pairs of vehicles, and not only those with the ego.")
+    ] = False,
+    readings: Annotated[
+        bool, typer.Option("--readings", help="A line for each pair and second, and not for each encounter.")
+    ] = False,
+    ttc: Annotated[
+        float, typer.Option(help="Time to collision from which on it is critical.", metavar="S", parser=Above)
+    ] = DEFAULT_THRESHOLDS.ttc_s,
+    drac: Annotated[
+        float, typer.Option(help="The same for the needed deceleration.", metavar="MPS2", parser=Above)
+    ] = DEFAULT_THRESHOLDS.drac_mps2,
+    pet: Annotated[
+        float, typer.Option(help="The same for the post-encroachment time.", metavar="S", parser=Above)
+    ] = DEFAULT_THRESHOLDS.pet_s,
+    reach: Annotated[
+        float, typer.Option("--range", help="How far other vehicles are looked at.", metavar="M", parser=Above)
+    ] = DEFAULT_THRESHOLDS.range_m,
+    out: Annotated[Path | None, typer.Option(help="File for the table.", show_default="standard output")] = None,
+) -> None:
+    """Print the encounters of a recorded trial with their surrogate measures of safety, as CSV."""
+    from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
+    from automotive_cosim.measures.encounters import as_csv
+    from automotive_cosim.run.record import write_whole
+    from automotive_cosim.run.road import NAME, read_record
+
+    path = record / NAME if record.is_dir() else record
+    if not path.is_file():
+        raise UserError(f"{record} has no {NAME}; `drive --out` and `eval --pictures all` record the road")
+    scenes = [(second.at_s, second.vehicles) for second in read_record(path).seconds]
+    thresholds = Thresholds(ttc, drac, DEFAULT_THRESHOLDS.mdrac_mps2, pet, reach)
+    ego = None if everyone else "ego"
+    if readings:
+        text = as_csv(pair_readings(scenes, ego, thresholds), PairReading)
+    else:
+        text = as_csv(encounters(scenes, ego, thresholds), Encounter)
+    if out is None:
+        typer.echo(text, nl=False)
+    else:
+        write_whole(out, text)
+        typer.echo(
+            f"{len(text.splitlines()) - 1} lines of {len(fields(PairReading if readings else Encounter))} "
+            f"columns in {out}"
+        )

@@ -1,0 +1,93 @@
+"""What of a drive can be set otherwise than its script has it; what is right is found on the drive itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+from datetime import datetime, timedelta
+from typing import Annotated
+
+from annotated_types import Ge, Gt, Le, Lt
+
+from automotive_cosim.contracts import Weather
+from automotive_cosim.drives.script import DriveScript
+from automotive_cosim.drives.sky import fog
+from automotive_cosim.formats.annotations import OneOf
+from automotive_cosim.geo.weather import FOG_BELOW_M, HEAVY_RAIN_FROM_MM_PER_H
+from automotive_cosim.traffic.profiles import PROFILES
+
+
+@dataclass(frozen=True, slots=True, order=True)
+class DriveSettings:
+    """What is set otherwise than the script has it; None leaves it as it is."""
+
+    hour: Annotated[float, Ge(0), Lt(24)] | None = None
+    """Local time at departure."""
+    visibility_m: Annotated[float, Ge(10), Le(100_000)] | None = None
+    """The farthest that one can see at any time; below a kilometre it is fog, unless something falls."""
+    rain_mm_h: Annotated[float, Ge(0), Le(100)] | None = None
+    """The least that falls at any time, as snow in the cold."""
+    temperature_c: Annotated[float, Ge(-40), Le(55)] | None = None
+    """Temperature of the air all the time."""
+    density: Annotated[float, Gt(0), Le(5)] | None = None
+    """Factor on the traffic of the place."""
+    driver: Annotated[str, OneOf(tuple(PROFILES), "driver")] | None = None
+    """Name of a driver profile."""
+    driven_min: Annotated[float, Ge(0), Le(1440)] | None = None
+    """How long the driver had been driving without a break before departure."""
+
+    @property
+    def tags(self) -> tuple[str, ...]:
+        """Whatever is set, for ids."""
+        return tuple(f"{name}{_told(value)}" for name, value in self._set())
+
+    @property
+    def words(self) -> str:
+        """Whatever is set: ``hour 22, density 0.5``."""
+        return ", ".join(f"{name} {_told(value)}" for name, value in self._set())
+
+    def applied(self, script: DriveScript) -> DriveScript:
+        """The script with these settings."""
+        made = script
+        if self.hour is not None:
+            day = datetime.fromisoformat(script.start).replace(hour=0, minute=0, second=0)
+            made = replace(made, start=(day + timedelta(minutes=round(self.hour * 60))).isoformat()[:19])
+        weather = tuple(replace(each, weather=self._weather(each.weather)) for each in script.weather)
+        return replace(
+            made,
+            weather=weather,
+            driver=script.driver if self.driver is None else self.driver,
+            driven_s=script.driven_s if self.driven_min is None else self.driven_min * 60,
+            density=script.density if self.density is None else self.density,
+        )
+
+    def _weather(self, before: Weather) -> Weather:
+        made = before
+        if self.temperature_c is not None:
+            made = replace(made, temperature_2m=self.temperature_c)
+        if self.rain_mm_h is not None and self.rain_mm_h > made.precipitation:
+            heavy = self.rain_mm_h >= HEAVY_RAIN_FROM_MM_PER_H
+            codes = (71, 75) if made.temperature_2m <= 0 else (61, 65)
+            made = replace(
+                made,
+                precipitation=self.rain_mm_h,
+                weather_code=codes[heavy],
+                cloud_cover=100.0,
+                relative_humidity_2m=max(made.relative_humidity_2m, 92.0),
+            )
+        if self.visibility_m is not None and self.visibility_m < made.visibility:
+            is_fog = self.visibility_m < FOG_BELOW_M and made.precipitation == 0
+            made = fog(made, self.visibility_m) if is_fog else replace(made, visibility=self.visibility_m)
+        return made
+
+    def _set(self) -> Iterator[tuple[str, float | str]]:
+        values = ((entry.name, getattr(self, entry.name)) for entry in fields(self))
+        return ((name, value) for name, value in values if value is not None)
+
+
+AS_SCRIPTED = DriveSettings()
+"""Nothing is set."""
+
+
+def _told(value: float | str) -> str:
+    return value if isinstance(value, str) else f"{value:g}"

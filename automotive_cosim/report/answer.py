@@ -1,0 +1,85 @@
+"""The result of an evaluation or a comparison in one sentence, which stands first on every page."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Sequence
+
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.report import drives
+from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
+from automotive_cosim.report.stats import Comparison, Interval, compare
+from automotive_cosim.report.summary import rate_of
+from automotive_cosim.run.episode_row import EpisodeRow
+
+
+def answer(results: Results) -> str:
+    """Who is better by how much, on how many pairs or episodes, and how many ended in an error.
+
+    References and negative controls are not ranked, unless there is nobody else.
+    """
+    told = []
+    if results.rows:
+        told.append(_ranking(results.shared()))
+    if results.drives:
+        told += drives.standings(results.drives)[:1]
+    trials = (*results.rows, *results.drives)
+    errors = sum(row.error is not None for row in trials)
+    ended = (
+        f"{errors:,} of {counted(len(trials), 'run')} ended in an error" if errors else "no run ended in an error"
+    )
+    return "; ".join([*filter(None, told), ended]) + "."
+
+
+def _ranking(results: Results) -> str:
+    """The best contestant beside the next, by pairs if both halves of some were judged, else by episodes."""
+    ranked = [each for each in results.contestants if each.agent not in NOT_RANKED] or list(results.contestants)
+    has_pairs = all(any(pair.success is not None for pair, _ in pairs(results.of(each))) for each in ranked)
+    unit = "pair" if has_pairs else "episode"
+    rows = {each: _units(results.of(each), unit) for each in ranked}
+    best, *others = sorted(ranked, key=lambda each: -(rate_of(rows[each]).value or 0.0))
+    if not others:
+        found = rate_of(rows[best])
+        share = "" if found.value is None else f" ({found.value:.0%}{_bounds(found.interval)})"
+        return f"{best.label} solves {found.successes} of {counted(found.planned, unit)}{share}"
+    of = f", best of {len(ranked)}" if len(ranked) > 2 else ""
+    return _against(best, others[0], rows[best], rows[others[0]], unit) + of
+
+
+def _units(rows: Sequence[EpisodeRow], unit: str) -> list[EpisodeRow]:
+    return [pair for pair, _ in pairs(rows)] if unit == "pair" else list(rows)
+
+
+def _against(
+    best: Contestant, other: Contestant, ones: Sequence[EpisodeRow], others: Sequence[EpisodeRow], unit: str
+) -> str:
+    def outcomes(rows: Sequence[EpisodeRow]) -> dict[Hashable, bool]:
+        return {_key(row, unit): row.has_succeeded for row in rows if row.success is not None}
+
+    found = compare(outcomes(ones), outcomes(others), {_key(row, unit): row.task for row in ones})
+    if found is None:
+        return f"{best.label} and {other.label} have no {unit} in common"
+    return f"{versus(best.label, other.label, found)}, {counted(found.count, unit)}"
+
+
+def _key(row: EpisodeRow, unit: str) -> Hashable:
+    return pair_instance(row) if unit == "pair" else row.instance
+
+
+def versus(first: str, second: str, found: Comparison) -> str:
+    """Two contestants, and by how many percentage points the first is better, if that can be told."""
+    points = f"{_points(found.difference)} ({_signed(found.interval.low)} to {_signed(found.interval.high)})"
+    if found.interval.low > 0:
+        return f"{first} beats {second} by {points}"
+    return f"{first} and {second} cannot be told apart: a difference of {points}"
+
+
+def _points(share: float) -> str:
+    return counted(round(100 * abs(share)), "point")
+
+
+def _signed(share: float) -> str:
+    return f"{round(100 * share):d}".replace("-", "−")
+
+
+def _bounds(interval: Interval | None) -> str:
+    return "" if interval is None else f", {interval.low:.0%} to {interval.high:.0%}"

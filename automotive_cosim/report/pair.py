@@ -1,0 +1,180 @@
+"""The same drive twice: an agent that knows its place beside the same agent that does not.
+
+``pair.webp`` shows both screens from the hand-over on, and the speeds below; ``pair.html`` is the page with both
+verdicts; ``pair.json`` says the result in a sentence, with both traces' hashes. Both episodes begin at the same
+instant of the same traffic, so what differs is due to the agent.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from PIL import Image
+
+from automotive_cosim.cockpit.drawing import Canvas
+from automotive_cosim.cockpit.geometry import Rect
+from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
+from automotive_cosim.geo.text import amount_of_speed
+from automotive_cosim.report.filmplot import speeds_plot
+from automotive_cosim.report.frames import (
+    AFTER,
+    AFTER_MS,
+    LAST_MS,
+    SAME_TIME_S,
+    STEP_MS,
+    FilmFrame,
+    Frames,
+    outcome,
+    save_animation,
+)
+from automotive_cosim.report.page import PARTS, embedded
+from automotive_cosim.report.templates import render
+from automotive_cosim.run.episode import EpisodeResult
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.timeline import Sample
+
+WIDTH, HEIGHT = 1280, 836
+SCALE = 0.75
+"""Pixels per unit of the layout: the film has 960 x 627."""
+MARGIN, GAP = 20, 24
+SAID = Rect(MARGIN, 14, WIDTH - 2 * MARGIN, 52)
+SIDES = Rect(MARGIN, 76, WIDTH - 2 * MARGIN, 500).columns(2, GAP)
+HEAD, NOTES = 44, 108
+PLOT = Rect(MARGIN, 590, WIDTH - 2 * MARGIN, 230)
+COLOURS: tuple[Colour, Colour] = ((86, 180, 233), (230, 159, 0))
+"""Okabe and Ito's sky blue and orange, which most people can distinguish."""
+BEFORE_S = 20.0
+"""The plot begins this long before the hand-over."""
+FILM, PAGE, FIGURES = "pair.webp", "pair.html", "pair.json"
+
+
+@dataclass(frozen=True, slots=True)
+class Side:
+    """One of the two episodes."""
+
+    title: str
+    """What this agent has, in a few words."""
+    folder: Path
+    """Its record."""
+    frames: Frames
+    result: EpisodeResult
+
+
+def screen_size() -> tuple[int, int]:
+    """Width and height of each screen in the film, in pixels."""
+    left, top, right, bottom = _screen(SIDES[0]).edges(SCALE)
+    return right - left, bottom - top
+
+
+def write_pair(folder: Path, sides: Sequence[Side]) -> Path:
+    """Writes the film and the page into a folder that contains both records; returns the page.
+
+    Args:
+        folder: where they go.
+        sides: the two, left and right.
+    """
+    frames = [_from_hand_over(side) for side in sides]
+    film = folder / FILM
+    if all(frames):
+        until_s = min(each[-1].at_s for each in frames)
+        paths = [
+            [sample for sample in side.result.path if -BEFORE_S <= sample.at_s <= until_s + SAME_TIME_S]
+            for side in sides
+        ]
+        times = sorted({round(frame.at_s, 1) for each in frames for frame in each if frame.at_s <= until_s})
+        pictures = [_compose(at_s, sides, frames, paths, over=at_s == times[-1]) for at_s in times]
+        acted = {round(step.at_s, 1) for each in frames for step in each if step.milliseconds == STEP_MS}
+        shown_ms = [STEP_MS if at_s in acted else AFTER_MS for at_s in times]
+        save_animation(film, pictures, [*shown_ms[:-1], LAST_MS])
+    traces = [side.result.trace_sha256 for side in sides]
+    write_whole(folder / FIGURES, json.dumps({"sentence": sentence(sides), "traces": traces}, indent=1) + "\n")
+    page = folder / PAGE
+    text = render(
+        "report/pair.html",
+        sentence=sentence(sides),
+        sides=sides,
+        outcomes=[outcome(side.result) for side in sides],
+        parts=PARTS,
+        film=embedded(film.read_bytes()) if film.is_file() else None,
+        records=[side.folder.relative_to(folder).as_posix() for side in sides],
+    )
+    write_whole(page, text)
+    return page
+
+
+def sentence(sides: Sequence[Side]) -> str:
+    """What the two runs show, with the figures of their last moments."""
+    return " ".join(f"{side.title}: {outcome(side.result).lower()}{_ends_at(side.result.path)}." for side in sides)
+
+
+def _from_hand_over(side: Side) -> list[FilmFrame]:
+    """The frames without the approach; after the last step its words stay, and the last frame says the outcome."""
+    frames: list[FilmFrame] = []
+    for frame in side.frames.of(side.result):
+        if frame.title == AFTER:
+            frame = replace(frame, title=frames[-1].title, words=frames[-1].words)
+        if frame.at_s >= -SAME_TIME_S:
+            frames.append(frame)
+    if frames and side.result.verdict is not None:
+        failed = next((part.why for part in side.result.verdict.parts.values() if not part.ok), None)
+        frames[-1] = replace(frames[-1], words=failed or frames[-1].words)
+    return frames
+
+
+def _ends_at(path: Sequence[Sample]) -> str:
+    if not path:
+        return ""
+    last = path[-1]
+    limit = "" if last.limit_kmh is None else f" (limit {amount_of_speed(last.limit_kmh, last.speed_unit)})"
+    return f", the car ends at {amount_of_speed(last.speed_kmh, last.speed_unit)}{limit}"
+
+
+def _screen(side: Rect) -> Rect:
+    return Rect(side.x, side.y + HEAD, side.width, side.height - HEAD - NOTES)
+
+
+def _compose(
+    at_s: float,
+    sides: Sequence[Side],
+    frames: Sequence[Sequence[FilmFrame]],
+    paths: Sequence[Sequence[Sample]],
+    *,
+    over: bool,
+) -> Image.Image:
+    canvas = Canvas.plain(round(WIDTH * SCALE), round(HEIGHT * SCALE), SCALE, NIGHT.background)
+    canvas.text(SAID, f"The driver: “{sides[0].result.goal}”", Type.TITLE, NIGHT.text)
+    for box, side, each, path, colour in zip(SIDES, sides, frames, paths, COLOURS, strict=True):
+        shown = [frame for frame in each if frame.at_s <= at_s + SAME_TIME_S][-1]
+        here = [sample for sample in path if sample.at_s <= at_s + SAME_TIME_S][-1]
+        _draw_side(canvas, box, side, each[-1] if over else shown, here, colour)
+    canvas.picture(
+        PLOT,
+        speeds_plot(
+            dict(zip(COLOURS, paths, strict=True)),
+            at_s + SAME_TIME_S,
+            round(PLOT.right * SCALE) - round(PLOT.x * SCALE),
+            round(PLOT.bottom * SCALE) - round(PLOT.y * SCALE),
+            SCALE,
+        ),
+        14,
+    )
+    return canvas.image
+
+
+def _draw_side(canvas: Canvas, box: Rect, side: Side, frame: FilmFrame, here: Sample, colour: Colour) -> None:
+    head = box.top(HEAD - 6)
+    canvas.disc(Rect(head.x, head.y + 9, 20, 20), colour)
+    canvas.text(Rect(head.x + 32, head.y, head.width - 200, head.height), side.title, Type.STRONG, NIGHT.text)
+    canvas.text(
+        head.right_part(160), amount_of_speed(here.speed_kmh, here.speed_unit), Type.STRONG, colour, "right"
+    )
+    canvas.picture(_screen(box), frame.cockpit, 14)
+    notes = box.bottom_part(NOTES - 12)
+    is_last = frame.title == outcome(side.result)
+    good = bool(side.result.success)
+    title_colour = NIGHT.text if not is_last else NIGHT.good if good else NIGHT.jam
+    canvas.text(notes.top(38), frame.title, Type.TITLE if is_last else Type.STRONG, title_colour)
+    canvas.text(notes.below(38).top(2 * Type.LABEL.pitch), frame.words, Type.LABEL, NIGHT.muted, lines=2)

@@ -1,0 +1,10 @@
+"""The search for failures of an agent in a space of situations and conditions.
+
+space      factors and their values, from a TOML file
+samplers   what to try next
+objective  by how much a trial passed or failed
+hunt       tries, repeats failures and makes them small
+findings   what a search has found: rates, bounds, coverage, failures in words
+trying     runs points as trials of an evaluation that grows
+page       report and regression suite
+"""

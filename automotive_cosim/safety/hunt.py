@@ -1,0 +1,262 @@
+"""Tries points, repeats what fails, and makes each failure small, with its nearest passing neighbour."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field
+from enum import StrEnum
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.safety.objective import TriedOutcome
+from automotive_cosim.safety.samplers import Sampler
+from automotive_cosim.safety.space import FactorRange, FactorValue, PointKey, SearchPoint, Space, key_of, told
+
+REPEATS = 3
+"""Runs of a failure; it counts if all of them fail."""
+BISECTIONS = 4
+"""Halvings between a number that fails and the nominal one: to a sixteenth of the distance."""
+
+MOST_ASKED = 20
+"""Points that a sampler is asked for at most, for each that is run."""
+
+Evaluate = Callable[[SearchPoint, int], TriedOutcome]
+"""Runs a point; the number says which repeat."""
+
+
+class Phase(StrEnum):
+    """Why a point was run."""
+
+    NOMINAL = "nominal"
+    SAMPLE = "sample"
+    REPEAT = "repeat"
+    MINIMISE = "minimise"
+
+
+@dataclass(frozen=True, slots=True)
+class Tried:
+    """One run."""
+
+    number: int
+    phase: Phase
+    point: SearchPoint
+    repeat: int
+    outcome: TriedOutcome
+    even: bool = False
+    """Whether it is one of those that represent the whole space."""
+
+
+@dataclass(frozen=True, slots=True)
+class MinimalFailure:
+    """A failure with as few factors off their nominal values as it needs, and as little."""
+
+    first: Tried
+    """The failure that it was made of."""
+    point: SearchPoint
+    changed: tuple[str, ...]
+    """The factors that it needs; empty if the nominal point fails."""
+    neighbour: SearchPoint | None
+    """The nearest point found that passes; None if there is none."""
+    differs: str
+    """The one factor in which the two differ."""
+    why: str
+    trial: str
+    neighbour_trial: str
+
+    def covers(self, space: Space, point: SearchPoint) -> bool:
+        """Whether a point has all that this failure needs, and perhaps more of it."""
+        for name in self.changed:
+            factor, mine, theirs = space.factor(name), self.point[name], point[name]
+            if isinstance(factor, FactorRange) and factor.is_ordered:
+                away = factor.unit(mine) - factor.unit(factor.nominal)
+                if (factor.unit(theirs) - factor.unit(mine)) * (1 if away >= 0 else -1) < -1e-9:
+                    return False
+            elif mine != theirs:
+                return False
+        return True
+
+    def words(self, space: Space) -> str:
+        """The conditions that trigger it."""
+        if not self.changed:
+            return "as soon as everything is nominal"
+        told_all = []
+        for name in self.changed:
+            factor, value = space.factor(name), self.point[name]
+            if isinstance(factor, FactorRange) and factor.is_ordered:
+                bound = "at least" if factor.unit(value) >= factor.unit(factor.nominal) else "at most"
+                told_all.append(f"{name} {bound} {told(value)}")
+            else:
+                told_all.append(f"{name} {told(value)}")
+        return " and ".join(told_all)
+
+
+@dataclass(slots=True)
+class Hunt:
+    """What a search has tried and found so far."""
+
+    space: Space
+    tried: list[Tried] = field(default_factory=list)
+    minimal: list[MinimalFailure] = field(default_factory=list)
+    unsteady: list[Tried] = field(default_factory=list)
+    """Failures that passed when repeated."""
+    not_reduced: list[Tried] = field(default_factory=list)
+    """Failures beyond the number that are made small."""
+    stopped: str = ""
+    """Why it ended before its budget; empty if it did not."""
+
+    @property
+    def samples(self) -> list[Tried]:
+        """The points that the sampler chose, each once."""
+        return [each for each in self.tried if each.phase is Phase.SAMPLE]
+
+    @property
+    def run(self) -> int:
+        """How many of them could be run."""
+        return sum(not each.outcome.is_unrunnable for each in self.samples)
+
+
+def hunt(
+    space: Space,
+    evaluate: Evaluate,
+    sampler: Sampler,
+    budget: int,
+    *,
+    most_failures: int = 5,
+    goes_on: Callable[[], bool] = lambda: True,
+    tell: Callable[[Hunt], None] = lambda found: None,
+) -> Hunt:
+    """Searches a space.
+
+    Args:
+        space: where.
+        evaluate: runs a point.
+        sampler: chooses the points.
+        budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
+            reductions come in addition: about thirty runs a failure.
+        most_failures: how many failures are made small; those that one of them explains are not.
+        goes_on: asked before each point; whether there is time left.
+        tell: called after each point.
+
+    Raises:
+        UserError: the nominal point fails, or cannot be run.
+    """
+    found = Hunt(space)
+    run = _Runner(found, evaluate)
+    nominal = run(Phase.NOMINAL, space.nominal).outcome
+    if nominal.failed or nominal.margin is None:
+        why = f"fails ({nominal.why})" if nominal.failed else f"is not judged ({nominal.error})"
+        raise UserError(
+            f"the nominal point {why}; give nominal values, the first of each list, under which the agent passes"
+        )
+    for _ in range(MOST_ASKED * budget):
+        if found.run >= budget:
+            break
+        if not goes_on():
+            found.stopped = "its time is over"
+            break
+        point, even = sampler.ask()
+        tried = run(Phase.SAMPLE, point, even=even)
+        margin = tried.outcome.margin
+        sampler.tell(point, 1.0 if margin is None else margin)
+        if tried.outcome.failed and not any(each.covers(space, point) for each in found.minimal):
+            _reduce(run, tried, most_failures)
+        tell(found)
+    return found
+
+
+class _Runner:
+    """Runs points, each repeat once."""
+
+    def __init__(self, found: Hunt, evaluate: Evaluate) -> None:
+        self.found = found
+        self._evaluate = evaluate
+        self._known: dict[tuple[PointKey, int], TriedOutcome] = {}
+
+    def __call__(self, phase: Phase, point: SearchPoint, repeat: int = 0, *, even: bool = False) -> Tried:
+        key = key_of(point), repeat
+        fresh = key not in self._known
+        if fresh:
+            self._known[key] = self._evaluate(point, repeat)
+        tried = Tried(len(self.found.tried), phase, point, repeat, self._known[key], even)
+        if fresh or phase is Phase.SAMPLE:
+            self.found.tried.append(tried)
+        return tried
+
+    def is_steady(self, point: SearchPoint) -> bool:
+        """Whether a point fails each time."""
+        return all(self(Phase.REPEAT, point, repeat).outcome.failed for repeat in range(1, REPEATS))
+
+
+def _reduce(run: _Runner, first: Tried, most: int) -> None:
+    found = run.found
+    if not run.is_steady(first.point):
+        found.unsteady.append(first)
+    elif len(found.minimal) >= most:
+        found.not_reduced.append(first)
+    else:
+        made = minimise(run, first)
+        if made.point != first.point and not run.is_steady(made.point):
+            found.unsteady.append(first)
+        else:
+            found.minimal.append(made)
+
+
+def minimise(run: _Runner, first: Tried) -> MinimalFailure:
+    """Takes factors back to nominal while it still fails, then bisects the numbers that are left."""
+    space = run.found.space
+    point: dict[str, FactorValue] = dict(first.point)
+    passing: list[Tried] = []
+    last = first
+    for factor in sorted(space.factors, key=lambda each: isinstance(each, FactorRange)):
+        if point[factor.name] == factor.nominal:
+            continue
+        tried = run(Phase.MINIMISE, point | {factor.name: factor.nominal})
+        if tried.outcome.failed:
+            point, last = dict(tried.point), tried
+        elif tried.outcome.margin is not None:
+            passing.append(tried)
+    for factor in space.factors:
+        if not isinstance(factor, FactorRange) or not factor.is_ordered:
+            continue
+        if point[factor.name] != factor.nominal:
+            bad, good = factor.unit(point[factor.name]), factor.unit(factor.nominal)
+            for _ in range(BISECTIONS):
+                middle = factor.at((bad + good) / 2)
+                if middle in (factor.at(bad), factor.at(good)):
+                    break
+                tried = run(Phase.MINIMISE, point | {factor.name: middle})
+                if tried.outcome.failed:
+                    point, last, bad = dict(tried.point), tried, factor.unit(middle)
+                elif tried.outcome.margin is not None:
+                    passing.append(tried)
+                    good = factor.unit(middle)
+                else:
+                    break
+    neighbour, differs = _neighbour(run, point, passing)
+    changed = tuple(each.name for each in space.factors if point[each.name] != each.nominal)
+    return MinimalFailure(
+        first,
+        point,
+        changed,
+        None if neighbour is None else neighbour.point,
+        differs,
+        last.outcome.why,
+        last.outcome.trial,
+        "" if neighbour is None else neighbour.outcome.trial,
+    )
+
+
+def _neighbour(run: _Runner, point: SearchPoint, passing: Sequence[Tried]) -> tuple[Tried | None, str]:
+    """The nearest passing point that differs in one factor: known, or made of those that nearly do."""
+    space = run.found.space
+    made: list[Tried] = []
+    for tried in passing:
+        for name in _differing(tried.point, point):
+            near = run(Phase.MINIMISE, {**point, name: tried.point[name]})
+            if near.outcome.margin is not None and not near.outcome.failed:
+                made.append(near)
+    nearest = min(made, key=lambda each: space.distance(each.point, point), default=None)
+    return nearest, "" if nearest is None else next(_differing(nearest.point, point))
+
+
+def _differing(one: SearchPoint, other: SearchPoint) -> Iterator[str]:
+    return (name for name in one if one[name] != other[name])

@@ -1,0 +1,102 @@
+"""By how much a trial passed or failed, so that a search is drawn to failures before it has found one."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from automotive_cosim.drives.judge import EventOutcome, JudgedEvent
+from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.safety.space import FailureRule
+from automotive_cosim.tasks import CATALOGUE
+
+PARTS = len(PartsHeld.__dataclass_fields__)
+TTC_SCALE_S = 10.0
+"""A time to collision this much above its threshold is no nearer to it than none at all."""
+
+
+@dataclass(frozen=True, slots=True)
+class TriedOutcome:
+    """What came of one run at a point."""
+
+    margin: float | None
+    """From -1 (all was wrong) over 0 to 1 (all was right at once); None if it could not be run."""
+    failed: bool
+    why: str = ""
+    """What was missing."""
+    trial: str = ""
+    """Its id in the evaluation."""
+    error: str = ""
+    """Why it could not be run, or its situation did not arise."""
+    seconds: float = 0.0
+    """Wall time."""
+
+    @property
+    def is_unrunnable(self) -> bool:
+        """Whether there is no such trial: a task without phrasings in a language, or not in a scenario."""
+        return self.margin is None and not self.trial
+
+
+def outcome_of(row: TrialRow, rule: FailureRule) -> TriedOutcome:
+    """The margin of a trial from its row.
+
+    A task's is the share of its deadline that was left when the goal held for good; if it failed, minus the share
+    of its verdict's parts that do not hold. A drive's is the least such share of its events, counted from when they
+    could be known; if it failed, minus the share of its events and acts that were wrong. With ``drive_value_below``
+    it is the distance to that value, in hundreds. ``ttc_below_s`` takes the lower of both.
+    """
+    if row.error is not None or row.outcome is None:
+        return TriedOutcome(
+            None, False, trial=row.id, error=row.error or "it was not judged", seconds=row.wall_seconds
+        )
+    if isinstance(row, DriveTrialRow):
+        margin, why = _of_drive(row, rule)
+    else:
+        assert isinstance(row, EpisodeRow)
+        margin, why = _of_task(row)
+    nearest_s = None if row.measures is None else row.measures.min_ttc_s
+    if rule.ttc_below_s is not None and nearest_s is not None:
+        left = (nearest_s - rule.ttc_below_s) / TTC_SCALE_S
+        if left < margin:
+            margin, why = max(-1.0, left), f"{nearest_s:.1f} s to collision"
+    failed = margin < 0
+    return TriedOutcome(round(margin, 6), failed, why if failed else "", row.id, seconds=row.wall_seconds)
+
+
+def _of_task(row: EpisodeRow) -> tuple[float, str]:
+    deadline_s = CATALOGUE[row.task].half(row.half).deadline.seconds
+    if not row.success:
+        missing = row.missing or ("verdict",)
+        return -max(1, len(row.missing)) / PARTS, ", ".join(part.replace("_", " ") for part in missing)
+    goal_s = row.goal_s if row.goal_s is not None else 0.0
+    return max(0.0, min(1.0, (deadline_s - goal_s) / deadline_s)), ""
+
+
+def _of_drive(row: DriveTrialRow, rule: FailureRule) -> tuple[float, str]:
+    if rule.drive_value_below is not None:
+        value = row.value or 0.0
+        return max(-1.0, min(1.0, (value - rule.drive_value_below) / 100)), f"value {value:.0f}"
+    events = [
+        event
+        for event in row.events
+        if (not rule.events or event.kind in rule.events) and (event.outcome.counts or event.lookalike)
+    ]
+    wrong = [event for event in events if _is_wrong(event)]
+    nuisances = 0 if rule.events else sum(act.worth.is_nuisance for act in row.acts)
+    if wrong or nuisances:
+        share = (len(wrong) + nuisances) / max(1, len(events) + nuisances)
+        told = [f"{event.kind} {event.outcome}" for event in wrong]
+        return -share, ", ".join(dict.fromkeys([*told, *(["nuisances"] if nuisances else [])]))
+    return min((_left(event) for event in events if not event.lookalike), default=1.0), ""
+
+
+def _is_wrong(event: JudgedEvent) -> bool:
+    return event.outcome is EventOutcome.TAKEN or (event.outcome.counts and not event.outcome.is_credited)
+
+
+def _left(event: JudgedEvent) -> float:
+    """The share of the time from when it could be known to the deadline that was left."""
+    if event.deadline_s is None or event.acted_s is None or event.deadline_s <= event.observable_s:
+        return 1.0
+    return max(0.0, min(1.0, (event.deadline_s - event.acted_s) / (event.deadline_s - event.observable_s)))

@@ -1,0 +1,101 @@
+"""What a search leaves in its folder: rows, failures as plans, and a page; and the regression suite."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from dataclasses import asdict
+from pathlib import Path
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.report.templates import render
+from automotive_cosim.run.plan import PlannedTrial
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.store import cannot_write, read_manifest
+from automotive_cosim.safety.findings import as_json, sentence, tables
+from automotive_cosim.safety.hunt import Hunt, MinimalFailure, Tried
+from automotive_cosim.safety.space import SearchPoint
+from automotive_cosim.safety.trying import trial_of
+
+ROWS, FINDINGS, PAGE, PLANS = "tried.jsonl", "findings.json", "search.html", "failures"
+
+
+def write_findings(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> Path:
+    """Writes rows, findings, plans of the failures and the page; returns the page.
+
+    Raises:
+        UserError: they cannot be written.
+    """
+    try:
+        lines = (json.dumps(row_of(each), ensure_ascii=False) for each in found.tried)
+        write_whole(folder / ROWS, "".join(f"{line}\n" for line in lines))
+        write_whole(folder / FINDINGS, json.dumps(as_json(found), indent=1, ensure_ascii=False) + "\n")
+        (folder / PLANS).mkdir(exist_ok=True)
+        for number, each in enumerate(found.minimal, 1):
+            write_whole(folder / PLANS / f"{number:02d}.toml", suite(found, agent, model, [each]))
+        page = folder / PAGE
+        write_whole(page, _page(folder, found, agent, model, about))
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    return page
+
+
+def row_of(each: Tried) -> Json:
+    """A run as a line of ``tried.jsonl``."""
+    return {
+        "number": each.number,
+        "phase": each.phase,
+        "even": each.even,
+        "repeat": each.repeat,
+        "point": dict(each.point),
+        **asdict(each.outcome),
+    }
+
+
+def suite(found: Hunt, agent: str, model: str, failures: list[MinimalFailure] | None = None) -> str:
+    """A plan with each minimal failure and its passing neighbour, for ``eval --plan`` and ``compare``.
+
+    Args:
+        found: the search.
+        agent: that was searched.
+        model: its model.
+        failures: those to write; None for all.
+    """
+    lines = [f"agents = [{json.dumps(agent)}]", f"models = [{json.dumps(model)}]"]
+    for each in found.minimal if failures is None else failures:
+        lines += ["", f"# fails with {each.words(found.space)}: {each.why}", *_entry(each.point)]
+        if each.neighbour is not None:
+            lines += ["", f"# passes with another {each.differs}", *_entry(each.neighbour)]
+    return "\n".join(lines) + "\n"
+
+
+def _entry(point: SearchPoint) -> Iterator[str]:
+    trial, plain = trial_of(point), PlannedTrial()
+    yield "[[trials]]"
+    for name in ("task", "half", "drive", "scenario", "seed", "held_out"):
+        if (value := getattr(trial, name)) != getattr(plain, name):
+            yield f"{name} = {json.dumps(value, ensure_ascii=False)}"
+    for table in ("conditions", "settings"):
+        given, usual = asdict(getattr(trial, table)), asdict(getattr(plain, table))
+        changed = {name: value for name, value in given.items() if value != usual[name]}
+        if changed:
+            yield f"[trials.{table}]"
+        for name, value in changed.items():
+            yield f"{name} = {json.dumps(value, ensure_ascii=False)}"
+
+
+def _page(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> str:
+    made = tables(found)
+    return render(
+        "safety/search.html",
+        agent=agent,
+        model=model,
+        about=about,
+        found=found,
+        sentence=sentence(found, agent),
+        failures=len(found.minimal),
+        errors=sum(each.outcome.margin is None for each in found.tried),
+        tables=made,
+        starts=read_manifest(folder)["starts"],
+        stand_in=model == "rules",
+    )

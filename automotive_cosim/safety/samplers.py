@@ -1,0 +1,239 @@
+"""What to try next: each sampler is asked for a point and told its margin."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import ceil, log2
+from typing import Any, Protocol
+
+import numpy as np
+
+from automotive_cosim.errors import SetupError, UnknownNameError
+from automotive_cosim.safety.space import Factor, FactorChoices, FactorValue, SearchPoint, Space, key_of
+
+NEEDS = "the sampler {} needs the extra search: pip install 'automotive-cosim[search]'"
+SHARE = 0.25
+"""Share of its points that a sampler that learns spreads evenly first."""
+LEAST_EVEN = 8
+BEST = 4
+"""Points that ``climb`` starts steps from."""
+STEP = 0.15
+"""Standard deviation of a step of ``climb``, as a share of the range."""
+
+
+class Sampler(Protocol):
+    """Proposes points."""
+
+    def ask(self) -> tuple[SearchPoint, bool]:
+        """The next point, and whether it is one of those that represent the whole space."""
+        ...
+
+    def tell(self, point: SearchPoint, margin: float) -> None:
+        """By how much a point passed (above 0) or failed."""
+        ...
+
+
+class RandomSampler:
+    """Draws every point by itself."""
+
+    def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
+        """Draws from ``rng``."""
+        self._space, self._rng = space, rng
+
+    def ask(self) -> tuple[SearchPoint, bool]:
+        """A random point."""
+        return self._space.at(self._rng.random(self._space.dimensions).tolist()), True
+
+    def tell(self, point: SearchPoint, margin: float) -> None:
+        """Learns nothing."""
+
+
+class EvenSampler:
+    """Spreads its points evenly: Sobol's sequence, scrambled, or a Latin hypercube (scipy.stats.qmc)."""
+
+    def __init__(self, space: Space, budget: int, rng: np.random.Generator, *, latin: bool = False) -> None:
+        """Lays out ``budget`` points.
+
+        Raises:
+            SetupError: scipy is not installed.
+        """
+        try:
+            from scipy.stats import qmc
+        except ImportError as missing:
+            raise SetupError(NEEDS.format("lhs" if latin else "sobol")) from missing
+        if latin:
+            laid = qmc.LatinHypercube(space.dimensions, rng=rng).random(budget)
+        else:
+            laid = qmc.Sobol(space.dimensions, rng=rng).random_base2(max(1, ceil(log2(budget))))
+        self._space, self._rng = space, rng
+        self._laid = [space.at(units.tolist()) for units in laid[:budget]]
+        self._next = 0
+
+    def ask(self) -> tuple[SearchPoint, bool]:
+        """The next of them; random ones once they are used up."""
+        if self._next >= len(self._laid):
+            return self._space.at(self._rng.random(self._space.dimensions).tolist()), True
+        self._next += 1
+        return self._laid[self._next - 1], True
+
+    def tell(self, point: SearchPoint, margin: float) -> None:
+        """Learns nothing."""
+
+
+class ClimbSampler:
+    """Spreads points evenly, then takes steps from the worst ones: one factor or two at a time."""
+
+    def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
+        """Lays out its first points."""
+        even = max(min(budget, LEAST_EVEN), round(SHARE * min(budget, 64)))
+        self._space, self._rng, self._even = space, rng, EvenSampler(space, even, rng)
+        self._left = even
+        self._known: dict[Any, tuple[float, SearchPoint]] = {}
+
+    def ask(self) -> tuple[SearchPoint, bool]:
+        """An even point at first, then a step from one of the worst."""
+        if self._left > 0 or not self._known:
+            self._left -= 1
+            return self._even.ask()
+        worst = sorted(self._known.values(), key=lambda each: each[0])[:BEST]
+        for _ in range(50):
+            point = self._step(worst[min(len(worst) - 1, int(self._rng.exponential(1.0)))][1])
+            if key_of(point) not in self._known:
+                return point, False
+        return self._space.at(self._rng.random(self._space.dimensions).tolist()), False
+
+    def tell(self, point: SearchPoint, margin: float) -> None:
+        """Notes the margin."""
+        self._known[key_of(point)] = margin, point
+
+    def _step(self, point: SearchPoint) -> SearchPoint:
+        made = dict(point)
+        moved = self._rng.permutation(self._space.dimensions)[: 1 + int(self._rng.random() < 0.5)]
+        for index in moved:
+            factor = self._space.factors[index]
+            if isinstance(factor, FactorChoices):
+                made[factor.name] = factor.values[int(self._rng.integers(len(factor.values)))]
+            else:
+                far = STEP if self._rng.random() < 0.7 else 3 * STEP
+                unit = factor.unit(made[factor.name]) + float(self._rng.normal(0, far))
+                inside = min(1.0, max(0.0, unit)) if factor.is_ordered else float(self._rng.random())
+                made[factor.name] = factor.at(inside)
+        return made
+
+
+class CmaSampler:
+    """Spreads points evenly, then adapts a normal distribution to the worst one (CMA-ES, ``cma``)."""
+
+    def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
+        """Lays out its first points.
+
+        Raises:
+            SetupError: cma is not installed.
+        """
+        try:
+            import cma
+        except ImportError as missing:
+            raise SetupError(NEEDS.format("cma")) from missing
+        self._make: Callable[..., Any] = cma.CMAEvolutionStrategy
+        even = max(min(budget, LEAST_EVEN), round(SHARE * min(budget, 64)))
+        self._space, self._rng, self._even, self._left = space, rng, EvenSampler(space, even, rng), even
+        self._strategy: Any = None
+        self._asked: list[list[float]] = []
+        self._told: list[tuple[list[float], float]] = []
+        self._known: list[tuple[float, list[float]]] = []
+
+    def ask(self) -> tuple[SearchPoint, bool]:
+        """An even point at first, then one of the distribution."""
+        if self._left > 0 or not self._known:
+            self._left -= 1
+            return self._even.ask()
+        if self._strategy is None or self._strategy.stop():
+            worst = min(self._known)[1]
+            options = {"bounds": [0, 1], "seed": int(self._rng.integers(1, 2**31)), "verbose": -9}
+            self._strategy = self._make(worst, 0.25, options)
+            self._asked, self._told = [], []
+        if not self._asked:
+            self._asked = [list(map(float, units)) for units in self._strategy.ask()]
+            self._told = []
+        units = self._asked[len(self._told)]
+        return self._space.at(units), False
+
+    def tell(self, point: SearchPoint, margin: float) -> None:
+        """Adapts the distribution after each generation."""
+        self._known.append((margin, self._space.units(point)))
+        if self._asked:
+            self._told.append((self._asked[len(self._told)], margin))
+            if len(self._told) == len(self._asked):
+                self._strategy.tell([units for units, _ in self._told], [value for _, value in self._told])
+                self._asked = []
+
+
+class BayesSampler:
+    """Models which values fail (tree-structured Parzen estimators, ``optuna``)."""
+
+    def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
+        """Starts a study in memory.
+
+        Raises:
+            SetupError: optuna is not installed.
+        """
+        try:
+            import optuna
+        except ImportError as missing:
+            raise SetupError(NEEDS.format("bayes")) from missing
+        optuna.logging.set_verbosity(optuna.logging.WARNING)
+        self._random = max(min(budget, LEAST_EVEN), round(SHARE * min(budget, 64)))
+        sampler = optuna.samplers.TPESampler(seed=int(rng.integers(2**31)), n_startup_trials=self._random)
+        self._study = optuna.create_study(sampler=sampler)
+        of = optuna.distributions
+        self._space = space
+        self._distributions: dict[str, Any] = {
+            each.name: of.CategoricalDistribution(list(range(len(each.values))))
+            if isinstance(each, FactorChoices)
+            else of.FloatDistribution(0.0, 1.0)
+            for each in space.factors
+        }
+        self._trial: Any = None
+
+    def ask(self) -> tuple[SearchPoint, bool]:
+        """The next point of the study."""
+        self._trial = self._study.ask(self._distributions)
+        given = self._trial.params
+        point = {each.name: _value(each, given[each.name]) for each in self._space.factors}
+        return point, self._trial.number < self._random
+
+    def tell(self, point: SearchPoint, margin: float) -> None:
+        """Adds the result to the study."""
+        self._study.tell(self._trial, margin)
+
+
+def _value(factor: Factor, given: Any) -> FactorValue:
+    """A value from optuna's: the number of one in the list, or a coordinate."""
+    return factor.values[given] if isinstance(factor, FactorChoices) else factor.at(given)
+
+
+def _latin(space: Space, budget: int, rng: np.random.Generator) -> Sampler:
+    return EvenSampler(space, budget, rng, latin=True)
+
+
+SAMPLERS: Mapping[str, Callable[[Space, int, np.random.Generator], Sampler]] = {
+    "climb": ClimbSampler,
+    "random": RandomSampler,
+    "sobol": EvenSampler,
+    "lhs": _latin,
+    "cma": CmaSampler,
+    "bayes": BayesSampler,
+}
+"""By name."""
+
+
+def make_sampler(name: str, space: Space, budget: int, seed: int) -> Sampler:
+    """A sampler by name.
+
+    Raises:
+        UnknownNameError: there is none.
+        SetupError: it needs a package that is not installed.
+    """
+    if name not in SAMPLERS:
+        raise UnknownNameError("sampler", name, SAMPLERS)
+    return SAMPLERS[name](space, budget, np.random.default_rng(seed))

@@ -1,0 +1,177 @@
+"""The search: samplers, minimal failures, findings, and the space's file."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import UserError
+from automotive_cosim.report.stats import upper_bound
+from automotive_cosim.run.plan import make_plan, read_plan
+from automotive_cosim.safety.findings import as_json, coverage, tables, unseen
+from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt
+from automotive_cosim.safety.objective import TriedOutcome
+from automotive_cosim.safety.page import suite
+from automotive_cosim.safety.samplers import SAMPLERS, make_sampler
+from automotive_cosim.safety.space import FactorChoices, FactorRange, SearchPoint, Space, read_space
+
+SPACE = Space(
+    (
+        FactorChoices("drive", ("grid_june", "grid_january")),
+        FactorChoices("driver", ("average", "hurried", "calm")),
+        FactorRange("visibility_m", 40.0, 10_000.0, 10_000.0, logarithmic=True),
+        FactorRange("hour", 6.0, 22.0, 12.0),
+        FactorRange("seed", 0, 99, 0, whole=True),
+    )
+)
+
+
+def margin(point: SearchPoint) -> float:
+    """Below 0 if a hurried driver goes through fog of less than 200 m."""
+    late = 0.6 if point["driver"] == "hurried" else 0.0
+    return (float(point["visibility_m"]) - 200) / 10_000 + 0.6 - late
+
+
+def judged(of: Callable[[SearchPoint], float]) -> Callable[[SearchPoint, int], TriedOutcome]:
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        return TriedOutcome(of(point), of(point) < 0, "late", f"trial {sorted(point.items())} {repeat}")
+
+    return evaluate
+
+
+def searched(sampler: str = "climb", budget: int = 64, of: Callable[[SearchPoint], float] = margin) -> Hunt:
+    return hunt(SPACE, judged(of), make_sampler(sampler, SPACE, budget, 1), budget)
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS)
+def test_a_sampler_stays_in_the_space_and_repeats_itself(sampler: str) -> None:
+    for package in {"cma": ["cma"], "bayes": ["optuna"], "sobol": ["scipy"]}.get(sampler, []):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            pytest.importorskip(package)
+    asked = []
+    for _ in range(2):
+        chooses = make_sampler(sampler, SPACE, 24, 5)
+        points = []
+        for _ in range(30):
+            point, _ = chooses.ask()
+            chooses.tell(point, margin(point))
+            points.append(dict(point))
+        asked.append(points)
+    assert asked[0] == asked[1]
+    assert all(0 <= SPACE.factor(name).unit(value) <= 1 for point in asked[0] for name, value in point.items())
+    assert len({point["driver"] for point in asked[0]}) > 1
+
+
+def test_a_failure_is_repeated_and_made_small() -> None:
+    found = searched()
+    (minimal,) = found.minimal
+    assert minimal.changed == ("driver", "visibility_m")
+    assert minimal.point["driver"] == "hurried"
+    assert margin(minimal.point) < 0 <= margin(minimal.neighbour or {})
+    differing = [name for name in minimal.point if minimal.point[name] != (minimal.neighbour or {})[name]]
+    assert differing == [minimal.differs] == ["visibility_m"]
+    assert 100 < float(minimal.point["visibility_m"]) < 200
+    assert minimal.words(SPACE).startswith("driver hurried and visibility_m at most ")
+    repeats = [each.repeat for each in found.tried if each.phase is Phase.REPEAT and each.point == minimal.point]
+    assert repeats == list(range(1, REPEATS))
+    assert found.run == 64
+
+
+def test_nothing_is_found_where_nothing_fails() -> None:
+    found = searched(of=lambda point: 0.5)
+    assert not found.minimal
+    bound = unseen(found)
+    assert bound.failed == 0
+    assert bound.upper == pytest.approx(3 / bound.even, rel=0.25)
+
+
+def test_what_fails_only_once_is_no_failure() -> None:
+    def flaky(point: SearchPoint, repeat: int) -> TriedOutcome:
+        wrong = point != SPACE.nominal and repeat == 0
+        return TriedOutcome(-0.5 if wrong else 0.5, wrong, "late")
+
+    found = hunt(SPACE, flaky, make_sampler("random", SPACE, 3, 0), 3)
+    assert not found.minimal
+    assert len(found.unsteady) == 3
+
+
+def test_a_nominal_point_that_fails_is_refused() -> None:
+    with pytest.raises(UserError, match=r"the nominal point fails \(late\); give nominal values"):
+        searched(of=lambda point: -1.0)
+
+
+def test_combinations_that_cannot_be_run_cost_nothing() -> None:
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        if point["driver"] == "calm":
+            return TriedOutcome(None, False, error="cannot be run")
+        return TriedOutcome(0.5, False, trial="t")
+
+    found = hunt(SPACE, evaluate, make_sampler("random", SPACE, 20, 0), 20)
+    assert found.run == 20 < len(found.samples)
+    assert dict(tables(found)[-1].rows)
+
+
+def test_findings_count_every_sample() -> None:
+    found = searched("random", 50)
+    told = as_json(found)
+    assert told["samples"] == 50
+    assert told["failed"] == sum(margin(each.point) < 0 for each in found.samples)
+    covered, total = coverage(found)
+    assert 0 < covered <= total
+    rates = next(table for table in tables(found) if table.name == "rates")
+    of_driver = [int(str(row[2])) for row in rates.rows if row[0] == "driver"]
+    assert sum(of_driver) == 50
+
+
+def test_the_bound_is_the_rule_of_three() -> None:
+    assert upper_bound(0, 300) == pytest.approx(0.01, rel=0.01)
+    assert upper_bound(5, 5) == 1.0
+    assert upper_bound(1, 30) > upper_bound(0, 30)
+
+
+def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
+    found = searched()
+    path = tmp_path / "suite.toml"
+    path.write_text(suite(found, "rule-perfect", "rules"))
+    plan = make_plan(read_plan(path))
+    fails, passes = plan.trials
+    assert (fails.drive, fails.settings.driver) == ("grid_june", "hurried")
+    assert fails.settings.visibility_m == found.minimal[0].point["visibility_m"]
+    assert passes.settings.visibility_m != fails.settings.visibility_m
+    assert len({job.id for job in plan.jobs()}) == len({job.instance for job in plan.jobs()}) == 2
+    assert make_plan(plan.as_json()) == plan
+
+
+@pytest.mark.parametrize(
+    ("text", "error"),
+    [
+        ("[factors]\ntask = ['hvac_fan_max']\nhour = [3]", "hour can be varied for drives alone"),
+        ("[factors]\ndrive = ['grid_june']\ncolour = ['red']", "no factor named 'colour'"),
+        ("[factors]\ndrive = ['grid_june']\nhour = { least = 9, most = 3 }", "hour is empty"),
+        ("[factors]\nhour = [3]", "give one of the two"),
+        ("[factors]\ndrive = ['grid_yune']", "did you mean 'grid_june'"),
+        ("[factors]\ntask = ['hvac_fan_max']\nlanguage = ['xx']", "language has a value that does not exist"),
+    ],
+)
+def test_a_wrong_space_is_refused_in_a_line(tmp_path: Path, text: str, error: str) -> None:
+    path = tmp_path / "space.toml"
+    path.write_text(text)
+    with pytest.raises(UserError, match=error):
+        read_space(path)
+
+
+def test_a_space_is_read_with_its_nominal_values(tmp_path: Path) -> None:
+    path = tmp_path / "space.toml"
+    path.write_text(
+        "[factors]\ndrive = ['grid_*']\nlatency_s = { least = 0, most = 9 }\n"
+        "visibility_m = { least = 50, most = 5000, nominal = 5000, logarithmic = true }\n"
+        "[failure]\ndrive_value_below = 50"
+    )
+    space = read_space(path)
+    assert dict(space.nominal) == {"drive": "grid_january", "latency_s": 0.0, "visibility_m": 5000.0}
+    assert space.at([0.9, 0.5, 0.5]) == {"drive": "grid_june", "latency_s": 4.5, "visibility_m": 500.0}
+    assert space.rule.drive_value_below == 50

@@ -1,0 +1,77 @@
+"""A search in SUMO: its folder is an evaluation, and goes on where it was stopped."""
+
+from __future__ import annotations
+
+from contextlib import nullcontext
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.agents import Agent
+from automotive_cosim.agents.oracle import Oracle
+from automotive_cosim.agents.trivial import AlwaysAlert
+from automotive_cosim.contracts import Json
+from automotive_cosim.report.results import read_results
+from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.plan import Plan, make_plan
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.worker import run_with
+from automotive_cosim.safety.hunt import Hunt, hunt
+from automotive_cosim.safety.page import FINDINGS, PAGE, PLANS, write_findings
+from automotive_cosim.safety.samplers import make_sampler
+from automotive_cosim.safety.space import FactorChoices, FactorRange, Space
+from automotive_cosim.safety.trying import check_space, trial_of, trying
+from automotive_cosim.traffic.fork import Simulations
+
+SPACE = Space(
+    (
+        FactorChoices("task", ("hvac_fan_max",)),
+        FactorChoices("scenario", ("grid",)),
+        FactorRange("latency_s", 0.0, 9.0, 0.0),
+    )
+)
+ABOUT: Json = {"sampler": "sobol", "space": "", "agent": "oracle", "model": "rules", "seed": 0}
+
+
+def plan() -> Plan:
+    trials = [as_json(trial_of(SPACE.nominal))]
+    return make_plan({"agents": ["oracle"], "models": ["rules"], "trials": trials})
+
+
+@pytest.mark.slow
+def test_a_search_finds_what_is_planted_and_goes_on(tmp_path: Path, simulations: Simulations) -> None:
+    def run(job: TrialJob, folder: Path) -> TrialRow:
+        agent: Agent = AlwaysAlert() if job.setup.conditions.latency_s > 5 else Oracle()
+        return run_with(nullcontext(agent), job, folder, Pictures.NONE, simulations)
+
+    folder = tmp_path / "search"
+    check_space(SPACE, plan())
+    ran: list[int] = []
+    found: list[Hunt] = []
+    for budget in (2, 4, 4):
+        with trying(SPACE, plan(), folder, run) as tries:
+            found.append(hunt(SPACE, tries, make_sampler("sobol", SPACE, 2, 1), budget))
+            page = write_findings(folder, found[-1], "oracle", "rules", ABOUT)
+        ran.append(tries.ran)
+    assert ran[0] > 0
+    assert ran[2] == 0
+    assert found[2].tried == found[1].tried
+    (minimal,) = found[2].minimal
+    assert minimal.changed == ("latency_s",)
+    assert 5 < float(minimal.point["latency_s"]) < 7
+    assert page.name == PAGE
+    assert "latency_s at least" in page.read_text()
+    assert (folder / FINDINGS).is_file()
+    assert make_plan({**_read(folder / PLANS / "01.toml")}).jobs()
+    results = read_results(folder)
+    assert results.coverage.problem == ""
+    assert not results.coverage.not_run
+    assert len(results.rows) == len({each.outcome.trial for each in found[2].tried})
+
+
+def _read(path: Path) -> Json:
+    from automotive_cosim.run.plan import read_plan
+
+    return read_plan(path)
