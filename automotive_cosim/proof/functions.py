@@ -13,13 +13,17 @@ from dataclasses import dataclass, replace
 from automotive_cosim.agents.trivial import AlwaysAlert
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.cockpit.signals import Signal, named
-from automotive_cosim.contracts import BY_HAND, Action, ActionType, AlertKind, GoalStatus, Observation
+from automotive_cosim.contracts import BY_HAND, Action, ActionType, AlertKind, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.contracts.given import Interface, See
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import Actor
 from automotive_cosim.interface.functions import action_of, call_of
 from automotive_cosim.interface.translation import actions_of
 from automotive_cosim.proof.ground import Ground, Played, finish
+
+PATIENCE = 8
+"""Calls that are tried again in one episode; few taps lie before what a reference solution commands."""
+NOT_YET = frozenset({FeedbackCode.DISABLED, FeedbackCode.NO_SUCH_ELEMENT, FeedbackCode.REFUSED})
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,12 +94,16 @@ def _add(calls: list[Call], call: Call) -> None:
 
 @dataclass(slots=True)
 class _Caller:
-    """Plays calls in order; waits for what the driver had said by then, and repeats the last."""
+    """Plays calls in order; waits for what the driver had said by then, and repeats the last. A finger takes longer
+    to get somewhere: what is refused at first, as to read a message that has not come yet, is tried again."""
 
     calls: Sequence[Call]
     _next: int = 0
+    _left: int = PATIENCE
 
     def act(self, observation: Observation) -> Action:
+        if self._next and self._left and observation.feedback.code in NOT_YET:
+            self._next, self._left = self._next - 1, self._left - 1
         call = self.calls[min(self._next, len(self.calls) - 1)]
         if len(observation.said) < call.heard:
             return Action(ActionType.WAIT, seconds=1)
