@@ -11,9 +11,21 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from automotive_cosim.agents.trivial import AlwaysAlert
+from automotive_cosim.cockpit.actions import point
 from automotive_cosim.cockpit.calls import functions
+from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import Signal, named
-from automotive_cosim.contracts import BY_HAND, Action, ActionType, AlertKind, FeedbackCode, GoalStatus, Observation
+from automotive_cosim.cockpit.state import Command
+from automotive_cosim.contracts import (
+    BY_HAND,
+    Action,
+    ActionType,
+    AlertKind,
+    Element,
+    FeedbackCode,
+    GoalStatus,
+    Observation,
+)
 from automotive_cosim.contracts.given import Interface, See
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import Actor
@@ -63,17 +75,15 @@ def translated(ground: Ground) -> tuple[Call, ...]:
     try:
         while walk.end is None:
             action, heard = oracle.act(walk.observation), len(walk.heard)
-            before, count = walk.world.cockpit.copy(), len(walk.world.cockpit.given)
+            before, listed = walk.world.cockpit.copy(), walk.elements
             walk.step(action)
             if action.action_type not in BY_HAND:
                 calls.append(Call(action_of(*call_of(action)), heard))
                 continue
-            for record in walk.world.cockpit.given[count:]:
-                found = actions_of(record.command, before.state)
+            for command in _commanded(before, walk.world.cockpit, action, listed, walk.steps[-1].feedback.code):
+                found = actions_of(command, before.state)
                 if found is None:
-                    raise UntranslatableError(
-                        f"no function does {type(record.command).__name__} {record.command}"[:200]
-                    )
+                    raise UntranslatableError(f"no function does {command}"[:200])
                 for one in found:
                     call = Call(one, heard)
                     value = None if call.signal is None else before.signals[call.signal]
@@ -81,6 +91,17 @@ def translated(ground: Ground) -> tuple[Call, ...]:
     finally:
         walk.close()
     return tuple(calls)
+
+
+def _commanded(
+    before: Cockpit, after: Cockpit, action: Action, listed: tuple[Element, ...], code: FeedbackCode
+) -> Iterator[Command]:
+    """What a touch commanded; messages that are read out while driving are not on the record of commands."""
+    yield from (record.command for record in after.given[len(before.given) :])
+    if code is FeedbackCode.READ_OUT:
+        widget = before.touched(*point(action, listed))
+        if widget is not None and widget.on_tap is not None and widget.on_tap.command is not None:
+            yield widget.on_tap.command
 
 
 def _add(calls: list[Call], call: Call) -> None:
