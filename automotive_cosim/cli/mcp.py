@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from automotive_cosim.cli.options import TasksFrom, number, whole_number
+from automotive_cosim.contracts.given import Interface
 from automotive_cosim.errors import SetupError, UserError
 
 
@@ -47,6 +48,10 @@ def mcp(
             parser=number(1, 1e6),
         ),
     ] = 900.0,
+    interface: Annotated[
+        Interface,
+        typer.Option(help="How assistants act: on the screen (act), by functions of the car as tools, or by both."),
+    ] = Interface.TOUCH,
     tasks_from: TasksFrom = None,
 ) -> None:
     """Serve episodes to any assistant that speaks the Model Context Protocol."""
@@ -66,7 +71,7 @@ def mcp(
 
     address = _address(http) if http else None
     with closing(EpisodeService(limits=ServiceLimits(episodes, idle_s))) as service:
-        server = make_server(service)
+        server = make_server(service, interface)
         if address is None:
             # Not on this thread: the server cannot be interrupted while it waits for standard input.
             talk = threading.Thread(target=server.run, args=("stdio",), daemon=True)

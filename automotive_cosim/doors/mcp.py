@@ -8,23 +8,27 @@ from __future__ import annotations
 
 import base64
 import functools
+import inspect
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Annotated, Any
 
 import anyio.from_thread
 from mcp.server.mcpserver import Context, MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
 from mcp_types import CallToolResult, ContentBlock, ImageContent, TextContent
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from automotive_cosim import __version__
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import Interface
 from automotive_cosim.doors.shared import conditions_of, takes_conditions
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
+from automotive_cosim.interface.functions import Function, action_json, offered
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose
 from automotive_cosim.scenarios import Scenario
@@ -41,6 +45,16 @@ else. Passengers may wish for their own comfort; how the car drives and what kee
 End with a `status` action: `complete` when it is done, `not_needed` when the right thing is to do nothing,
 `infeasible` when it must not or cannot be done. Once `end` is not null, call `finish` for the verdict."""
 
+CALLING = """\
+You operate a car for its driver by its functions, while it drives through live traffic.
+
+Call `start` to begin an episode. It returns an `episode_id`, what the driver wants (`goal`) and has said since
+(`said`), the car's readings and what applies where the car is. Then call the car's functions, one at a time, each
+with the `episode_id`; every call takes time while the car drives on. Do only what serves the driver; change nothing
+else. Passengers may wish for their own comfort; how the car drives and what keeps it safe is the driver's to say.
+End with `status`: `complete` when it is done, `not_needed` when the right thing is to do nothing, `infeasible` when
+it must not or cannot be done. Once `end` is not null, call `finish` for the verdict."""
+
 ActionArgument = Annotated[
     dict[str, Any] | str,
     Field(description=f"One action as a JSON object:\n{grammar()}\n`index` is that of the element list."),
@@ -48,14 +62,25 @@ ActionArgument = Annotated[
 EpisodeId = Annotated[str, Field(description="The id that `start` returned.")]
 
 
-def make_server(service: EpisodeService) -> MCPServer[Any]:
-    """A server of the service's episodes, not yet running. The caller closes the service."""
+def make_server(service: EpisodeService, interface: Interface = Interface.TOUCH) -> MCPServer[Any]:
+    """A server of the service's episodes, not yet running. The caller closes the service.
+
+    Args:
+        service: runs the episodes.
+        interface: how agents act unless ``start`` says otherwise. With ``functions`` or ``both``, every function of
+            the car is a tool from the beginning, else from the first episode that is started with them: the
+            protocol has no sessions that could have tools of their own.
+    """
+    told = INSTRUCTIONS if interface.touches else CALLING
     server: MCPServer[Any] = MCPServer(
-        "automotive-cosim", instructions=INSTRUCTIONS, version=__version__, log_level="WARNING"
+        "automotive-cosim", instructions=told, version=__version__, log_level="WARNING"
     )
-    tools = CockpitTools(service)
-    for tool in (tools.list_tasks, tools.start, tools.observe, tools.act, tools.finish):
+    tools = CockpitTools(service, server, interface)
+    acting = (tools.act,) if interface.touches else ()
+    for tool in (tools.list_tasks, tools.start, tools.observe, *acting, tools.finish):
         server.add_tool(tool)
+    if interface.calls:
+        tools.add_functions()
     return server
 
 
@@ -77,21 +102,62 @@ def _told(call: Callable[..., CallToolResult]) -> Callable[..., CallToolResult]:
 class CockpitTools:
     """The tools; the server calls them on threads of its own. Their docstrings are what the client reads."""
 
-    def __init__(self, service: EpisodeService) -> None:
+    def __init__(
+        self,
+        service: EpisodeService,
+        server: MCPServer[Any] | None = None,
+        interface: Interface = Interface.TOUCH,
+    ) -> None:
         self._service = service
+        self._server = server
+        self._interface = interface
+        self._has_functions = False
+
+    def add_functions(self) -> None:
+        """Makes every function a tool of the server, once."""
+        if self._server is not None and not self._has_functions:
+            self._has_functions = True
+            for function in offered(Interface.FUNCTIONS):
+                self._server.add_tool(self._calling(function), name=function.name, description=function.about)
+
+    def _calling(self, function: Function) -> Callable[..., CallToolResult]:
+        """The tool that calls a function. Its arguments are checked as any action's, so that a wrong one costs a
+        step here too."""
+
+        def call(episode_id: str, **arguments: Any) -> CallToolResult:
+            given = {name: value for name, value in arguments.items() if value is not None}
+            return _turn(self._service.act(episode_id, action_json(function.name, given)))
+
+        takes = inspect.Parameter("episode_id", inspect.Parameter.KEYWORD_ONLY, annotation=EpisodeId)
+        own = [
+            inspect.Parameter(
+                name,
+                inspect.Parameter.KEYWORD_ONLY,
+                default=inspect.Parameter.empty if name in function.parameters["required"] else None,
+                annotation=Annotated[Any, WithJsonSchema(schema)],
+            )
+            for name, schema in function.parameters["properties"].items()
+        ]
+        tool: Any = _told(call)
+        tool.__signature__ = inspect.Signature([takes, *own], return_annotation=CallToolResult)
+        tool.__annotations__ = {each.name: each.annotation for each in (takes, *own)} | {"return": CallToolResult}
+        tool.__name__ = function.name
+        return tool  # type: ignore[no-any-return]
 
     @_told
     def list_tasks(
         self,
         tasks: Annotated[
-            str, Field(description="Ids, patterns, modules, general, safety or all; separated by commas.")
+            list[str] | str,
+            Field(description="Ids, patterns, modules, general, safety or all; separated by commas."),
         ] = "all",
         suite: Annotated[
             str, Field(description="standard, hard or all; an id names its task in any.")
         ] = "standard",
     ) -> CallToolResult:
         """List the tasks that `start` takes, with their halves."""
-        chosen = [CATALOGUE[name] for name in choose((word.strip() for word in tasks.split(",")), suite)]
+        words = tasks.split(",") if isinstance(tasks, str) else tasks
+        chosen = [CATALOGUE[name] for name in choose((word.strip() for word in words), suite)]
         return _result({"tasks": [{"id": task.id, "halves": list(task.halves)} for task in chosen]})
 
     @_told
@@ -101,15 +167,23 @@ class CockpitTools:
         context: Context[Any, Any],
         task: Annotated[str, Field(description="Id of the task; `list_tasks` lists them.")],
         half: Annotated[str, Field(description="first, or second for a task with two halves.")] = "first",
-        seed: Annotated[int, Field(description="The same seed and actions give the same trace.", ge=0)] = 0,
+        seed: Annotated[
+            Annotated[int, Field(ge=0)] | None, Field(description="The same seed and actions give the same trace.")
+        ] = 0,
         scenario: Annotated[str | None, Field(description="A scenario in place of the task's own.")] = None,
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
         **conditions: str,
     ) -> CallToolResult:
-        """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit."""
-        spec = EpisodeSpec(task, half, scenario, seed=seed, conditions=conditions_of(conditions))
+        """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit.
+        With interface functions or both, the car's functions are tools from then on: list the tools again."""
+        under = conditions_of(conditions)
+        if under.interface is Interface.TOUCH:
+            under = replace(under, interface=self._interface)
+        if under.interface.calls:
+            self.add_functions()
+        spec = EpisodeSpec(task, half, scenario, seed=seed or 0, conditions=under)
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

@@ -78,11 +78,16 @@ def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Ac
     if name not in functions() and name not in BY_HAND:
         raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim functions")))
     given = _object(name, arguments) if isinstance(arguments, str) else dict(arguments or {})
-    if name not in _OWN and name not in BY_HAND:
-        return parse({"action_type": ActionType.CALL, "function": name, "arguments": given})
     if "action_type" in given:
         raise ActionError(f"{name} takes no action_type; its name says it")
-    return parse({"action_type": name, **given})
+    return parse(action_json(name, given))
+
+
+def action_json(name: str, arguments: Mapping[str, Any]) -> Json:
+    """The JSON of the action that a call is, not checked yet."""
+    if name in _OWN or name in BY_HAND:
+        return {**arguments, "action_type": name}
+    return {"action_type": str(ActionType.CALL), "function": name, "arguments": dict(arguments)}
 
 
 def _object(name: str, text: str) -> dict[str, Any]:
@@ -116,7 +121,9 @@ def _of_action(kind: ActionType) -> Function:
     target = ("index", "x", "y") if takes.target else ()
     schema = {
         "type": "object",
-        "properties": {name: field_schema(name) for name in (*target, *takes.required, *takes.optional)},
+        "properties": {
+            name: {"type": "string"} | field_schema(name) for name in (*target, *takes.required, *takes.optional)
+        },
         "required": list(takes.required),
         "additionalProperties": False,
     }

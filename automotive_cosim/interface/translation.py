@@ -138,17 +138,17 @@ def _arguments(function: CarFunction, words: Sequence[str], numbers: Sequence[fl
 
 def _options(parameter: Parameter, words: Sequence[str], numbers: Sequence[float]) -> Sequence[Any]:
     schema = parameter.schema
-    left_out = () if parameter.required else (None,)
+    left_out = ("",) if parameter.required and schema["type"] == "string" else () if parameter.required else (None,)
     if "enum" in schema:
-        return (*left_out, *schema["enum"])
+        return (*schema["enum"], *left_out)
     match schema["type"]:
         case "boolean":
-            return (*left_out, True, False)
+            return (True, False, *left_out)
         case "string":
-            return (*left_out, *words) if left_out else (*words, "")
+            return (*words, *left_out)
         case _:
             low, high = schema.get("minimum", 0), schema.get("maximum", 0)
-            return (*left_out, *(range(low, high + 1) if high - low < FEW else numbers))
+            return (*(range(low, high + 1) if high - low < FEW else numbers), *left_out)
 
 
 FEW = 10
@@ -161,8 +161,8 @@ def _values(command: Command, state: State) -> tuple[tuple[str, ...], tuple[floa
     if isinstance(command, Put):
         before, changes = state.of(type(command.data)), command.changes(state)
         was, now = before.commands(), command.data.commands()
-        parts = [*changes.values(), *(getattr(before, name) for name in changes)]
-        parts += [now[key] for key in now if now[key] != was[key]]
+        parts = [part for name, new in changes.items() for part in _differing(getattr(before, name), new)]
+        parts += [part for key in now if now[key] != was[key] for part in _differing(was[key], now[key])]
     leaves = tuple(dict.fromkeys(leaf for part in parts for leaf in _leaves(part)))
     texts = [str(leaf) for leaf in leaves if isinstance(leaf, str)]
     figures = [figure for text in texts for figure in re.findall(r"\d[\d:.]*\d|\d", text)]
@@ -173,6 +173,15 @@ def _values(command: Command, state: State) -> tuple[tuple[str, ...], tuple[floa
 MANY = 60
 TRIES = 5000
 """Values of a command, and arguments of one function, that are tried: a command with more is not one of its."""
+
+
+def _differing(before: Any, after: Any) -> Iterator[Any]:
+    """What is in one of two values alone: of two lists, the entries."""
+    if isinstance(before, list | tuple) and isinstance(after, list | tuple):
+        yield from (each for each in after if each not in before)
+        yield from (each for each in before if each not in after)
+    else:
+        yield from (after, before)
 
 
 def _leaves(value: Any) -> Iterator[Any]:

@@ -11,15 +11,31 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from automotive_cosim.agents.trivial import AlwaysAlert
+from automotive_cosim.cockpit.actions import point
 from automotive_cosim.cockpit.calls import functions
+from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import Signal, named
-from automotive_cosim.contracts import BY_HAND, Action, ActionType, AlertKind, GoalStatus, Observation
+from automotive_cosim.cockpit.state import Command
+from automotive_cosim.contracts import (
+    BY_HAND,
+    Action,
+    ActionType,
+    AlertKind,
+    Element,
+    FeedbackCode,
+    GoalStatus,
+    Observation,
+)
 from automotive_cosim.contracts.given import Interface, See
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import Actor
 from automotive_cosim.interface.functions import action_of, call_of
 from automotive_cosim.interface.translation import actions_of
 from automotive_cosim.proof.ground import Ground, Played, finish
+
+PATIENCE = 8
+"""Calls that are tried again in one episode; few taps lie before what a reference solution commands."""
+NOT_YET = frozenset({FeedbackCode.DISABLED, FeedbackCode.NO_SUCH_ELEMENT, FeedbackCode.REFUSED})
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,17 +75,15 @@ def translated(ground: Ground) -> tuple[Call, ...]:
     try:
         while walk.end is None:
             action, heard = oracle.act(walk.observation), len(walk.heard)
-            before, count = walk.world.cockpit.copy(), len(walk.world.cockpit.given)
+            before, listed = walk.world.cockpit.copy(), walk.elements
             walk.step(action)
             if action.action_type not in BY_HAND:
                 calls.append(Call(action_of(*call_of(action)), heard))
                 continue
-            for record in walk.world.cockpit.given[count:]:
-                found = actions_of(record.command, before.state)
+            for command in _commanded(before, walk.world.cockpit, action, listed, walk.steps[-1].feedback.code):
+                found = actions_of(command, before.state)
                 if found is None:
-                    raise UntranslatableError(
-                        f"no function does {type(record.command).__name__} {record.command}"[:200]
-                    )
+                    raise UntranslatableError(f"no function does {command}"[:200])
                 for one in found:
                     call = Call(one, heard)
                     value = None if call.signal is None else before.signals[call.signal]
@@ -77,6 +91,17 @@ def translated(ground: Ground) -> tuple[Call, ...]:
     finally:
         walk.close()
     return tuple(calls)
+
+
+def _commanded(
+    before: Cockpit, after: Cockpit, action: Action, listed: tuple[Element, ...], code: FeedbackCode
+) -> Iterator[Command]:
+    """What a touch commanded; messages that are read out while driving are not on the record of commands."""
+    yield from (record.command for record in after.given[len(before.given) :])
+    if code is FeedbackCode.READ_OUT:
+        widget = before.touched(*point(action, listed))
+        if widget is not None and widget.on_tap is not None and widget.on_tap.command is not None:
+            yield widget.on_tap.command
 
 
 def _add(calls: list[Call], call: Call) -> None:
@@ -90,12 +115,16 @@ def _add(calls: list[Call], call: Call) -> None:
 
 @dataclass(slots=True)
 class _Caller:
-    """Plays calls in order; waits for what the driver had said by then, and repeats the last."""
+    """Plays calls in order; waits for what the driver had said by then, and repeats the last. A finger takes longer
+    to get somewhere: what is refused at first, as to read a message that has not come yet, is tried again."""
 
     calls: Sequence[Call]
     _next: int = 0
+    _left: int = PATIENCE
 
     def act(self, observation: Observation) -> Action:
+        if self._next and self._left and observation.feedback.code in NOT_YET:
+            self._next, self._left = self._next - 1, self._left - 1
         call = self.calls[min(self._next, len(self.calls) - 1)]
         if len(observation.said) < call.heard:
             return Action(ActionType.WAIT, seconds=1)
@@ -126,37 +155,44 @@ def functions_win(ground: Ground) -> Iterator[str]:
         yield f"by functions it fails: {played.why}"
         return
     for at, call in enumerate(calls):
-        wrong = _wrong(call)
-        if wrong is not None and _play(ground, _Caller((*calls[:at], wrong, *calls[at + 1 :]))).success:
-            name, given = call_of(wrong.action)
+        wrongs = tuple(_wrong(call))
+        others = ((*calls[:at], wrong, *calls[at + 1 :]) for wrong in wrongs)
+        if wrongs and all(_play(ground, _Caller(other)).success for other in others):
+            if _play(ground, _Caller((*calls[:at], *calls[at + 1 :]))).success:
+                continue  # it led the finger somewhere, as to another source's list
+            name, given = call_of(wrongs[-1].action)
             yield f"succeeds with {name} {given}, which is wrong"
 
 
-def _wrong(call: Call) -> Call | None:
-    """The same call with a wrong value: a switch the other way, a number moved from what it was in the other
-    direction, a choice left as it was. None of a call that sets no signal."""
+def _wrong(call: Call) -> Iterator[Call]:
+    """The same call with each wrong value: a switch the other way, a number moved from what it was in the other
+    direction, any other choice, of which one has to lose. None of a call that sets no signal."""
     signal, (name, given) = call.signal, call_of(call.action)
     if signal is None:
-        return None
+        return
     *_, value = functions()[name].parameters
     now = given[value.name]
     if isinstance(now, bool):
-        wrong: object = not now
+        wrong: tuple[object, ...] = (not now,)
     elif isinstance(call.before, float):
         moved = call.before - signal.step if now > call.before else call.before + signal.step
-        wrong = min(signal.high, max(signal.low, moved))
+        wrong = (min(signal.high, max(signal.low, moved)),)
     else:
-        wrong = call.before
-    return None if wrong == now else replace(call, action=action_of(name, {**given, value.name: wrong}))
+        wrong = signal.allowed
+    for each in wrong:
+        if each != now:
+            yield replace(call, action=action_of(name, {**given, value.name: each}))
 
 
 def functions_are_not_enough(grounds: dict[str, Ground]) -> Iterator[str]:
-    """Plays strategies without a look: to end at once in each way, and to warn whatever happens."""
+    """Plays strategies without a look: to end at once in each way, and to warn of speed, or of what a reference
+    solution warns of, whatever happens. Other warnings are the gate ``trivial``'s, which plays the same actions."""
     ends = {str(status): Call(Action(ActionType.STATUS, goal_status=status), 0) for status in GoalStatus}
     for name, end in ends.items():
         if all(_play(ground, _Caller((end,))).success for ground in grounds.values()):
             yield f"{name} at once wins by functions"
-    for kind in AlertKind:
+    warnings = (action.kind for ground in grounds.values() for action in ground.reference.actions if action)
+    for kind in dict.fromkeys((AlertKind.SPEED, *filter(None, warnings))):
         warner = AlwaysAlert(kind)
         if all(_play(ground, ground.agent(warner), stop_when_lost=True).success for ground in grounds.values()):
             yield f"always {kind} wins by functions"

@@ -13,6 +13,8 @@ import pytest
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import Interface
+from automotive_cosim.interface.functions import functions
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.service import EpisodeService, ServiceLimits
@@ -57,11 +59,11 @@ def service(simulations: Simulations) -> Iterator[EpisodeService]:
         yield made
 
 
-def inside(service: EpisodeService, talk: Callable[[Client], Any]) -> Any:
+def inside(service: EpisodeService, talk: Callable[[Client], Any], interface: Interface = Interface.TOUCH) -> Any:
     """What an assistant gets from a server in this process."""
 
     async def run() -> Any:
-        async with Client(make_server(service)) as client:
+        async with Client(make_server(service, interface)) as client:
             return await talk(client)
 
     return anyio.run(run)
@@ -267,3 +269,49 @@ def test_a_giant_or_odd_action_costs_a_step_and_nothing_else(service: EpisodeSer
     assert turn["step"] == outcome["steps"] == 1
     assert outcome["success"] is False
     assert len(json.dumps(turn["feedback"])) < 2000
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+@pytest.mark.parametrize("served", [Interface.TOUCH, Interface.FUNCTIONS])
+def test_the_functions_are_tools_with_their_schemas(service: EpisodeService, served: Interface) -> None:
+    every = {function.name: function.parameters for function in functions().values()}
+
+    async def talk(client: Client) -> Json:
+        before = {tool.name for tool in (await client.list_tools()).tools}
+        assert ("act" in before, set(every) <= before) == (served.touches, served.calls)
+        turn = await call(client, "start", START | {"interface": "functions", "see": "nothing"})
+        tools = {tool.name: tool.input_schema for tool in (await client.list_tools()).tools}
+        for name, parameters in every.items():
+            given = tools[name]["properties"]
+            assert {key: given[key]["type"] for key in parameters["properties"]} == {
+                key: schema["type"] for key, schema in parameters["properties"].items()
+            }
+            assert set(tools[name]["required"]) == {"episode_id", *parameters["required"]}
+        episode = {"episode_id": turn["episode_id"]}
+        assert "elements" not in turn
+        assert (
+            "percent" in (await call(client, "set_hvac_fan_speed", episode | {"percent": 400}))["feedback"]["text"]
+        )
+        told = await call(client, "get_signals", episode | {"path": "hvac"})
+        assert "FanSpeed" in told["feedback"]["text"]
+        await call(client, "set_hvac_fan_speed", episode | {"percent": 100})
+        await call(client, "status", episode | {"goal_status": "complete"})
+        return await call(client, "finish", episode)
+
+    outcome = inside(service, talk, served)
+    assert (outcome["success"], outcome["steps"]) == (True, 4)
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_what_clients_write_as_text_or_null_is_taken(service: EpisodeService) -> None:
+    async def talk(client: Client) -> None:
+        (only,) = (await call(client, "list_tasks", {"tasks": '["hvac_fan_max"]'}))["tasks"]
+        assert only["id"] == "hvac_fan_max"
+        turn = await call(client, "start", START | {"seed": None})
+        fenced = '```json\n{"action_type": "wait"}\n```'
+        turn = await call(client, "act", {"episode_id": turn["episode_id"], "action": fenced})
+        assert turn["feedback"]["code"] == "ok"
+
+    inside(service, talk)
