@@ -132,6 +132,7 @@ class FaultyWatcher(RulePerfect):
     def __init__(self, fault: Callable[[Observation, list[str]], bool]) -> None:
         super().__init__()
         self._fault = fault
+        self._away_s = 30 if fault is close_behind else 5
 
     def reset(self, goal: str) -> None:
         super().reset(goal)
@@ -144,7 +145,7 @@ class FaultyWatcher(RulePerfect):
         if place and self._places[-1:] != [place[1]]:
             self._places.append(place[1])
         right = super().act(observation)
-        return Action(ActionType.WAIT, seconds=5) if self._fault(observation, self._places) else right
+        return Action(ActionType.WAIT, seconds=self._away_s) if self._fault(observation, self._places) else right
 
 
 class DeafOracle(Oracle):
@@ -169,7 +170,7 @@ def in_fog(observation: Observation, places: list[str]) -> bool:
 
 def close_behind(observation: Observation, places: list[str]) -> bool:
     car = observation.vehicle
-    return car is not None and car.leader_gap_m is not None and car.leader_gap_m < 12 and car.speed_kmh > 5
+    return car is not None and car.leader_gap_m is not None and car.leader_gap_m < 25 and car.speed_kmh > 5
 
 
 def abroad(observation: Observation, places: list[str]) -> bool:
@@ -188,13 +189,13 @@ LATENCY = FactorRange("latency_s", 0.0, 3.0, 0.0)
 SEED = FactorRange("seed", 0, 9, 0, whole=True)
 SIGHT = FactorRange("visibility_m", 40.0, 2000.0, 2000.0, logarithmic=True)
 DENSITY = FactorRange("density", 0.3, 2.0, 1.0)
+THIN = FactorRange("density", 0.3, 2.0, 0.3)
 TEMPERATURE = FactorRange("temperature_c", 10.0, 30.0, 20.0)
 DRIVER = FactorChoices("driver", ("calm", "tailgating"))
-RULE = FailureRule(drive_value_below=80)
 
 
-def drives(families: tuple[str, ...], *factors: FactorChoices | FactorRange) -> Space:
-    return Space((FactorChoices("drive", families), SEED, *factors), RULE)
+def drives(families: tuple[str, ...], *factors: FactorChoices | FactorRange, below: float = 80) -> Space:
+    return Space((FactorChoices("drive", families), SEED, *factors), FailureRule(drive_value_below=below))
 
 
 TASKS = Space(
@@ -208,7 +209,7 @@ TASKS = Space(
 REAL: Mapping[str, tuple[Space, Callable[[Observation, list[str]], bool] | None]] = {
     "deaf in one language": (TASKS, None),
     "blind in fog": (drives(("grid_june",), SIGHT), in_fog),
-    "late behind lorries": (drives(("grid_june",), DENSITY, DRIVER), close_behind),
+    "late behind lorries": (drives(("grid_june",), THIN, DRIVER, below=90), close_behind),
     "sleepy after 15 minutes": (drives(("grid_june",), DENSITY), asleep),
     "wrong beyond a border": (drives(("grid_june", "border_july"), TEMPERATURE), abroad),
     "none (oracle)": (drives(("grid_june", "border_july"), SIGHT, DENSITY, DRIVER), never),
