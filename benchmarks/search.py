@@ -139,7 +139,8 @@ class FaultyWatcher(RulePerfect):
         """The countries so far."""
 
     def act(self, observation: Observation) -> Action:
-        place = re.search(r"^place: ([^,\n]+)", observation.context or "", re.MULTILINE)
+        noticed = "" if observation.vehicle is None else observation.vehicle.noticed or ""
+        place = re.search(r"^place(?: \(changed\))?: ([^,\n]+)", noticed, re.MULTILINE)
         if place and self._places[-1:] != [place[1]]:
             self._places.append(place[1])
         right = super().act(observation)
@@ -187,6 +188,7 @@ LATENCY = FactorRange("latency_s", 0.0, 3.0, 0.0)
 SEED = FactorRange("seed", 0, 9, 0, whole=True)
 SIGHT = FactorRange("visibility_m", 40.0, 2000.0, 2000.0, logarithmic=True)
 DENSITY = FactorRange("density", 0.3, 2.0, 1.0)
+TEMPERATURE = FactorRange("temperature_c", 10.0, 30.0, 20.0)
 DRIVER = FactorChoices("driver", ("calm", "tailgating"))
 RULE = FailureRule(drive_value_below=80)
 
@@ -208,7 +210,7 @@ REAL: Mapping[str, tuple[Space, Callable[[Observation, list[str]], bool] | None]
     "blind in fog": (drives(("grid_june",), SIGHT), in_fog),
     "late behind lorries": (drives(("grid_june",), DENSITY, DRIVER), close_behind),
     "sleepy after 15 minutes": (drives(("grid_june",), DENSITY), asleep),
-    "wrong beyond a border": (drives(("grid_june", "border_july"), DENSITY), abroad),
+    "wrong beyond a border": (drives(("grid_june", "border_july"), TEMPERATURE), abroad),
     "none (oracle)": (drives(("grid_june", "border_july"), SIGHT, DENSITY, DRIVER), never),
 }
 

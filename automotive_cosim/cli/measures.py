@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from automotive_cosim.cli.options import number
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS, Thresholds
 
@@ -63,7 +63,4 @@ def measures(
         typer.echo(text, nl=False)
     else:
         write_whole(out, text)
-        typer.echo(
-            f"{len(text.splitlines()) - 1} lines of {len(fields(PairReading if readings else Encounter))} "
-            f"columns in {out}"
-        )
+        typer.echo(f"{counted(len(text.splitlines()) - 1, 'line')} in {out}")

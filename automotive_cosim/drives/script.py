@@ -92,7 +92,10 @@ class DriveScript:
 
 def script_json(script: DriveScript) -> str:
     """The script as JSON; ``read_script`` reads it."""
-    return json.dumps(json.loads(as_json(asdict(script))), indent=1)
+    values = asdict(script)
+    if script.density == 1.0:
+        del values["density"]  # scripts from before there was one have the same text
+    return json.dumps(json.loads(as_json(values)), indent=1)
 
 
 def read_script(text: str, source: str = "the script of the drive") -> DriveScript:

@@ -60,7 +60,7 @@ UNJUDGED = ("success", "reward", "parts", "goal_s", "reason_fits")
 """Fields of a row that an episode without a verdict leaves at their defaults."""
 BY_REPLAY = frozenset(
     {
-        f"{ROWS} speed_compliance", f"{ROWS} min_time_to_collision_s",
+        f"{ROWS} speed_compliance", f"{ROWS} min_time_to_collision_s", f"{ROWS} measures", f"{ROWS} exposure",
         "result path", "result timeline", "result violations", "result estimates", "result notes",
         "step feedback",
     }

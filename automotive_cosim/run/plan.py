@@ -70,12 +70,6 @@ class PlannedTrial:
     settings: DriveSettings = AS_SCRIPTED
     """What is set otherwise than the drive's script has it."""
 
-    @property
-    def words(self) -> str:
-        """What it is, for messages."""
-        where = f" in {self.scenario}" if self.scenario else ""
-        return f"{self.task or self.drive}{where}, seed {self.seed}"
-
     def job(self, agent: str, model: str, repeat: int, limits: Limits, spare: tuple[int, ...]) -> TrialJob:
         """The trial of one agent.
 
@@ -176,6 +170,8 @@ class Plan(ConditionLists):
             open_scenario(name)
             for family in families_named(self.drives)[:1]:
                 elsewhere(family_named(family).draw(0), name)
+        for name in dict.fromkeys(trial.scenario for trial in self.trials if trial.scenario):
+            open_scenario(name)
         for job in self.jobs():
             if isinstance(job, DriveJob):
                 DriveSpec(job.setup.family, conditions=job.setup.conditions).check()

@@ -13,6 +13,7 @@ from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
 from automotive_cosim.safety.space import Factor, SearchPoint, told
 
+CONFIDENCE_WORDS = f"{100 * CONFIDENCE:.0f} %"
 MOST_PAIRS = 30
 """Rows of the table of two factors."""
 
@@ -64,7 +65,7 @@ def coverage(found: Hunt) -> tuple[int, int]:
     """How many pairs of levels of two factors were tried, and how many there are (2-wise coverage)."""
     points = [each.point for each in judged(found.tried)]
     covered = total = 0
-    for one, other in combinations(found.space.factors, 2):
+    for one, other in combinations(_varied(found), 2):
         total += len(set(one.levels)) * len(set(other.levels))
         covered += len({(one.level(point[one.name]), other.level(point[other.name])) for point in points})
     return covered, total
@@ -115,9 +116,9 @@ def _unseen(found: Hunt) -> Table:
             ("Runs in total, with repeats and reductions", str(len(found.tried))),
             ("Points that represent the whole space", str(bound.even)),
             ("Failures among them", str(bound.failed)),
-            (f"Failure rate in the space at most ({CONFIDENCE:.0%})", share(bound.upper)),
+            (f"Failure rate in the space at most ({CONFIDENCE_WORDS})", share(bound.upper)),
             ("Failures among them that no minimal failure explains", str(bound.unexplained)),
-            (f"Rate of such failures at most ({CONFIDENCE:.0%})", share(bound.unseen_upper)),
+            (f"Rate of such failures at most ({CONFIDENCE_WORDS})", share(bound.unseen_upper)),
             (
                 "Pairs of levels of two factors tried",
                 f"{covered} of {total} ({100 * covered / max(1, total):.0f} %)",
@@ -131,7 +132,7 @@ def _unseen(found: Hunt) -> Table:
 
 def _rates(found: Hunt) -> Table:
     lines = []
-    for factor in found.space.factors:
+    for factor in _varied(found):
         for level in dict.fromkeys(factor.levels):
             mine = [each for each in judged(found.samples) if factor.level(each.point[factor.name]) == level]
             if mine:
@@ -139,6 +140,11 @@ def _rates(found: Hunt) -> Table:
     heads = "Factor", "Value", "Samples", "Pass % (interval)", "Of the whole space", "Pass % (interval)"
     note = "Intervals: Wilson, 95 %. Points beyond those of the whole space are drawn to failures by their margins."
     return Table("rates", "Passed by factor", heads, tuple(lines), note, heads=2)
+
+
+def _varied(found: Hunt) -> list[Factor]:
+    """The factors with more than one value."""
+    return [each for each in found.space.factors if len(set(each.levels)) > 1]
 
 
 def _rate(mine: Sequence[Tried]) -> tuple[str, str]:
@@ -153,7 +159,7 @@ def _pairs(found: Hunt) -> Table:
     """The pairs of levels with the largest shares of failures."""
     lines = []
     samples = judged(found.samples)
-    for one, other in combinations(found.space.factors, 2):
+    for one, other in combinations(_varied(found), 2):
         cells: dict[tuple[str, str], list[bool]] = {}
         for each in samples:
             cell = one.level(each.point[one.name]), other.level(each.point[other.name])
@@ -211,7 +217,7 @@ def sentence(found: Hunt, agent: str) -> str:
         told_first = f"{agent} failed in {failed} of {counted(len(samples), 'sample')}, from {causes}."
     if bound.upper is None:
         return told_first
-    return f"{told_first} The failure rate in this space is at most {percent(bound.upper)} ({CONFIDENCE:.0%})."
+    return f"{told_first} The failure rate in this space is at most {percent(bound.upper)} ({CONFIDENCE_WORDS})."
 
 
 def as_json(found: Hunt) -> Json:

@@ -14,7 +14,7 @@ from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write, read_manifest
 from automotive_cosim.safety.findings import as_json, sentence, tables
 from automotive_cosim.safety.hunt import Hunt, MinimalFailure, Tried
-from automotive_cosim.safety.space import SearchPoint
+from automotive_cosim.safety.space import SearchPoint, told
 from automotive_cosim.safety.trying import trial_of
 
 ROWS, FINDINGS, PAGE, PLANS = "tried.jsonl", "findings.json", "search.html", "failures"
@@ -65,7 +65,11 @@ def suite(found: Hunt, agent: str, model: str, failures: list[MinimalFailure] | 
     for each in found.minimal if failures is None else failures:
         lines += ["", f"# fails with {each.words(found.space)}: {each.why}", *_entry(each.point)]
         if each.neighbour is not None:
-            lines += ["", f"# passes with another {each.differs}", *_entry(each.neighbour)]
+            lines += [
+                "",
+                f"# passes with {each.differs} {told(each.neighbour[each.differs])}",
+                *_entry(each.neighbour),
+            ]
     return "\n".join(lines) + "\n"
 
 

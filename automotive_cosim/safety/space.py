@@ -84,9 +84,15 @@ class FactorRange:
 
     @property
     def levels(self) -> tuple[str, ...]:
-        """Its parts in words."""
+        """Its parts in words; each number of a few whole ones."""
+        if self._few:
+            return tuple(told(number) for number in range(round(self.least), round(self.most) + 1))
         edges = [self.at(step / BINS) for step in range(BINS + 1)]
         return tuple(f"{told(edges[step])} to {told(edges[step + 1])}" for step in range(BINS))
+
+    @property
+    def _few(self) -> bool:
+        return self.whole and self.most - self.least < 2 * BINS
 
     def at(self, unit: float) -> float:
         """The number at a coordinate from 0 to 1."""
@@ -107,6 +113,8 @@ class FactorRange:
 
     def level(self, value: FactorValue) -> str:
         """The part in which a number lies, in words."""
+        if self._few:
+            return told(value)
         return self.levels[min(BINS - 1, int(self.unit(value) * BINS))]
 
     def distance(self, one: FactorValue, other: FactorValue) -> float:

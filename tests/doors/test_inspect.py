@@ -1,5 +1,6 @@
 """Inspect's own evaluation over cockpit and drives: the reference gets the command line's trace and figures."""
 
+import json
 from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
@@ -80,6 +81,36 @@ def test_a_model_that_stops_is_judged_as_it_is(inspect) -> None:
     assert sample.scores["verdict"].value["success"] == 0
     assert sample.scores["verdict"].metadata["steps"] == 1
     assert sample.scores["verdict"].metadata["end"] == "out_of_budget"
+
+
+def test_odd_and_giant_calls_cost_a_step_each_and_the_model_sees_no_name_path_or_verdict(inspect) -> None:
+    odd: list[Any] = [
+        {"action_type": "answer", "text": "x" * 300_000},
+        {"action_type": "answer", "text": "\ud800\x1b[2J"},
+        {"action_type": "wait", "seconds": 1e999},
+        {"a": {"b": [1] * 10_000}},
+        {"action_type": "click", "index": -(10**30)},
+        {},
+    ]
+    log = inspect(odd)
+    assert log.status == "success", log.error
+    [sample] = log.samples
+    assert sample.scores["verdict"].metadata["steps"] == len(odd)
+    assert sample.scores["verdict"].value["success"] == 0
+    given = [message for message in sample.messages if message.role != "assistant"]
+    told = json.dumps([each.text for each in given])
+    assert len(given) >= len(odd)
+    for word in (
+        "hvac_fan_max",
+        "verdict",
+        "success",
+        "trace_sha256",
+        "grid",
+        str(Path.cwd()),
+        str(Path.home()),
+        "/tmp",
+    ):
+        assert word not in told, word
 
 
 def test_what_a_limit_cuts_short_is_judged_as_it_is(inspect, service) -> None:

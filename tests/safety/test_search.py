@@ -115,6 +115,13 @@ def test_combinations_that_cannot_be_run_cost_nothing() -> None:
     assert dict(tables(found)[-1].rows)
 
 
+def test_no_point_is_begun_after_the_time_is_over() -> None:
+    left = iter([True, True, False])
+    found = hunt(SPACE, judged(lambda p: 0.5), make_sampler("random", SPACE, 9, 0), 9, goes_on=lambda: next(left))
+    assert found.run == 2
+    assert found.stopped == "its time is over"
+
+
 def test_findings_count_every_sample() -> None:
     found = searched("random", 50)
     told = as_json(found)
@@ -125,6 +132,13 @@ def test_findings_count_every_sample() -> None:
     rates = next(table for table in tables(found) if table.name == "rates")
     of_driver = [int(str(row[2])) for row in rates.rows if row[0] == "driver"]
     assert sum(of_driver) == 50
+
+
+def test_few_whole_numbers_are_levels_of_their_own() -> None:
+    few, many = (FactorRange("seed", 0, most, 0, whole=True) for most in (3, 40))
+    assert few.levels == ("0", "1", "2", "3")
+    assert {few.level(few.at(step / 100)) for step in range(101)} == set(few.levels)
+    assert len(many.levels) == 4
 
 
 def test_the_bound_is_the_rule_of_three() -> None:

@@ -9,6 +9,7 @@ import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
+from urllib.parse import quote
 
 import pytest
 
@@ -164,3 +165,52 @@ def test_a_length_that_is_none_is_refused(length, serving, tmp_path):
         raw.sendall((head + cookie + f"Content-Length: {length}\r\n\r\n{{}}").encode())
         assert raw.recv(100).split()[1] in (b"413", b"400")
     assert json.loads(browser("/api/runs").body)["records"] == []
+
+
+IDS = (
+    "../secret/traces/one",
+    "..%2f..%2fsecret",
+    "/etc/passwd",
+    "one/../../secret",
+    ".",
+    "",
+    "\x00",
+    HOSTILE,
+    "\ud800",
+)
+
+
+@over(IDS)
+def test_the_ids_of_a_forged_evaluation_lead_nowhere(forged, serving, tmp_path_factory):
+    there = tmp_path_factory.mktemp("forged")
+    write_record(there / "secret", goal="a-secret")
+    folder = write_evaluation(there / "shown" / "bundle", agent=HOSTILE)
+    first, other = (folder / "episodes.jsonl").read_text("utf-8").splitlines()
+    row = json.loads(first) | {"id": forged}
+    (folder / "episodes.jsonl").write_text(f"{json.dumps(row)}\n{other}\n", "utf-8")
+    browser = serving(there / "shown")
+    (record,) = browser("/api/runs").json["records"]
+    answers = [browser("/api/runs"), browser(f"/api/evaluations/{record['id']}")]
+    asked = quote(forged, safe="", errors="surrogatepass")
+    answers += [
+        browser(f"/api/runs/{record['id']}/episodes/{asked}{path}")
+        for path in ("", "/steps", "/road", "/pictures/0")
+    ]
+    for answer in answers:
+        assert answer.status in (200, 404, 422)
+        assert b"a-secret" not in answer.body
+        assert answer.headers["Content-Type"].startswith("application/json")
+    assert all(answer.status != 200 for answer in answers[2:])
+
+
+def test_a_picture_that_is_a_page_is_not_shown_as_one(serving: Serving, tmp_path: Path) -> None:
+    folder = write_evaluation(tmp_path / "forged")
+    (folder / "pictures" / "one" / "step_000.jpg").write_text(f"<html>{HOSTILE}</html>")
+    run = write_record(tmp_path / "run")
+    (run / "screenshots" / "step_000.png").write_text(f"<svg>{HOSTILE}</svg>")
+    browser = serving(tmp_path)
+    for record in browser("/api/runs").json["records"]:
+        of = "/episodes/one" if record["kind"] == "evaluation" else ""
+        answer = browser(f"/api/runs/{record['id']}{of}/pictures/0")
+        assert answer.headers["X-Content-Type-Options"] == "nosniff"
+        assert answer.headers["Content-Type"] in ("image/jpeg", "image/png") or answer.status == 404

@@ -1,0 +1,42 @@
+"""``automotive-cosim measures`` on a recorded road."""
+
+from __future__ import annotations
+
+import gzip
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+Cli = Callable[..., Any]
+
+
+def record(folder: Path) -> Path:
+    """The ego follows another car that it comes nearer to, ten metres every second."""
+    lines: list[dict[str, object]] = [
+        {"format": 1},
+        {"vehicles": [[0, "ego", "passenger", 5, 1.8], [1, "b", "bus", 12, 2.5]]},
+    ]
+    for second in range(5):
+        seen = [[0, 0.0, 20.0 * second, 0.0, 20.0, 0], [1, 0.0, 77.0 + 10.0 * second, 0.0, 10.0, 0]]
+        lines.append({"at_s": float(second), "seen": seen, "lights": {}, "sun_deg": None, "incidents": []})
+    with gzip.open(folder / "road.jsonl.gz", "wt") as file:
+        file.writelines(json.dumps(line) + "\n" for line in lines)
+    return folder
+
+
+def test_encounters_and_readings_come_as_csv(cli: Cli, tmp_path: Path) -> None:
+    folder = record(tmp_path)
+    heads, line = cli("measures", folder, "--range", 100).out.splitlines()
+    found = dict(zip(heads.split(","), line.split(","), strict=True))
+    assert (found["vehicle"], found["other"], found["kind"], found["min_ttc_s"]) == ("ego", "b", "following", "2.5")
+    assert len(cli("measures", folder, "--range", 100, "--readings").out.splitlines()) == 1 + 5
+    assert len(cli("measures", folder, "--range", 100, "--ttc", 1, "--drac", 9).out.splitlines()) == 1
+    told = cli("measures", folder, "--out", tmp_path / "a.csv").out
+    assert told.startswith("1 line in ")
+
+
+def test_what_was_not_recorded_is_said_in_a_line(cli: Cli, tmp_path: Path) -> None:
+    ran = cli("measures", tmp_path)
+    assert ran.code == 2
+    assert "has no road.jsonl.gz; `drive --out`" in ran.err
