@@ -33,8 +33,8 @@ from automotive_cosim.interface.functions import action_of, call_of
 from automotive_cosim.interface.translation import actions_of
 from automotive_cosim.proof.ground import Ground, Played, finish
 
-PATIENCE = 8
-"""Calls that are tried again in one episode; few taps lie before what a reference solution commands."""
+PATIENCE = 15
+"""Calls that are tried again in one episode; a reference solution has fewer taps before what it commands."""
 NOT_YET = frozenset({FeedbackCode.DISABLED, FeedbackCode.NO_SUCH_ELEMENT, FeedbackCode.REFUSED})
 
 
@@ -123,13 +123,18 @@ class _Caller:
     _left: int = PATIENCE
 
     def act(self, observation: Observation) -> Action:
-        if self._next and self._left and observation.feedback.code in NOT_YET:
+        if self._next and self._left and self._came_early(observation.feedback.code):
             self._next, self._left = self._next - 1, self._left - 1
         call = self.calls[min(self._next, len(self.calls) - 1)]
         if len(observation.said) < call.heard:
             return Action(ActionType.WAIT, seconds=1)
         self._next += 1
         return call.action
+
+    def _came_early(self, code: FeedbackCode) -> bool:
+        """Whether the last call may do later what it did not do: a signal that has its value keeps it."""
+        last = self.calls[min(self._next, len(self.calls)) - 1]
+        return code in NOT_YET or (code is FeedbackCode.NO_EFFECT and last.signal is None)
 
 
 def _play(ground: Ground, actor: Actor, *, stop_when_lost: bool = False) -> Played:
