@@ -33,7 +33,7 @@ from automotive_cosim.errors import InfrastructureError
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
-    from automotive_cosim.run.forecast import Forecast
+    from automotive_cosim.run.forecast import CostForecast
     from automotive_cosim.run.plan import Plan
     from automotive_cosim.run.trial_row import TrialRow
 
@@ -317,7 +317,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         console.print("rules is a deterministic stand-in: its results say nothing about a language model.")
 
 
-def _forecast_in_words(told: Forecast, workers: int) -> Iterator[str]:
+def _forecast_in_words(told: CostForecast, workers: int) -> Iterator[str]:
     """Lines on what a plan will take."""
     minutes = [seconds / 60 for seconds in (told.wall_s.low, told.wall_s.high)]
     time = "less than a minute" if minutes[1] < 1 else f"{minutes[0]:.0f} to {counted(round(minutes[1]), 'minute')}"

@@ -253,9 +253,9 @@ def _recorded_pair(
 ) -> tuple[list[EpisodeResult], Path]:
     """Runs two episodes from the same instant and records both, with the film and the page that show them."""
     from automotive_cosim.report.frames import Frames
-    from automotive_cosim.report.pair import Side, screen_size, sentence, write_pair
+    from automotive_cosim.report.pair import PairSide, screen_size, sentence, write_pair
 
-    sides: list[Side] = []
+    sides: list[PairSide] = []
     for title, name, (setup, player) in zip(PAIR_TITLES, PAIR_FOLDERS, both, strict=True):
         if not as_json:
             typer.echo(f"{title}:")
@@ -263,7 +263,7 @@ def _recorded_pair(
         result = _recorded(folder / name, setup, player, {"pair": name}, simulations, [frames], as_json=as_json)
         if result.trace_sha256 is None:
             return [result], folder
-        sides.append(Side(title, folder / name, frames, result))
+        sides.append(PairSide(title, folder / name, frames, result))
     page = write_pair(folder, sides)
     if not as_json:
         typer.echo(sentence(sides))

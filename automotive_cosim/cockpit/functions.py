@@ -36,14 +36,14 @@ from automotive_cosim.errors import ActionError, UnknownNameError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.words import shown
 
-Made = Message | Feedback
+CallMade = Message | Feedback
 """What a call becomes: the message to perform or, of a reading or a refusal, the answer itself."""
 UNITS: Mapping[str, str] = {"km/h": "km_per_h", "s": "seconds", "dB": "decibels", "mm": "millimetres"}
 """VSS's units, where they are no word."""
 
 
 @dataclass(frozen=True, slots=True)
-class Parameter:
+class Argument:
     """What a function takes."""
 
     name: str
@@ -87,8 +87,8 @@ class CarFunction:
     name: str
     about: str
     """What it does, for the agent."""
-    parameters: tuple[Parameter, ...]
-    make: Callable[..., Made] = field(repr=False)
+    parameters: tuple[Argument, ...]
+    make: Callable[..., CallMade] = field(repr=False)
     """From the state and the arguments by name."""
     reads: bool = False
     """Whether it only tells something, so that its answer is what was asked for."""
@@ -125,7 +125,7 @@ class CarFunction:
 # --- from a typed factory ---------------------------------------------------------------------------------
 
 
-def offered(make: Callable[..., Made]) -> CarFunction:
+def offered(make: Callable[..., CallMade]) -> CarFunction:
     """The function that a factory defines: its name, the first paragraph of its docstring, its typed arguments.
 
     The first argument is the state. Of ``Annotated`` ones, a string is the description, ``Ge``, ``Le`` and
@@ -139,12 +139,12 @@ def reading(make: Callable[..., Feedback]) -> CarFunction:
     return _from_factory(make, reads=True)
 
 
-def _from_factory(make: Callable[..., Made], *, reads: bool) -> CarFunction:
+def _from_factory(make: Callable[..., CallMade], *, reads: bool) -> CarFunction:
     hints = get_type_hints(make, include_extras=True)
     _, *given = inspect.signature(make).parameters.values()
     about = " ".join((inspect.getdoc(make) or "").partition("\n\n")[0].split())
     parameters = tuple(
-        Parameter(each.name, _schema(hints[each.name]), each.default is inspect.Parameter.empty) for each in given
+        Argument(each.name, _schema(hints[each.name]), each.default is inspect.Parameter.empty) for each in given
     )
     return CarFunction(make.__name__, about, parameters, make, reads)
 
@@ -269,17 +269,17 @@ def _one(verb: str, group: str, what: str, value: str, ones: Mapping[str, Signal
         name = f"{verb}_{group}_{what or only}"
         about = f"{_TOLD[verb]}: {only.replace('_', ' ')}. {_leaf(signals[0])}"
         return CarFunction(
-            name, about, (Parameter(value, schema),), partial(_set, ones, value), signals=_paths(ones)
+            name, about, (Argument(value, schema),), partial(_set, ones, value), signals=_paths(ones)
         )
     title = (what or ("switches" if verb == "switch" else "settings")).replace("_", " ")
     about = f"{_TOLD[verb]}: {group} {title}. " + " ".join(
         f"{name}: {_leaf(signal)}" for name, signal in ones.items()
     )
-    which = Parameter("which", {"type": "string", "enum": list(ones), "description": "Which of them."})
+    which = Argument("which", {"type": "string", "enum": list(ones), "description": "Which of them."})
     return CarFunction(
         f"{verb}_{group}" + (f"_{what}" if what else ""),
         about,
-        (which, Parameter(value, schema)),
+        (which, Argument(value, schema)),
         partial(_set, ones, value),
         signals=_paths(ones),
     )
@@ -314,7 +314,7 @@ def _value_schema(signals: tuple[Signal[Any], ...]) -> Json:
     }
 
 
-def _set(ones: Mapping[str, Signal[Any]], name: str, state: State, **given: Any) -> Made:
+def _set(ones: Mapping[str, Signal[Any]], name: str, state: State, **given: Any) -> CallMade:
     which = given.get("which") or next(iter(ones))
     signal, value = ones[which], given[name]
     if held := state.vehicle.held(signal):

@@ -19,7 +19,7 @@ from automotive_cosim.cockpit.apps.safety.commands import AskPullOver, AskSlowDo
 from automotive_cosim.cockpit.apps.safety.state import AlertDraft
 from automotive_cosim.cockpit.calls import functions
 from automotive_cosim.cockpit.commands import Put, Set, SetAll
-from automotive_cosim.cockpit.functions import CarFunction, Parameter
+from automotive_cosim.cockpit.functions import Argument, CarFunction
 from automotive_cosim.cockpit.signals import ADAS, Signal
 from automotive_cosim.cockpit.state import Command, Message, State
 from automotive_cosim.contracts import Action, ActionType, Alert
@@ -136,7 +136,7 @@ def _arguments(function: CarFunction, words: Sequence[str], numbers: Sequence[fl
         yield {each.name: value for each, value in pairs if value is not None}
 
 
-def _options(parameter: Parameter, words: Sequence[str], numbers: Sequence[float]) -> Sequence[Any]:
+def _options(parameter: Argument, words: Sequence[str], numbers: Sequence[float]) -> Sequence[Any]:
     schema = parameter.schema
     left_out = ("",) if parameter.required and schema["type"] == "string" else () if parameter.required else (None,)
     if "enum" in schema:

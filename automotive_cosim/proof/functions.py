@@ -39,7 +39,7 @@ NOT_YET = frozenset({FeedbackCode.DISABLED, FeedbackCode.NO_SUCH_ELEMENT, Feedba
 
 
 @dataclass(frozen=True, slots=True)
-class Call:
+class TimedCall:
     """One action of a translated solution."""
 
     action: Action
@@ -65,27 +65,27 @@ class UntranslatableError(Exception):
     """A command that no function gives."""
 
 
-def translated(ground: Ground) -> tuple[Call, ...]:
+def translated(ground: Ground) -> tuple[TimedCall, ...]:
     """The reference solution as calls.
 
     Raises:
         UntranslatableError: no function gives one of its commands.
     """
-    oracle, walk, calls = ground.oracle(), ground.episode.branch(), list[Call]()
+    oracle, walk, calls = ground.oracle(), ground.episode.branch(), list[TimedCall]()
     try:
         while walk.end is None:
             action, heard = oracle.act(walk.observation), len(walk.heard)
             before, listed = walk.world.cockpit.copy(), walk.elements
             walk.step(action)
             if action.action_type not in BY_HAND:
-                calls.append(Call(action_of(*call_of(action)), heard))
+                calls.append(TimedCall(action_of(*call_of(action)), heard))
                 continue
             for command in _commanded(before, walk.world.cockpit, action, listed, walk.steps[-1].feedback.code):
                 found = actions_of(command, before.state)
                 if found is None:
                     raise UntranslatableError(f"no function does {command}"[:200])
                 for one in found:
-                    call = Call(one, heard)
+                    call = TimedCall(one, heard)
                     value = None if call.signal is None else before.signals[call.signal]
                     _add(calls, replace(call, before=value))
     finally:
@@ -104,7 +104,7 @@ def _commanded(
             yield widget.on_tap.command
 
 
-def _add(calls: list[Call], call: Call) -> None:
+def _add(calls: list[TimedCall], call: TimedCall) -> None:
     """Adds a call; of several in a row that set the same signal, as taps on plus do, only the last counts."""
     last = calls[-1] if calls else None
     if call.signal is not None and last is not None and last.signal is call.signal and last.heard == call.heard:
@@ -118,7 +118,7 @@ class _Caller:
     """Plays calls in order; waits for what the driver had said by then, and repeats the last. A finger takes longer
     to get somewhere: what is refused at first, as to read a message that has not come yet, is tried again."""
 
-    calls: Sequence[Call]
+    calls: Sequence[TimedCall]
     _next: int = 0
     _left: int = PATIENCE
 
@@ -169,7 +169,7 @@ def functions_win(ground: Ground) -> Iterator[str]:
             yield f"succeeds with {name} {given}, which is wrong"
 
 
-def _wrong(call: Call) -> Iterator[Call]:
+def _wrong(call: TimedCall) -> Iterator[TimedCall]:
     """The same call with each wrong value: a switch the other way, a number moved from what it was in the other
     direction, any other choice, of which one has to lose. None of a call that sets no signal."""
     signal, (name, given) = call.signal, call_of(call.action)
@@ -192,7 +192,7 @@ def _wrong(call: Call) -> Iterator[Call]:
 def functions_are_not_enough(grounds: dict[str, Ground]) -> Iterator[str]:
     """Plays strategies without a look: to end at once in each way, and to warn of speed, or of what a reference
     solution warns of, whatever happens. Other warnings are the gate ``trivial``'s, which plays the same actions."""
-    ends = {str(status): Call(Action(ActionType.STATUS, goal_status=status), 0) for status in GoalStatus}
+    ends = {str(status): TimedCall(Action(ActionType.STATUS, goal_status=status), 0) for status in GoalStatus}
     for name, end in ends.items():
         if all(_play(ground, _Caller((end,))).success for ground in grounds.values()):
             yield f"{name} at once wins by functions"

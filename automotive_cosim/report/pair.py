@@ -52,7 +52,7 @@ FILM, PAGE, FIGURES = "pair.webp", "pair.html", "pair.json"
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class PairSide:
     """One of the two episodes."""
 
     title: str
@@ -69,7 +69,7 @@ def screen_size() -> tuple[int, int]:
     return right - left, bottom - top
 
 
-def write_pair(folder: Path, sides: Sequence[Side]) -> Path:
+def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
     """Writes the film and the page into a folder that contains both records; returns the page.
 
     Args:
@@ -105,12 +105,12 @@ def write_pair(folder: Path, sides: Sequence[Side]) -> Path:
     return page
 
 
-def sentence(sides: Sequence[Side]) -> str:
+def sentence(sides: Sequence[PairSide]) -> str:
     """What the two runs show, with the figures of their last moments."""
     return " ".join(f"{side.title}: {outcome(side.result).lower()}{_ends_at(side.result.path)}." for side in sides)
 
 
-def _from_hand_over(side: Side) -> list[FilmFrame]:
+def _from_hand_over(side: PairSide) -> list[FilmFrame]:
     """The frames without the approach; after the last step its words stay, and the last frame says the outcome."""
     frames: list[FilmFrame] = []
     for frame in side.frames.of(side.result):
@@ -138,7 +138,7 @@ def _screen(side: Rect) -> Rect:
 
 def _compose(
     at_s: float,
-    sides: Sequence[Side],
+    sides: Sequence[PairSide],
     frames: Sequence[Sequence[FilmFrame]],
     paths: Sequence[Sequence[Sample]],
     *,
@@ -164,7 +164,7 @@ def _compose(
     return canvas.image
 
 
-def _draw_side(canvas: Canvas, box: Rect, side: Side, frame: FilmFrame, here: Sample, colour: Colour) -> None:
+def _draw_side(canvas: Canvas, box: Rect, side: PairSide, frame: FilmFrame, here: Sample, colour: Colour) -> None:
     head = box.top(HEAD - 6)
     canvas.disc(Rect(head.x, head.y + 9, 20, 20), colour)
     canvas.text(Rect(head.x + 32, head.y, head.width - 200, head.height), side.title, Type.STRONG, NIGHT.text)

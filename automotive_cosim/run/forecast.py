@@ -63,7 +63,7 @@ class Range:
 
 
 @dataclass(frozen=True, slots=True)
-class Forecast:
+class CostForecast:
     """What a plan will take."""
 
     runs: int
@@ -94,7 +94,7 @@ class Forecast:
         return ""
 
 
-def forecast(jobs: Sequence[EpisodeJob | DriveJob], workers: int, rows: Iterable[TrialRow] = ()) -> Forecast:
+def forecast(jobs: Sequence[EpisodeJob | DriveJob], workers: int, rows: Iterable[TrialRow] = ()) -> CostForecast:
     """What the jobs that have not run yet will take.
 
     Args:
@@ -116,7 +116,7 @@ def forecast(jobs: Sequence[EpisodeJob | DriveJob], workers: int, rows: Iterable
             sent, received = _tokens(job, own)
             tokens += Range(sent.low + received.low, sent.high + received.high)
             usd += _usd(job.setup.model, sent, received)
-    return Forecast(
+    return CostForecast(
         len(left),
         Range(wall_s / TIME_WITHIN, wall_s * TIME_WITHIN),
         tokens,

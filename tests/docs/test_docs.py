@@ -69,8 +69,12 @@ def parse(command, arguments):
 
 
 @over(list(dict.fromkeys(line for _, line in commands())))
-def test_every_command_in_the_docs_is_understood(line, monkeypatch):
+def test_every_command_in_the_docs_is_understood(line, monkeypatch, tmp_path):
     monkeypatch.setenv(VARIABLE, "")  # --tasks-from sets it for every process to come; this takes that back
+    monkeypatch.chdir(tmp_path)
+    for folder in re.findall(r"--tasks-from (\S+)", line):
+        (tmp_path / folder).mkdir(parents=True, exist_ok=True)
+        (tmp_path / folder / "own.py").touch()
     words = shlex.split(line.split(" | ")[0].split(" > ")[0], comments=True)
     try:
         parse(get_command(app), [re.sub(r"\$\w+", "x", word) for word in words[1:]])

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from automotive_cosim.cockpit.apps.calendar.state import Agenda
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import CLOCK, Made, minute_of, named, offered, unknown
+from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, named, offered, unknown
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import Feedback
 
@@ -15,7 +15,7 @@ AppointmentName = Annotated[str, "Its title, or title and place with a comma bet
 
 
 @offered
-def move_appointment(state: State, appointment: AppointmentName, time: Annotated[str, CLOCK]) -> Made:
+def move_appointment(state: State, appointment: AppointmentName, time: Annotated[str, CLOCK]) -> CallMade:
     """Move an appointment of today to another time."""
     at, minute = _index(state, appointment), minute_of(time)
     if isinstance(at, Feedback):
@@ -28,7 +28,7 @@ def move_appointment(state: State, appointment: AppointmentName, time: Annotated
 
 
 @offered
-def remove_appointment(state: State, appointment: AppointmentName) -> Made:
+def remove_appointment(state: State, appointment: AppointmentName) -> CallMade:
     """Remove an appointment of today."""
     at, entries = _index(state, appointment), state.of(Agenda).entries
     return at if isinstance(at, Feedback) else Put(Agenda((*entries[:at], *entries[at + 1 :])), "")

@@ -7,7 +7,7 @@ from typing import Annotated
 
 from automotive_cosim.cockpit.apps.climate.state import ClimateSchedule
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import CLOCK, Made, minute_of, offered
+from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, offered
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import Feedback
 
@@ -15,7 +15,7 @@ from automotive_cosim.contracts import Feedback
 @offered
 def schedule_climate(
     state: State, on: Annotated[bool, "Whether the schedule is on."], time: Annotated[str, CLOCK] = ""
-) -> Made:
+) -> CallMade:
     """Have the cabin prepared for a time of day, or not."""
     timer = state.of(ClimateSchedule).timer
     minute = minute_of(time) if time else timer.minute

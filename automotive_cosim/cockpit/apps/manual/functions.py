@@ -6,7 +6,7 @@ from typing import Annotated
 
 from automotive_cosim.cockpit.apps.manual.state import TOPICS, ManualFilm
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import Made, locked, offered
+from automotive_cosim.cockpit.functions import CallMade, locked, offered
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.formats.annotations import OneOf
@@ -19,7 +19,7 @@ def play_manual_video(
     state: State,
     topic: Annotated[str, OneOf(NAMES), "The topic."],
     on: Annotated[bool, "True plays its video, false stops it."] = True,
-) -> Made:
+) -> CallMade:
     """Play the video of a topic of the owner's manual, or stop it. Only while parked."""
     if not on:
         return Put(ManualFilm(), "")

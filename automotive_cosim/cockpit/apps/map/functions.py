@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.apps.map.commands import Guide, Take
 from automotive_cosim.cockpit.apps.map.screens import away, matches
 from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, Navigation
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import Made, as_told, disabled, locked, named, offered, reading
+from automotive_cosim.cockpit.functions import CallMade, as_told, disabled, locked, named, offered, reading
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.state import State
@@ -27,7 +27,7 @@ def navigate_to(
     state: State,
     place: Annotated[str, "Name of a place or street; empty keeps the destination and looks for a faster route."],
     as_stop: Annotated[bool, "Whether to stop there on the way to the present destination."] = False,
-) -> Made:
+) -> CallMade:
     """Start guidance to a place or street."""
     if not place.strip():
         return Guide("")
@@ -46,7 +46,7 @@ def navigate_to(
 def take_route(
     state: State,
     number: Annotated[int, "Number of the route, as the screen route has it.", Ge(2), Le(9)],
-) -> Made:
+) -> CallMade:
     """Take another route to the same destination."""
     ways = () if state.outside is None else state.outside.driving.ahead.alternatives
     if number - 2 >= len(ways):
@@ -59,13 +59,13 @@ def avoid_on_route(
     state: State,
     what: Annotated[str, OneOf(AVOIDABLE), "What to avoid."],
     on: Annotated[bool, "Whether to avoid it from now on."],
-) -> Made:
+) -> CallMade:
     """Have routes avoid something, or no longer."""
     return Put(state.of(Navigation).with_avoided(what, on), "")
 
 
 @offered
-def save_place(state: State, place: PlaceName, on: Annotated[bool, "Whether it is saved from now on."]) -> Made:
+def save_place(state: State, place: PlaceName, on: Annotated[bool, "Whether it is saved from now on."]) -> CallMade:
     """Save a place or street among the destinations, or remove it from them."""
     found = _found(state, place)
     return found if isinstance(found, Feedback) else Put(state.of(Navigation).with_favourite(found, on), "")

@@ -7,7 +7,7 @@ from typing import Annotated
 from automotive_cosim.cockpit.apps.media.commands import Play, Skip
 from automotive_cosim.cockpit.apps.media.state import Entry, Library, Listening
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import Made, disabled, named, offered, unknown
+from automotive_cosim.cockpit.functions import CallMade, disabled, named, offered, unknown
 from automotive_cosim.cockpit.restrictions import REASONS, Restriction
 from automotive_cosim.cockpit.signals import LINK, MEDIA
 from automotive_cosim.cockpit.state import State
@@ -24,7 +24,7 @@ def play_media(
     ] = "",
     playlist: Annotated[str, "The playlist that it is played from; empty for none."] = "",
     by: Annotated[str, "Artist or podcast, where several have the title; empty for any."] = "",
-) -> Made:
+) -> CallMade:
     """Play a track, a station, an episode of a podcast, or a playlist."""
     library, listening = state.of(Library), state.of(Listening)
     lists = [known.name for known in listening.playlists]
@@ -47,13 +47,15 @@ def play_media(
 
 
 @offered
-def skip_track(state: State, to: Annotated[str, OneOf(("next", "previous")), "Which entry of the queue."]) -> Made:
+def skip_track(
+    state: State, to: Annotated[str, OneOf(("next", "previous")), "Which entry of the queue."]
+) -> CallMade:
     """Play the next or the previous track, station or episode."""
     return Skip(1 if to == "next" else -1)
 
 
 @offered
-def like_playing(state: State, on: Annotated[bool, "Whether it is liked from now on."]) -> Made:
+def like_playing(state: State, on: Annotated[bool, "Whether it is liked from now on."]) -> CallMade:
     """Put what plays among the liked tracks and stations, or take it out."""
     return Put(state.of(Listening).with_favourite(state.signals[MEDIA.PLAYED], on), "")
 
@@ -63,7 +65,7 @@ def change_playlist(
     state: State,
     playlist: Annotated[str, "Name of the playlist."],
     on: Annotated[bool, "True adds what plays, false removes it."],
-) -> Made:
+) -> CallMade:
     """Add the track that plays to a playlist, or remove it from there."""
     listening, playing = state.of(Listening), state.signals[MEDIA.PLAYED]
     lists = [known.name for known in listening.playlists]

@@ -8,18 +8,18 @@ from typing import Annotated
 from automotive_cosim.cockpit.apps.memo.commands import Record
 from automotive_cosim.cockpit.apps.memo.state import Memos
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import Made, named, offered, unknown
+from automotive_cosim.cockpit.functions import CallMade, named, offered, unknown
 from automotive_cosim.cockpit.state import State
 
 
 @offered
-def record_memo(state: State) -> Made:
+def record_memo(state: State) -> CallMade:
     """Begin to record a spoken memo, or end the one that is being recorded."""
     return Record()
 
 
 @offered
-def delete_memo(state: State, memo: Annotated[str, "The memo, as the screen memo tells it."]) -> Made:
+def delete_memo(state: State, memo: Annotated[str, "The memo, as the screen memo tells it."]) -> CallMade:
     """Delete a memo."""
     memos = state.of(Memos)
     found = named(memo, memos.kept)

@@ -19,7 +19,7 @@ from automotive_cosim.cockpit.apps.phone.state import TEMPLATES, Directory, Phon
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.functions import (
     CLOCK,
-    Made,
+    CallMade,
     disabled,
     locked,
     minute_of,
@@ -32,12 +32,12 @@ from automotive_cosim.contracts import Feedback, FeedbackCode
 from automotive_cosim.contracts.text import say
 from automotive_cosim.formats.annotations import OneOf
 
-Person = Annotated[str, "Name of a contact, as the screens of the phone tell it."]
+ContactName = Annotated[str, "Name of a contact, as the screens of the phone tell it."]
 NOBODY = Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("No contact with this name"))
 
 
 @offered
-def call(state: State, who: Annotated[str, "Name of a contact; only while parked also a number."]) -> Made:
+def call(state: State, who: Annotated[str, "Name of a contact; only while parked also a number."]) -> CallMade:
     """Call somebody."""
     if who and not set(who) - set("0123456789*# "):
         return locked(state, Restriction.NO_DIALPAD) or Dial(who)
@@ -53,7 +53,7 @@ def handle_call(
         OneOf(("answer", "decline", "hang_up", "mute", "unmute")),
         "Answer or decline the ringing call; end, mute or unmute the present one.",
     ],
-) -> Made:
+) -> CallMade:
     """Do something with the call that rings or goes on."""
     phone = state.of(Phone)
     match act:
@@ -70,7 +70,7 @@ def handle_call(
 
 
 @offered
-def send_message(state: State, to: Person, text: Annotated[str, OneOf(TEMPLATES), "The message."]) -> Made:
+def send_message(state: State, to: ContactName, text: Annotated[str, OneOf(TEMPLATES), "The message."]) -> CallMade:
     """Send somebody a message. It cannot be taken back."""
     found = _found(state, to)
     return found if isinstance(found, Feedback) else SendReply(found, TEMPLATES[TEMPLATES.index(text)])
@@ -79,12 +79,12 @@ def send_message(state: State, to: Person, text: Annotated[str, OneOf(TEMPLATES)
 @offered
 def send_figure(
     state: State,
-    to: Person,
+    to: ContactName,
     sentence: Annotated[
         str, OneOf(SENTENCES), "; ".join(f"{key}: {each.text('...')}" for key, each in SENTENCES.items())
     ],
     figure: Annotated[str, f"The figure in the sentence. {CLOCK} for arrive, a number for the others."],
-) -> Made:
+) -> CallMade:
     """Send somebody a message with a figure. It cannot be taken back."""
     found = _found(state, to)
     if isinstance(found, Feedback):
@@ -103,7 +103,7 @@ def send_figure(
 
 
 @offered
-def read_messages(state: State, who: Person) -> Made:
+def read_messages(state: State, who: ContactName) -> CallMade:
     """Have somebody's new messages read out; everybody in the car hears them. Parked, they are opened."""
     found = _found(state, who)
     if isinstance(found, Feedback):
@@ -117,15 +117,15 @@ def read_messages(state: State, who: Person) -> Made:
 
 @offered
 def favourite_contact(
-    state: State, who: Person, on: Annotated[bool, "Whether it is a favourite from now on."]
-) -> Made:
+    state: State, who: ContactName, on: Annotated[bool, "Whether it is a favourite from now on."]
+) -> CallMade:
     """Make a contact a favourite, or no longer."""
     found = _found(state, who)
     return found if isinstance(found, Feedback) else Put(state.of(Phone).with_favourite(found, on), "")
 
 
 @offered
-def do_not_disturb(state: State, on: Annotated[bool, "Whether calls and messages stay silent."]) -> Made:
+def do_not_disturb(state: State, on: Annotated[bool, "Whether calls and messages stay silent."]) -> CallMade:
     """Keep calls and messages silent, or announce them."""
     return Put(replace(state.of(Phone), do_not_disturb=on), "")
 

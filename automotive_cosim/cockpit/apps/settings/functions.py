@@ -8,7 +8,7 @@ from typing import Annotated
 from automotive_cosim.cockpit.apps.settings.commands import SwitchProfile
 from automotive_cosim.cockpit.apps.settings.state import NETWORKS, PHONES, PROFILES, TABLET, Connections
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import Made, disabled, locked, offered
+from automotive_cosim.cockpit.functions import CallMade, disabled, locked, offered
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import State
@@ -17,13 +17,13 @@ from automotive_cosim.formats.annotations import OneOf
 
 
 @offered
-def switch_profile(state: State, profile: Annotated[str, OneOf(PROFILES), "The profile."]) -> Made:
+def switch_profile(state: State, profile: Annotated[str, OneOf(PROFILES), "The profile."]) -> CallMade:
     """Switch to a driver's profile, with its seat, mirrors, temperature and brightness. Only while parked."""
     return locked(state, Restriction.NO_SETUP) or SwitchProfile(profile)
 
 
 @offered
-def connect_wifi(state: State, network: Annotated[str, OneOf(NETWORKS), "Name of the network."]) -> Made:
+def connect_wifi(state: State, network: Annotated[str, OneOf(NETWORKS), "Name of the network."]) -> CallMade:
     """Connect to a Wi-Fi network, with Wi-Fi on. Only while parked."""
     if refusal := locked(state, Restriction.NO_SETUP):
         return refusal
@@ -37,7 +37,7 @@ def pair_device(
     state: State,
     device: Annotated[str, OneOf((*PHONES, TABLET)), "The device. A phone takes the other phone's place."],
     on: Annotated[bool, "False unpairs the tablet; a phone stays paired until another one is."] = True,
-) -> Made:
+) -> CallMade:
     """Pair a phone or the tablet by Bluetooth. Only while parked."""
     if refusal := locked(state, Restriction.NO_SETUP):
         return refusal

@@ -7,7 +7,7 @@ from typing import Annotated
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.store.state import Installed
 from automotive_cosim.cockpit.commands import Put
-from automotive_cosim.cockpit.functions import Made, locked, offered, unknown
+from automotive_cosim.cockpit.functions import CallMade, locked, offered, unknown
 from automotive_cosim.cockpit.registry import apps_in
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.state import State
@@ -18,7 +18,7 @@ def install_app(
     state: State,
     app: Annotated[str, "Name of an app of the store, as the screen store tells it."],
     on: Annotated[bool, "True installs it, false removes it."],
-) -> Made:
+) -> CallMade:
     """Install an app of the store, or remove it. Only while parked."""
     there = apps_in(Where.STORE)
     names = {name.casefold(): each.name for each in there for name in (each.name, each.title)}

@@ -9,7 +9,7 @@ from annotated_types import Ge, Le
 from automotive_cosim.cockpit.apps.vehicle.commands import Honk, Wash
 from automotive_cosim.cockpit.apps.vehicle.state import REMEMBERED, SLOTS, CarMemory
 from automotive_cosim.cockpit.commands import Put, SetAll
-from automotive_cosim.cockpit.functions import Made, disabled, offered
+from automotive_cosim.cockpit.functions import CallMade, disabled, offered
 from automotive_cosim.cockpit.signals import SEAT
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.contracts import Feedback, FeedbackCode
@@ -19,19 +19,19 @@ Slot = Annotated[int, "Number of the stored position.", Ge(1), Le(SLOTS)]
 
 
 @offered
-def honk(state: State) -> Made:
+def honk(state: State) -> CallMade:
     """Sound the horn."""
     return Honk()
 
 
 @offered
-def wash_windshield(state: State) -> Made:
+def wash_windshield(state: State) -> CallMade:
     """Wash the windshield."""
     return Wash()
 
 
 @offered
-def recall_seat(state: State, position: Slot) -> Made:
+def recall_seat(state: State, position: Slot) -> CallMade:
     """Move the driver's seat and the mirrors to a stored position. Only at a standstill."""
     if held := state.vehicle.held(SEAT.DRIVER_POSITION):
         return Feedback(FeedbackCode.RESTRICTED, held)
@@ -40,7 +40,7 @@ def recall_seat(state: State, position: Slot) -> Made:
 
 
 @offered
-def store_seat(state: State, position: Slot) -> Made:
+def store_seat(state: State, position: Slot) -> CallMade:
     """Store the present position of the driver's seat and the mirrors."""
     car = state.of(CarMemory)
     if car.memory[position - 1] == tuple(state.signals[signal] for signal in REMEMBERED):
