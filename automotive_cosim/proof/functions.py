@@ -33,9 +33,8 @@ from automotive_cosim.interface.functions import action_of, call_of
 from automotive_cosim.interface.translation import actions_of
 from automotive_cosim.proof.ground import Ground, Played, finish
 
-PATIENCE = 15
-"""Calls that are tried again in one episode; a reference solution has fewer taps before what it commands."""
-NOT_YET = frozenset({FeedbackCode.DISABLED, FeedbackCode.NO_SUCH_ELEMENT, FeedbackCode.REFUSED})
+SAME_TIME_S = 0.05
+LONGEST_WAIT_S = 10
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +44,9 @@ class TimedCall:
     action: Action
     heard: int
     """How much the driver had said when the reference solution came to it."""
+    at_s: float
+    """Seconds since the hand-over when it came to it: a finger has to get there, and what it waits for, such as a
+    message or a seat that has to be warm for a while, takes its time for a call too."""
     before: object = None
     """Value of the signal that it sets, before it; None of any other action."""
 
@@ -74,18 +76,19 @@ def translated(ground: Ground) -> tuple[TimedCall, ...]:
     oracle, walk, calls = ground.oracle(), ground.episode.branch(), list[TimedCall]()
     try:
         while walk.end is None:
-            action, heard = oracle.act(walk.observation), len(walk.heard)
+            at_s, heard = walk.observation.time_s, len(walk.heard)
+            action = oracle.act(walk.observation)
             before, listed = walk.world.cockpit.copy(), walk.elements
             walk.step(action)
             if action.action_type not in BY_HAND:
-                calls.append(TimedCall(action_of(*call_of(action)), heard))
+                calls.append(TimedCall(action_of(*call_of(action)), heard, at_s))
                 continue
             for command in _commanded(before, walk.world.cockpit, action, listed, walk.steps[-1].feedback.code):
                 found = actions_of(command, before.state)
                 if found is None:
                     raise UntranslatableError(f"no function does {command}"[:200])
                 for one in found:
-                    call = TimedCall(one, heard)
+                    call = TimedCall(one, heard, at_s)
                     value = None if call.signal is None else before.signals[call.signal]
                     _add(calls, replace(call, before=value))
     finally:
@@ -115,26 +118,19 @@ def _add(calls: list[TimedCall], call: TimedCall) -> None:
 
 @dataclass(slots=True)
 class _Caller:
-    """Plays calls in order; waits for what the driver had said by then, and repeats the last. A finger takes longer
-    to get somewhere: what is refused at first, as to read a message that has not come yet, is tried again."""
+    """Plays calls in order, none before the reference solution came to it or the driver had said what it had heard,
+    and repeats the last."""
 
     calls: Sequence[TimedCall]
     _next: int = 0
-    _left: int = PATIENCE
 
     def act(self, observation: Observation) -> Action:
-        if self._next and self._left and self._came_early(observation.feedback.code):
-            self._next, self._left = self._next - 1, self._left - 1
         call = self.calls[min(self._next, len(self.calls) - 1)]
-        if len(observation.said) < call.heard:
-            return Action(ActionType.WAIT, seconds=1)
+        early_s = call.at_s - observation.time_s
+        if early_s > SAME_TIME_S or len(observation.said) < call.heard:
+            return Action(ActionType.WAIT, seconds=min(LONGEST_WAIT_S, max(1, int(early_s + SAME_TIME_S))))
         self._next += 1
         return call.action
-
-    def _came_early(self, code: FeedbackCode) -> bool:
-        """Whether the last call may do later what it did not do: a signal that has its value keeps it."""
-        last = self.calls[min(self._next, len(self.calls)) - 1]
-        return code in NOT_YET or (code is FeedbackCode.NO_EFFECT and last.signal is None)
 
 
 def _play(ground: Ground, actor: Actor, *, stop_when_lost: bool = False) -> Played:
@@ -192,7 +188,7 @@ def _wrong(call: TimedCall) -> Iterator[TimedCall]:
 def functions_are_not_enough(grounds: dict[str, Ground]) -> Iterator[str]:
     """Plays strategies without a look: to end at once in each way, and to warn of speed, or of what a reference
     solution warns of, whatever happens. Other warnings are the gate ``trivial``'s, which plays the same actions."""
-    ends = {str(status): TimedCall(Action(ActionType.STATUS, goal_status=status), 0) for status in GoalStatus}
+    ends = {str(status): TimedCall(Action(ActionType.STATUS, goal_status=status), 0, 0.0) for status in GoalStatus}
     for name, end in ends.items():
         if all(_play(ground, _Caller((end,))).success for ground in grounds.values()):
             yield f"{name} at once wins by functions"
