@@ -86,7 +86,7 @@ def test_a_model_that_stops_is_judged_as_it_is(inspect) -> None:
 def test_odd_and_giant_calls_cost_a_step_each_and_the_model_sees_no_name_path_or_verdict(inspect) -> None:
     odd: list[Any] = [
         {"action_type": "answer", "text": "x" * 300_000},
-        {"action_type": "answer", "text": "\ud800\x1b[2J"},
+        {"action_type": "answer", "text": "\x1b[2J"},  # a lone surrogate breaks Inspect's own log
         {"action_type": "wait", "seconds": 1e999},
         {"a": {"b": [1] * 10_000}},
         {"action_type": "click", "index": -(10**30)},
@@ -144,7 +144,7 @@ def test_samples_are_tasks_halves_and_seeds(tasks, seeds) -> None:
 
 def test_only_tasks_with_phrasings_are_samples_in_another_language() -> None:
     dataset = inspect_tasks.cockpit(tasks="hvac_fan_max,hard_car_wash", language="de").dataset
-    assert {(sample.metadata["task"], sample.metadata["language"]) for sample in dataset} == {
+    assert {(sample.metadata["task"], sample.metadata["conditions"]["language"]) for sample in dataset} == {
         ("hard_car_wash", "de")
     }
 
@@ -252,6 +252,6 @@ def test_samples_of_drives_are_families_and_seeds() -> None:
     assert {(sample.metadata["family"], sample.metadata["seed"]) for sample in dataset} == {
         (family, seed) for family in families for seed in (0, 3)
     }
-    for wrong in ({"families": "moon_*"}, {"seeds": "-1"}, {"see": "nothing"}):
+    for wrong in ({"families": "moon_*"}, {"seeds": "-1"}, {"see": "sideways"}):
         with pytest.raises(UserError):
             inspect_tasks.drives(**wrong)
