@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
-from automotive_cosim.cli.options import AsJson, print_json, whole_number
+from automotive_cosim.cli.options import AsJson, number, print_json, whole_number
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 
@@ -34,6 +34,15 @@ def drive(
             show_default=False,
         ),
     ] = "",
+    minutes: Annotated[
+        float | None,
+        typer.Option(
+            help="End it after this many simulated minutes.",
+            parser=number(0.1, 60),
+            metavar="X",
+            show_default=False,
+        ),
+    ] = None,
     agent: Annotated[str, typer.Option(help="Agent; `agents` lists them.")] = "rule-perfect",
     model: Annotated[str, typer.Option(help="Model for the agent.")] = "rules",
     out: Annotated[
@@ -51,6 +60,7 @@ def drive(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.families import FAMILIES
+    from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.run.drive import DriveSetup, run_drive
     from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.jobs import DriveJob
@@ -79,6 +89,7 @@ def drive(
         player.model,
         under,
         scenario=scenario,
+        settings=DriveSettings(minutes=minutes),
     )
     folder = out or stamped_folder(f"{name}-{player.name}-seed{seed}")
     with closing(DriveRecorder(folder, setup, player)) as recorder:

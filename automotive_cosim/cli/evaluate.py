@@ -157,6 +157,15 @@ def evaluate(
             show_default=False,
         ),
     ] = None,
+    minutes: Annotated[
+        float | None,
+        typer.Option(
+            help="End drives after this many simulated minutes.",
+            parser=number(0.1, 60),
+            metavar="X",
+            show_default=False,
+        ),
+    ] = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **conditions: str | None,
@@ -186,6 +195,7 @@ def evaluate(
     values |= {"suite": suite} if suite is not None else {}
     values |= {"split": split} if split is not None else {}
     values |= values_of(conditions)
+    values |= {"settings": {**values.get("settings", {}), "minutes": minutes}} if minutes is not None else {}
     values |= {"repeats": repeats} if repeats is not None else {}
     values |= {"held_out": True} if held_out else {}
     values |= {"everywhere": True} if everywhere else {}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, fields, replace
 from datetime import datetime, timedelta
+from math import inf
 from typing import Annotated
 
 from annotated_types import Ge, Gt, Le, Lt
@@ -35,6 +36,9 @@ class DriveSettings:
     """Name of a driver profile."""
     driven_min: Annotated[float, Ge(0), Le(1440)] | None = None
     """How long the driver had been driving without a break before departure."""
+    minutes: Annotated[float, Gt(0), Le(60)] | None = None
+    """When it is over and judged, if the script ends later: to try a model that costs money or time. It then has fewer
+    events, so its score is not that of a whole drive."""
 
     @property
     def tags(self) -> tuple[str, ...]:
@@ -59,6 +63,7 @@ class DriveSettings:
             driver=script.driver if self.driver is None else self.driver,
             driven_s=script.driven_s if self.driven_min is None else self.driven_min * 60,
             density=script.density if self.density is None else self.density,
+            duration_s=min(script.duration_s, inf if self.minutes is None else self.minutes * 60),
         )
 
     def _weather(self, before: Weather) -> Weather:

@@ -133,6 +133,8 @@ class Plan(ConditionLists):
     spare_traffic: tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...] = SPARE_TRAFFIC
     """Seeds of traffic that replace a seed's own, in turn, if the situation does not occur in it although the task
     lists the scenario. Every agent gets the same; the row says which."""
+    settings: DriveSettings = AS_SCRIPTED
+    """What is set otherwise than their scripts have it, of all ``drives``."""
     trials: tuple[PlannedTrial, ...] = ()
     """Single tasks and drives beside those combined from the lists."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
@@ -147,8 +149,9 @@ class Plan(ConditionLists):
     def as_json(self) -> Json:
         """The plan as a JSON object, for the manifest."""
         made: Json = json.loads(json.dumps(asdict(self)))  # words in place of enumerations
-        if not self.trials:
-            del made["trials"]  # as in plans from before there were any
+        for name in ("trials", "settings"):  # as in plans from before there were any
+            if getattr(self, name) in ((), AS_SCRIPTED):
+                del made[name]
         return made
 
     def check(self, *, dry: bool = False) -> tuple[str, ...]:
@@ -282,7 +285,7 @@ class Plan(ConditionLists):
             self.agents, self.models, self._driven(), self.seeds, combined(self), range(self.repeats)
         ):
             named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
-            setup = DriveSetup(family, seed, agent, named, conditions, scenario)
+            setup = DriveSetup(family, seed, agent, named, conditions, scenario, self.settings)
             yield DriveJob(setup, repeat, self.limits.of_drives)
 
     def _single(self) -> Iterator[TrialJob]:

@@ -23,7 +23,6 @@ from automotive_cosim.interface.functions import call_of
 from automotive_cosim.proof import gates, sight
 from automotive_cosim.proof.functions import functions_are_not_enough, functions_win, translated
 from automotive_cosim.proof.ground import Ground, Script
-from automotive_cosim.proof.world import implausible
 from automotive_cosim.tasking import verdict
 from automotive_cosim.tasking.checks import (
     AlertGiven,
@@ -283,26 +282,6 @@ def test_words_that_could_mean_both_are_seen(ground):
     vague = replace(task, templates=("Defroster off.", *task.templates[1:]))
     assert list(gates.wording(ground(task))) == []
     assert list(gates.wording(ground(vague))) == ["'Defroster off.' does not say that one of several is meant"]
-
-
-@pytest.mark.parametrize(
-    ("speed_mps", "visibility_m", "sun_deg", "seen"),
-    [
-        (10.0, 9000.0, 50.0, ""),
-        (31.0, 40.0, 10.0, "112 km/h at 40 m of sight"),
-        (10.0, 120.0, 60.0, "in fog with the sun at 60 degrees"),
-        (10.0, 120.0, 10.0, ""),
-    ],
-)
-def test_a_car_that_nobody_drives_like_that_is_seen(ground, speed_mps, visibility_m, sun_deg, seen, monkeypatch):
-    moment = ground(SOUND).episode.moments[0]
-    foggy = {"weather_code": 45, "relative_humidity_2m": 99.0} if visibility_m < 1000 else {}
-    weather = replace(moment.weather, visibility=visibility_m, **foggy)
-    moment = replace(moment, weather=weather, driving=replace(moment.driving, speed_mps=speed_mps))
-    monkeypatch.setattr("automotive_cosim.cosim.moment.elevation_deg", lambda *_: sun_deg)
-    wrong = "; ".join(implausible(moment))
-    assert bool(wrong) == bool(seen)
-    assert seen in wrong
 
 
 def test_a_cruise_above_the_limit_is_seen(ground):

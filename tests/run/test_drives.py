@@ -120,7 +120,7 @@ def test_the_plan_of_a_folder_of_drives_of_0_2_is_read() -> None:
 
 # --- on a drive ----------------------------------------------------------------------------------------------
 
-PLAN = {"drives": ["grid_january"], "agents": ["rule-perfect", "silent"], "seeds": [4]}
+PLAN = {"drives": ["grid_january"], "agents": ["rule-perfect", "silent"], "seeds": [4], "settings": {"minutes": 4}}
 
 
 @pytest.fixture(scope="module")
@@ -225,7 +225,8 @@ def test_an_evaluation_killed_in_the_middle_of_a_drive_resumes_to_the_same_rows_
     def begin(out: str) -> subprocess.Popen[str]:
         return program(
             sys.executable, "evaluates.py", "eval", "--drives", "grid_june", "--agents", "marked:Marks",
-            "--latency", "0,3", "--workers", "1", "--out", out, cwd=tmp_path, stdout=subprocess.DEVNULL,
+            "--latency", "0,3", "--workers", "1", "--pictures", "none", "--out", out,
+            cwd=tmp_path, stdout=subprocess.DEVNULL,
         )  # fmt: skip
 
     def acts() -> list[int]:
@@ -270,7 +271,7 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
     assert replayed.exit_code == 0, replayed.output
     assert f"all {row.steps + 1} steps are the same" in replayed.output
     *steps, _ = read_trace(folder, row.id)
-    job = DriveJob(DriveSetup(row.family, row.seed, row.agent, row.model))
+    job = DriveJob(DriveSetup(row.family, row.seed, row.agent, row.model, settings=row.settings))
     quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
     different = compare_drives(steps, driven(job, row, quiet).steps)
     assert "action" in next(step for step in different if step.differs).differs
@@ -398,5 +399,5 @@ def test_intervals_come_from_whole_drives(folder: Path) -> None:
     assert bounds.low < value(mixed) < bounds.high
     repeated = [replace(row, repeat=number) for number, row in enumerate([perfect, silent] * LEAST_DRIVES)]
     assert interval(repeated, value) is None  # type: ignore[arg-type]
-    assert [table.name for table in tables(mixed)] == ["watchers", "kinds", "families"]
+    assert [table.name for table in tables(mixed)] == ["watchers", "kinds", "families", "measures", "exposure"]
     assert len(grouped(mixed)) == 2

@@ -153,7 +153,8 @@ def test_the_rows_and_files_are_those_of_a_local_run(cluster, tmp_path):
 
 
 def test_drives_on_ray_are_those_of_a_local_run(cluster, tmp_path):
-    wanted = make_plan({"drives": ["grid_january"], "agents": ["rule-perfect"], "seeds": [4]})
+    drive = {"drives": ["grid_january"], "agents": ["rule-perfect"], "seeds": [4], "settings": {"minutes": 2}}
+    wanted = make_plan(drive)
     with OnRay(cluster.address) as executor:
         end = run_plan(wanted, tmp_path / "far", executor=executor)
     assert end.done == end.planned == end.judged == 1

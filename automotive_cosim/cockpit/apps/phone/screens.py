@@ -96,7 +96,7 @@ def _recents(rect: Rect, state: State) -> tuple[Widget, ...]:
             key=f"phone.recent.{index}",
             text=call.who,
             description=OPENS,
-            detail={"in": say("Received"), "out": say("CallMade"), "missed": say("Missed")}[call.way],
+            detail={"in": say("Received"), "out": say("Made"), "missed": say("Missed")}[call.way],
             trail=call.when,
             icon=WAYS[call.way],
             tone="warning" if call.way == "missed" else "accent",
