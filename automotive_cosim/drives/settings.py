@@ -37,8 +37,8 @@ class DriveSettings:
     driven_min: Annotated[float, Ge(0), Le(1440)] | None = None
     """How long the driver had been driving without a break before departure."""
     minutes: Annotated[float, Gt(0), Le(60)] | None = None
-    """When it is over and judged, if the script ends later: to try a model that costs money or time. Its score is not
-    that of a whole drive, which has more events."""
+    """When it is over and judged, if the script ends later: to try a model that costs money or time. Its score is
+    not that of a whole drive, which has more events."""
 
     @property
     def tags(self) -> tuple[str, ...]:
