@@ -322,9 +322,11 @@ def _set(ones: Mapping[str, Signal[Any]], name: str, state: State, **given: Any)
     if isinstance(signal.default, float):
         value = float(value)
         if not signal.low <= value <= signal.high:
-            return Feedback(FeedbackCode.REFUSED, f"{signal.path} goes from {signal.range}")
+            return Feedback(
+                FeedbackCode.REFUSED, say("{signal} goes from {range}", signal=signal.path, range=signal.range)
+            )
     elif signal.allowed and value not in signal.allowed:
-        return Feedback(FeedbackCode.REFUSED, f"{signal.path} is {signal.range}")
+        return Feedback(FeedbackCode.REFUSED, say("{signal} is {range}", signal=signal.path, range=signal.range))
     return Set(signal, value)
 
 
@@ -369,7 +371,7 @@ def minute_of(time: str) -> int | Feedback:
     hours, colon, minutes = time.strip().partition(":")
     if colon and hours.isdecimal() and minutes.isdecimal() and int(hours) < 24 and int(minutes) < 60:
         return 60 * int(hours) + int(minutes)
-    return Feedback(FeedbackCode.REFUSED, f"{time!r} is no time of day; give HH:MM, such as 07:30")
+    return Feedback(FeedbackCode.REFUSED, say("“{time}” is no time of day; give HH:MM, such as 07:30", time=time))
 
 
 def as_told(value: Any) -> Feedback:

@@ -94,11 +94,14 @@ def send_figure(
     try:
         value = minute_of(figure) if ":" in figure or sentence == "arrive" else float(figure)
     except ValueError:
-        value = Feedback(FeedbackCode.REFUSED, f"{figure!r} is no number")
+        value = Feedback(FeedbackCode.REFUSED, say("“{figure}” is no number", figure=figure))
     if isinstance(value, Feedback):
         return value
     if not 0 <= value <= said.most:
-        return Feedback(FeedbackCode.REFUSED, f"{figure} is out of range; it goes from 0 to {said.most:g}")
+        return Feedback(
+            FeedbackCode.REFUSED,
+            say("{figure} is out of range; it goes from 0 to {most}", figure=figure, most=f"{said.most:g}"),
+        )
     return SendReply(found, said.said(value))
 
 
