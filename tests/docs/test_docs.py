@@ -116,6 +116,8 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"run .*--model '?replay/", ("--force", "--out", "runs/last"), ""),
     (r"run .*--model", HELP, "asks a language model"),
     (r"run .*(city|my|any)\.(net|sumocfg)", HELP, "needs a network of the reader's"),
+    (r"run --pair", HELP, "takes half a minute; test_hero.py runs it"),
+    (r"run .*--agent caller", ("--scenario", "grid", "--force", "--out", "runs/last"), ""),
     (r"run --agent (my_package|\$agent)", HELP, "needs what only the reader has"),
     (r"run --scenario hamlet --task road_speed_80_in_50", HELP, "takes five seconds; test_examples.py runs it"),
     (r"run .*--(scenario (hamlet|grid)|task my_)", ("--force", "--out", "runs/last"), ""),
@@ -169,6 +171,8 @@ def place(tmp_path_factory):
     (folder / "my_tasks/seats.py").write_text(seats, encoding="utf-8")
     agent = python("docs/tutorial.md", "from automotive_cosim import Action")
     (folder / "my_agents.py").write_text(agent, encoding="utf-8")
+    (folder / "tasks").mkdir()
+    (folder / "tasks" / "own.py").write_text("TASKS = ()\n", encoding="utf-8")
     shutil.copytree(TOP / "docs/examples", folder / "docs/examples")
     (folder / "my_rules").mkdir()
     (rules,) = (text for language, text in blocks(TOP / "docs/geo.md") if language == "toml")
