@@ -21,7 +21,8 @@ def answer(results: Results) -> str:
     if results.rows:
         told.append(_ranking(results.shared()))
     if results.drives:
-        told += drives.standings(results.drives)[:1]
+        ranked = [row for row in results.drives if row.agent not in NOT_RANKED]
+        told += drives.standings(ranked or results.drives)[:1]
     trials = (*results.rows, *results.drives)
     errors = sum(row.error is not None for row in trials)
     ended = (
@@ -67,14 +68,11 @@ def _key(row: EpisodeRow, unit: str) -> Hashable:
 
 def versus(first: str, second: str, found: Comparison) -> str:
     """Two contestants, and by how many percentage points the first is better, if that can be told."""
-    points = f"{_points(found.difference)} ({_signed(found.interval.low)} to {_signed(found.interval.high)})"
+    difference = counted(round(100 * found.difference), "point").replace("-", "−")
+    points = f"{difference} ({_signed(found.interval.low)} to {_signed(found.interval.high)})"
     if found.interval.low > 0:
         return f"{first} beats {second} by {points}"
     return f"{first} and {second} cannot be told apart: a difference of {points}"
-
-
-def _points(share: float) -> str:
-    return counted(round(100 * abs(share)), "point")
 
 
 def _signed(share: float) -> str:

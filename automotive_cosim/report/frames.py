@@ -23,7 +23,7 @@ BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
 AFTER_EVERY_S = 1.0
 BEFORE_MS, STEP_MS, AFTER_MS, LAST_MS = 350, 1500, 350, 4000
 QUALITY = 72
-DIMMED = 0.6
+DIMMED, WAITING = 0.6, "no agent acts yet; the screen is dimmed, as it is at the hand-over"
 AFTER = "After the end"
 """Title of the frames after the last step."""
 SAME_TIME_S = 0.05
@@ -105,7 +105,7 @@ class Frames(EpisodeObserver):
         dimmed = Image.blend(first, Image.new("RGB", first.size, NIGHT.background), DIMMED)
         for time_s in self._before_s:
             at_s = time_s - self._hand_over_s
-            yield FilmFrame(at_s, dimmed, "The drive up to the hand-over", "no agent acts yet", BEFORE_MS)
+            yield FilmFrame(at_s, dimmed, "The drive up to the hand-over", WAITING, BEFORE_MS)
 
     def _frame(
         self, at_s: float, screenshot: npt.NDArray[np.uint8], title: str, words: str, milliseconds: int

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from automotive_cosim.contracts import ActionType
+from automotive_cosim.contracts.action import BY_HAND
 from automotive_cosim.interface.trace import Step
 
 GLANCE_S, TASK_S = 2.0, 12.0
@@ -20,20 +20,6 @@ WORDS_PER_S = 238 / 60
 MOVING_MPS = 0.1
 NOTICE = "status.notice"
 """Elements in which the screen shows texts by itself."""
-TOUCHES = frozenset(
-    {
-        ActionType.CLICK,
-        ActionType.DOUBLE_TAP,
-        ActionType.LONG_PRESS,
-        ActionType.INPUT_TEXT,
-        ActionType.SCROLL,
-        ActionType.SWIPE,
-        ActionType.KEYBOARD_ENTER,
-        ActionType.NAVIGATE_HOME,
-        ActionType.NAVIGATE_BACK,
-        ActionType.OPEN_APP,
-    }
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +42,7 @@ def driver_load(steps: Sequence[Step]) -> DriverLoad:
     for before, after in pairwise(steps):
         if after.moment.driving.speed_mps <= MOVING_MPS:
             continue
-        if after.action is not None and after.action.action_type in TOUCHES:
+        if after.action is not None and after.action.action_type in BY_HAND:
             interaction_s += after.moment.time_s - before.moment.time_s
         said = _said(after)
         if said and said != _said(before):

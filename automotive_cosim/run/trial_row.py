@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections.abc import Hashable
 from dataclasses import dataclass
 from typing import Annotated
@@ -14,7 +15,7 @@ from automotive_cosim.tasking.split import Split
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class TrialRow(JobRow):
+class TrialRow(JobRow, ABC):
     """One trial: an agent's run of a task's half or of a drive. An error leaves most fields at their defaults."""
 
     scenario: str
@@ -44,24 +45,24 @@ class TrialRow(JobRow):
     """Total wait for the model."""
 
     @property
+    @abstractmethod
     def subject(self) -> str:
         """The task, or the family of drives."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def instance(self) -> tuple[Hashable, ...]:
         """What two contestants must share to be compared."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def outcome(self) -> bool | None:
         """Whether it is a success; None without a judgement."""
-        raise NotImplementedError
 
     @property
+    @abstractmethod
     def missing(self) -> tuple[str, ...]:
         """What a success lacks, in words."""
-        raise NotImplementedError
 
     @property
     def has_succeeded(self) -> bool:

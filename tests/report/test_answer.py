@@ -1,0 +1,39 @@
+"""The sentence that every report begins with says what the results say."""
+
+import pytest
+
+from automotive_cosim.report.answer import answer, versus
+from automotive_cosim.report.results import read_results
+from automotive_cosim.report.stats import compare
+
+from .test_regression import PLAN, write
+
+
+def compared(both, only_first, only_second):
+    cells = [(True, True)] * both + [(True, False)] * only_first + [(False, True)] * only_second
+    first, second = (dict(enumerate(cell[side] for cell in cells)) for side in (0, 1))
+    return compare(first, second, {name: name for name in first})
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        ((10, 10, 0), "a beats b by 50 points ("),
+        ((10, 1, 1), "a and b cannot be told apart: a difference of 0 points (−"),
+        ((10, 0, 1), "a and b cannot be told apart: a difference of −9 points (−"),
+    ],
+)
+def test_who_is_better_is_said_only_if_the_interval_says_it(cells, words):
+    assert versus("a", "b", compared(*cells)).startswith(words)
+
+
+def test_one_alone_has_its_rate_and_errors_are_counted(tmp_path):
+    told = answer(read_results(write(tmp_path / "a", lost={1}, errors={3})))
+    assert told.startswith("asurada, ")
+    assert " pairs (" in told
+    assert told.endswith(f"1 of {len(PLAN.jobs())} runs ended in an error.")
+
+
+def test_references_are_not_ranked_unless_they_are_alone(tmp_path):
+    assert answer(read_results(write(tmp_path / "a", agent="oracle"))).startswith("oracle (told the answer)")
+    assert "no run ended in an error" in answer(read_results(write(tmp_path / "b")))
