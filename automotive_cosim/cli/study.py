@@ -22,6 +22,7 @@ from automotive_cosim.cli.batches import (
     words,
 )
 from automotive_cosim.cli.options import AsJson, reads_results, whole_number
+from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -31,6 +32,8 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import Study
     from automotive_cosim.studies.rows import DriveRow
+
+VIA = "What a trip's via edges are: stops, which every route passes, or route, which other routes may leave."
 
 app = typer.Typer(help="Studies: how much rerouting gains in identical traffic.", no_args_is_help=True)
 
@@ -116,6 +119,15 @@ def reroute(
             show_default="none",
         ),
     ] = "",
+    via: Annotated[str, typer.Option(help=VIA)] = "stops",
+    incident: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="An incident in every future, with the fields of scenario.toml, as in 'breakdown edge=c1c2 "
+            "position_m=120'; may be given several times.",
+            show_default="none",
+        ),
+    ] = None,
     emissions: Annotated[
         bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
     ] = False,
@@ -184,6 +196,7 @@ def reroute(
     from automotive_cosim.studies.rows import DriveRow
 
     values: dict[str, Any] = {
+        "via": via,
         "seeds": tuple(seeds_in(seeds)),
         "ages_s": tuple(_numbers("ages", ages)),
         "compliance": tuple(_numbers("compliance", compliance)),
@@ -206,6 +219,7 @@ def reroute(
         arrived=arrived,
         whole_drives=whole_drives,
         close=close,
+        incidents=tuple(incident or ()),
         redraw=redraw,
         emissions=emissions,
         trajectories=trajectories,
@@ -260,6 +274,7 @@ def suite(
         int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
     ] = 2,
     replicates: Annotated[str, typer.Option(help="How many times each future is driven, or auto.")] = "2",
+    via: Annotated[str, typer.Option(help=VIA)] = "stops",
     warm_ups: Annotated[
         str | None,
         typer.Option(
@@ -290,6 +305,7 @@ def suite(
         "seeds": tuple(seeds_in(seeds)),
         "policies": tuple(words("policies", policies)),
         "replicates": _replicates(replicates),
+        "via": via,
     }
     plans = [
         StudyPlan(name, least_delay_s=delay, per_drive=per_drive, warm_up_s=warm_up_s, **values)
@@ -333,20 +349,24 @@ def report(folder: Annotated[Path, typer.Argument(help="Results folder of a stud
 
 def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
     """Prints the result; raises if there is none."""
-    from automotive_cosim.studies.page import cost_s, warnings
-    from automotive_cosim.studies.tables import excluded, policies
+    from automotive_cosim.studies.page import answer, cost_s
+    from automotive_cosim.studies.tables import excluded, parts, policies
+    from automotive_cosim.studies.warnings import warnings
 
     count, errors = len(study.decisions), study.errors
     kept_out = {f"{what}: {reason}": number for (what, reason), number in sorted(study.excluded.items())}
     if as_json:
-        told = {"drives": len(study.rows), "decisions": count, "excluded": kept_out, "errors": len(errors)}
-        typer.echo(json.dumps(told | {"seconds_a_decision": cost_s(study), "out": str(study.folder)}))
+        told: Json = {"answer": answer(study), "warnings": warnings(study)}
+        told |= {"drives": len(study.rows), "decisions": count, "excluded": kept_out, "errors": len(errors)}
+        told |= {"seconds_a_decision": cost_s(study), "out": str(study.folder)}
+        typer.echo(json.dumps(told, ensure_ascii=False))
     else:
-        for table in (policies(study), excluded(study)):
+        for table in (policies(study), parts(study), excluded(study)):
             if table.rows:
                 console.print(table.markdown(), soft_wrap=True)
         for warning in warnings(study):
             console.print(warning, soft_wrap=True)
+        console.print(answer(study), soft_wrap=True)
         console.print(f"{counted(count, 'decision')} counted; report written to {page}", soft_wrap=True)
     if errors:
         first = errors[0]

@@ -17,6 +17,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.scenarios import Scenario, Trip
+from automotive_cosim.scenarios.incidents import AnyIncident
+from automotive_cosim.scenarios.wording import incident_in
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.studies.policies import AGENT, parse_policy
@@ -94,6 +96,11 @@ class StudyPlan:
     close: str = ""
     """An edge that is closed at the first decision of a drive, whichever route the ego takes; ``ahead`` is one
     on its route where the two routes differ. Empty closes none."""
+    incidents: tuple[str, ...] = ()
+    """Incidents staged in every future besides the scenario's own, as ``scenarios.wording`` reads them; their times
+    count from the end of the warm-up."""
+    via: Literal["stops", "route"] = "stops"
+    """What the edges in a trip's ``via`` are: stops that every route passes, or the way that it sets out on."""
     redraw: bool = False
     """Whether every seed is a different day of the demand; see ``redraws_trips`` of a scenario."""
     emissions: bool = False
@@ -143,6 +150,8 @@ class StudyPlan:
             edges = network_of(scenario).edges
             if self.close not in edges:
                 raise UnknownNameError("edge for cars", self.close, edges)
+        for text in self.incidents:
+            check_incident(text, "--incident", scenario)
         for name in self.trips:
             scenario.trip(name)
 
@@ -158,7 +167,8 @@ class StudyPlan:
         sumo = replace(sumo, redraws_trips=self.redraw or sumo.redraws_trips)
         sumo = replace(sumo, scale=sumo.scale if self.scale is None else self.scale)
         sumo = replace(sumo, warm_up_s=sumo.warm_up_s if self.warm_up_s is None else self.warm_up_s)
-        return replace(scenario, sumo=sumo)
+        staged = tuple(incident_in(text, "--incident") for text in self.incidents)
+        return replace(scenario, sumo=sumo, incidents=(*scenario.incidents, *staged))
 
     @property
     def agents(self) -> tuple[str, ...]:
@@ -251,6 +261,22 @@ class StudyJob:
 def _opened(name: str, from_place: str, to_place: str) -> Scenario:
     """Cached, because every drive needs it and a foreign network takes a second to read."""
     return open_scenario(name, from_place=from_place, to_place=to_place)
+
+
+def check_incident(text: str, place: str, scenario: Scenario) -> AnyIncident:
+    """The incident that a line describes, on edges that the network has.
+
+    Raises:
+        UserError: it is none, or an edge is missing.
+    """
+    incident = incident_in(text, place)
+    edges = network_of(scenario).edges
+    for name in ("edge", "edges", "from_edge", "to_edge"):
+        value = getattr(incident, name, ())
+        for edge in (value,) if isinstance(value, str) else value:
+            if edge not in edges:
+                raise UnknownNameError(f"edge for cars in {place}", edge, edges)
+    return incident
 
 
 def named(agent: str) -> tuple[str, str]:

@@ -29,7 +29,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.accounts import Pulse, Settled
+from automotive_cosim.traffic.accounts import Account, Pulse, Settled
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.chance import Fresh, Trial
 from automotive_cosim.traffic.divert import Edges
@@ -218,6 +218,11 @@ class RemoteTraffic:
         """The other vehicles on the road or due, and the state of the traffic, in a watched simulation."""
         seen: tuple[tuple[str, ...], Pulse] = self._process.call("others")
         return seen
+
+    def account(self) -> Account:
+        """Figures of the ego's drive so far, in a watched simulation."""
+        account: Account = self._process.call("account")
+        return account
 
     def renew(self, fresh: Fresh, seed: int) -> None:
         """Gives everything from here on other random numbers; the same seed gives the same ones."""

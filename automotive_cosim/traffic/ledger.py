@@ -102,6 +102,7 @@ class Ledger:
             before.co2_g + vehicle.getCO2Emission(EGO) * step_s / 1000,
             before.fuel_g + vehicle.getFuelConsumption(EGO) * step_s / 1000,
             before.energy_wh + vehicle.getElectricityConsumption(EGO) * step_s,
+            vehicle.getTimeLoss(EGO),
         )
         self._ego_is_halted = halted
         if self._track is not None:

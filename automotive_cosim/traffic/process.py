@@ -23,7 +23,7 @@ from typing import Any
 
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, TrafficError
-from automotive_cosim.traffic.accounts import Pulse, Settled
+from automotive_cosim.traffic.accounts import Account, Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
@@ -184,6 +184,11 @@ class Server:
         """The other vehicles, and the state of the traffic."""
         assert self._ledger is not None
         return self._ledger.others(), self._ledger.pulse()
+
+    def do_account(self) -> Account:
+        """Figures of the ego's drive so far."""
+        assert self._ledger is not None
+        return self._ledger.account()
 
     def do_settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> tuple[Packed, Settled]:
         """Runs until everything has ended; returns the ego's last state and the outcome."""

@@ -177,7 +177,10 @@ class World:
         self._has_incidents = self._has_incidents or bool(plan.incidents)
         if self._situations.take_changes():
             sensor.refresh()
-        pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router)
+        stops = plan.trip.via if plan.keeps_stops else ()
+        if stops:
+            self._sumo.vehicle.setVia(EGO, stops)
+        pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router, stops)
         road = EgoRoad(self, self._sumo, sensor, pedals, round_)
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
 
