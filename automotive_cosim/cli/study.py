@@ -29,13 +29,16 @@ from automotive_cosim.errors import InfrastructureError, UserError
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
+    from automotive_cosim.studies.congestion.plan import CongestionPlan
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import Study
     from automotive_cosim.studies.rows import DriveRow
 
 VIA = "What a trip's via edges are: stops, which every route passes, or route, which other routes may leave."
 
-app = typer.Typer(help="Studies: how much rerouting gains in identical traffic.", no_args_is_help=True)
+app = typer.Typer(
+    help="Studies: how much rerouting gains, and what a measure does to congestion.", no_args_is_help=True
+)
 
 
 @app.command()
@@ -338,13 +341,135 @@ def suite(
 
 
 @app.command()
+def congestion(
+    scenario: Annotated[
+        str, typer.Option(help="A scenario's name or folder, or any .sumocfg or .net.xml.")
+    ] = "paris_centre",
+    measure: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A measure to compare with none: an incident with the fields of scenario.toml (as 'closure "
+            "edge=c2c3'), 'advice share=0.5 compliance=0.8 age_s=300' or 'signals control=static'; may be given "
+            "several times.",
+            show_default="none",
+        ),
+    ] = None,
+    seeds: Annotated[
+        str, typer.Option(help="Seeds of the traffic, as in 0-9; at least 10 for an interval, 30 to publish.")
+    ] = "0-9",
+    minutes: Annotated[float, typer.Option(help="How long to measure after the warm-up.")] = 60.0,
+    demand: Annotated[
+        str,
+        typer.Option(help="Factors on the demand in periods of equal length, as in 0.6,1,0.6 for a peak."),
+    ] = "1",
+    incident: Annotated[
+        list[str] | None,
+        typer.Option(help="An incident with and without the measures; may be repeated.", show_default="none"),
+    ] = None,
+    share: Annotated[
+        float | None,
+        typer.Option(help="Share of the cars with SUMO's rerouting device.", show_default="scenario's"),
+    ] = None,
+    corridor: Annotated[
+        str, typer.Option(help="Trip along which the time-space diagrams go.", show_default="the first")
+    ] = "",
+    emissions: Annotated[
+        bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
+    ] = False,
+    redraw: Annotated[
+        bool, typer.Option("--redraw", help="Redraw the trips of the demand for every seed, as on another day.")
+    ] = False,
+    scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
+    warm_up: Annotated[
+        float | None, typer.Option(help="Seconds of traffic before the measure.", show_default="scenario's")
+    ] = None,
+    step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
+    workers: Workers = None,
+    executor: ExecutorName = "processes",
+    ray_address: RayAddress = None,
+    ray_send: RaySend = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
+        ),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Measure the delay of a whole network before and after a measure, in copies of the same traffic.
+
+    Rerun the command to resume a stopped study.
+    """
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.studies.congestion.drive import run_congestion
+    from automotive_cosim.studies.congestion.page import answer, warnings, write_congestion
+    from automotive_cosim.studies.congestion.plan import CongestionPlan
+    from automotive_cosim.studies.congestion.results import read_congestion
+    from automotive_cosim.studies.congestion.rows import CongestionRow
+    from automotive_cosim.studies.congestion.tables import whole
+
+    plan = CongestionPlan(
+        scenario,
+        measures=tuple(measure or ()),
+        seeds=tuple(seeds_in(seeds)),
+        minutes=minutes,
+        demand=tuple(_numbers("demand", demand)),
+        incidents=tuple(incident or ()),
+        share=share,
+        corridor=corridor,
+        step_s=step,
+        scale=scale,
+        warm_up_s=warm_up,
+        redraw=redraw,
+        emissions=emissions,
+    )
+    plan.check()
+    tell_notes([plan.opened])
+    folder = out or _folder(plan)
+    where = executor_of(executor, workers, ray_address, ray_send)
+    console = Console(stderr=as_json, highlight=False)
+
+    def said(progress: Progress[CongestionRow]) -> str:
+        errors = f"{counted(progress.errors, 'error')}" if progress.errors else ""
+        return f"{errors}{time_left(progress)}"
+
+    with where, ProgressView(console, "seeds", said) as view:
+        try:
+            run_congestion(plan, folder, executor=where, tell=view.tell)
+        except KeyboardInterrupt:
+            typer.echo(f"finished seeds are in {folder}; rerun the command to resume", err=True)
+            raise
+    study = read_congestion(folder)
+    if len(study.errors) < len(study.rows):
+        page = write_congestion(folder)
+        if as_json:
+            told: Json = {"answer": answer(study), "warnings": warnings(study), "out": str(folder)}
+            told["measures"] = [
+                dict(zip(whole(study).columns, map(str, row), strict=True)) for row in whole(study).rows
+            ]
+            typer.echo(json.dumps(told, ensure_ascii=False))
+        else:
+            console.print(whole(study).markdown(), soft_wrap=True)
+            for warning in warnings(study):
+                console.print(warning, soft_wrap=True)
+            console.print(answer(study), soft_wrap=True)
+            console.print(f"report written to {page}", soft_wrap=True)
+    if study.errors:
+        first = study.errors[0]
+        raise InfrastructureError(
+            f"{len(study.errors)} of {counted(len(study.rows), 'seed')} ended in an error, the first one "
+            f"{first.id}: {first.error_kind}: {first.error}; rerun the command to retry them"
+        )
+
+
+@app.command()
 @reads_results
 def report(folder: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)]) -> None:
-    """Write report.html, choices.csv, tables and plots into a study's folder."""
-    from automotive_cosim.studies.page import write_study
+    """Write report.html, tables, plots and data into a study's folder."""
+    from automotive_cosim.studies.pages import write_page
 
-    page = write_study(folder)
-    typer.echo(f"{page} written; data in {folder / 'choices.csv'}, tables in {folder / 'tables'}")
+    page = write_page(folder)
+    typer.echo(f"{page} written, with its data; tables in {folder / 'tables'}")
 
 
 def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
@@ -433,7 +558,7 @@ def _numbers(name: str, text: str) -> list[float]:
     return found
 
 
-def _folder(plan: StudyPlan) -> Path:
+def _folder(plan: StudyPlan | CongestionPlan) -> Path:
     from automotive_cosim.interface.trace import canonical
 
     return Path("runs") / f"study-{hashlib.sha256(canonical(plan.as_json())).hexdigest()[:8]}"

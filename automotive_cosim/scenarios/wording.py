@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any, get_args, get_origin, get_type_hints
 
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -14,20 +15,21 @@ KINDS: dict[str, type[Incident]] = {
 }
 
 
-def incident_in(text: str, place: str) -> AnyIncident:
-    """The incident that a line describes; lists are separated by commas.
+def read_line(text: str, kinds: Mapping[str, type[Any]], place: str) -> Any:
+    """What a line describes: a kind, and values of its fields; lists are separated by commas.
 
     Args:
         text: the line.
+        kinds: name of each kind -> the dataclass of its fields.
         place: what it was given as, for errors.
 
     Raises:
         UserError: there is no such kind or field, or a value is not valid.
     """
     kind, *pairs = text.split() or [""]
-    if kind not in KINDS:
-        raise UnknownNameError(f"kind of incident in {place}", kind, KINDS)
-    hints = get_type_hints(KINDS[kind])
+    if kind not in kinds:
+        raise UnknownNameError(f"kind in {place}", kind, kinds)
+    hints = get_type_hints(kinds[kind])
     table: dict[str, Any] = {"kind": kind}
     for pair in pairs:
         name, equals, value = pair.partition("=")
@@ -36,7 +38,7 @@ def incident_in(text: str, place: str) -> AnyIncident:
         if name not in hints:
             raise UnknownNameError(f"field of {kind} in {place}", name, hints)
         table[name] = _value(value, hints[name])
-    return checked(AnyIncident, table, lambda steps: (place, str(steps[-1]) if steps else ""))  # type: ignore[arg-type]
+    return checked(kinds[kind], table, lambda steps: (place, str(steps[-1]) if steps else ""))
 
 
 def _value(text: str, hint: Any) -> Any:

@@ -7,6 +7,7 @@ from statistics import fmean
 
 from automotive_cosim.agents import PROFILES
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS
 from automotive_cosim.studies.plan import named
 from automotive_cosim.studies.results import Study
@@ -92,7 +93,12 @@ def placebos(study: Study) -> Iterator[str]:
 
 def other_steps(study: Study) -> Iterator[str]:
     """The study drives at other steps than the scenario."""
-    own_s, driven_s = study.plan.opened.sumo.step_length_s, study.plan.step_s
+    yield from steps_told(study.plan.opened, study.plan.step_s)
+
+
+def steps_told(scenario: Scenario, driven_s: float) -> Iterator[str]:
+    """The same for any study of a scenario."""
+    own_s = scenario.sumo.step_length_s
     if own_s != driven_s:
         yield (
             f"Driven at steps of {driven_s:g} s, while the scenario's own are {own_s:g} s: figures differ from "

@@ -75,6 +75,8 @@ class Router:
             edge.edge_id: edge.length_m / edge.speed_mps + (SIGNAL_WAIT_S if edge.edge_id in signalled else 0.0)
             for edge in network.edges.values()
         }
+        self._heard_s: Mapping[str, float] = {}
+        """Travel times of the news that was listened to last."""
         self._changed: tuple[str, ...] = ()
         """Edges whose weight differs from free roads."""
         self._write(self._free_s)
@@ -86,6 +88,19 @@ class Router:
         routes = [self._route(start, goal, via) for goal in goals]
         _, found = min((route for route in routes if route[1]), key=lambda route: route[0], default=(0.0, ()))
         return found
+
+    def listen(self, age_s: float) -> None:
+        """Takes in news of that age, for the offers that follow."""
+        self._heard_s = self._traffic(age_s).edges_s
+        self._put(self._heard_s)
+
+    def offer(self, route: Sequence[str]) -> tuple[float, tuple[str, ...]]:
+        """What the quickest way to the end of a route saves, in seconds, and that way, by the news listened to."""
+        _, way = self._route(route[0], route[-1], ())
+        own_s, other_s = (
+            sum(self._heard_s.get(edge, self._free_s.get(edge, 0.0)) for edge in each) for each in (route, way)
+        )
+        return own_s - other_s, way
 
     def is_quicker(self, way: Sequence[str], other: Sequence[str], driven_m: float) -> bool:
         """Whether one route is quicker now than another from the same edge, of which ``driven_m`` are driven."""

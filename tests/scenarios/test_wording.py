@@ -6,7 +6,7 @@ import pytest
 
 from automotive_cosim.errors import CosimError
 from automotive_cosim.scenarios.incidents import Breakdown, Incident, Jam
-from automotive_cosim.scenarios.wording import incident_in
+from automotive_cosim.scenarios.wording import KINDS, read_line
 
 
 @pytest.mark.parametrize(
@@ -17,13 +17,13 @@ from automotive_cosim.scenarios.wording import incident_in
     ],
 )
 def test_a_line_is_the_table_it_stands_for(text: str, expected: Incident) -> None:
-    assert incident_in(text, "--incident") == expected
+    assert read_line(text, KINDS, "--incident") == expected
 
 
 @pytest.mark.parametrize(
     ("text", "told"),
     [
-        ("", "no kind of incident in --incident named ''"),
+        ("", "no kind in --incident named ''"),
         ("jm edges=a", "did you mean 'jam'?"),
         ("jam edges=a", "--incident lacks 'length_m'"),
         ("jam edges=a length_m=far", "length_m is 'far'; it must be a number above 0"),
@@ -34,6 +34,6 @@ def test_a_line_is_the_table_it_stands_for(text: str, expected: Incident) -> Non
 )
 def test_what_is_none_is_refused_in_a_line(text: str, told: str) -> None:
     with pytest.raises(CosimError) as refused:
-        incident_in(text, "--incident")
+        read_line(text, KINDS, "--incident")
     assert told in str(refused.value)
     assert "\n" not in str(refused.value)
