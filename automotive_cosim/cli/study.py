@@ -21,7 +21,7 @@ from automotive_cosim.cli.batches import (
     time_left,
     words,
 )
-from automotive_cosim.cli.options import AsJson, reads_results, whole_number
+from automotive_cosim.cli.options import AsJson, print_json, reads_results, whole_number
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
@@ -265,7 +265,10 @@ def reroute(
 def suite(
     scenarios: Annotated[
         str,
-        typer.Option(help="Names or folders of scenarios, .sumocfg or .net.xml, separated by commas."),
+        typer.Option(
+            help="Names or folders of scenarios, .sumocfg or .net.xml, separated by commas; shipped stands for all "
+            "shipped ones."
+        ),
     ] = "grid,paris_centre",
     departures: Annotated[str, typer.Option(help="When the ego departs, in seconds after the warm-up.")] = "0,300",
     seeds: Annotated[str, typer.Option(help="Seeds of the traffic.")] = "0-9",
@@ -312,7 +315,7 @@ def suite(
     }
     plans = [
         StudyPlan(name, least_delay_s=delay, per_drive=per_drive, warm_up_s=warm_up_s, **values)
-        for name in words("scenarios", scenarios)
+        for name in _scenarios(scenarios)
         for warm_up_s in (_numbers("warm-ups", warm_ups) if warm_ups is not None else (None,))
     ]
     for plan in plans:
@@ -464,6 +467,32 @@ def congestion(
 
 @app.command()
 @reads_results
+def compare(
+    first: Annotated[Path, typer.Argument(help="Results folder of a study, or of a suite.", show_default=False)],
+    second: Annotated[Path, typer.Argument(help="The same of another run.", show_default=False)],
+    as_json: AsJson = False,
+) -> None:
+    """Compare two runs of one study or suite, as of two versions; exit code 1 if their rows differ."""
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.studies.versions import answer, compared, pairs
+
+    found = pairs(first, second)
+    table = compared(found)
+    changed = {pair.name: list(pair.changed) for pair in found if pair.changed}
+    if as_json:
+        rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
+        print_json({"same": all(pair.is_same for pair in found), "changed": changed, "figures": rows})
+    else:
+        console = Console(highlight=False)
+        console.print(answer(found), soft_wrap=True)
+        for name, what in changed.items():
+            console.print(f"{name} was run with another {'; '.join(what)}", soft_wrap=True)
+        console.print(table.markdown(), soft_wrap=True)
+    raise typer.Exit(not all(pair.is_same for pair in found))
+
+
+@app.command()
+@reads_results
 def report(folder: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)]) -> None:
     """Write report.html, tables, plots and data into a study's folder."""
     from automotive_cosim.studies.pages import write_page
@@ -541,6 +570,13 @@ def _departures(scenario: str, text: str) -> tuple[float, ...]:
         else:
             raise UserError(f"--departures has {word!r}; give seconds such as 300, or clock times such as 8:20")
     return tuple(found)
+
+
+def _scenarios(text: str) -> list[str]:
+    """Names of scenarios, with all shipped ones in the place of ``shipped``."""
+    from automotive_cosim.scenarios import shipped
+
+    return [name for word in words("scenarios", text) for name in (shipped() if word == "shipped" else (word,))]
 
 
 def _replicates(text: str) -> int | str:

@@ -24,4 +24,5 @@ tables, effects, context, charts, page    the report
 warnings   what to read before its figures
 congestion the delay of a network before and after a measure
 pages      the report of either
+versions   compares two runs of one study
 """

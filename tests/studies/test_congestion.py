@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim.cli.study import app
-from automotive_cosim.errors import CosimError
+from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.studies.congestion.drive import run_congestion
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows, read_queues
 from automotive_cosim.studies.congestion.page import answer, warnings
@@ -26,6 +28,7 @@ from automotive_cosim.studies.congestion.results import (
 )
 from automotive_cosim.studies.congestion.rows import CongestionRow, Flow, FlowCell, FlowState, Outcome
 from automotive_cosim.studies.congestion.tables import emissions, whole, worst
+from automotive_cosim.studies.versions import pairs
 
 from .conftest import Draw
 
@@ -226,6 +229,27 @@ def test_who_is_advised_leaves_the_roadworks(two_ways: Draw, tmp_path: Path) -> 
     assert advised < 0.6 * without
     assert deaf == without
     assert answer(found).startswith("“advice share=1”, of 2 measures the one that changes most, saves")
+
+
+def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> None:
+    again = shutil.copytree(driven, tmp_path / "suite" / "again")
+    told = CliRunner().invoke(app, ["compare", str(driven), str(again), "--json"])
+    assert told.exit_code == 0
+    assert json.loads(told.output)["same"]
+    lines = again / "episodes.jsonl"
+    row = json.loads(lines.read_text(encoding="utf-8"))
+    row["outcomes"][1]["cells"][0]["flow"]["lost_s"] += 3600.0
+    lines.write_text(json.dumps(row) + "\n", encoding="utf-8")
+    told = CliRunner().invoke(app, ["compare", str(driven), str(again)])
+    assert told.exit_code == 1
+    assert "1 of 1 row differ" in told.output
+    assert "| delay, roadworks edge=main limit_kmh=9 |" in told.output
+    assert "+3.00 |" in told.output, "an hour lost in twenty minutes"
+    shutil.copytree(driven, tmp_path / "other" / "again")
+    (pair,) = pairs(tmp_path / "suite", tmp_path / "other")
+    assert (pair.name, pair.rows) == ("again", (1, 0, 0))
+    with pytest.raises(UserError, match="no study in common"):
+        pairs(tmp_path, tmp_path / "other")
 
 
 def test_the_command_writes_the_report(driven: Path) -> None:
