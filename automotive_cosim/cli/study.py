@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -28,8 +29,11 @@ from automotive_cosim.errors import InfrastructureError, UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
+    from automotive_cosim.report.tables import Table
     from automotive_cosim.run.batch import Progress
+    from automotive_cosim.run.row import JobRow
     from automotive_cosim.studies.congestion.plan import CongestionPlan
+    from automotive_cosim.studies.days import DaysPlan
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import Study
     from automotive_cosim.studies.rows import DriveRow
@@ -444,25 +448,75 @@ def congestion(
             raise
     study = read_congestion(folder)
     if len(study.errors) < len(study.rows):
-        page = write_congestion(folder)
-        if as_json:
-            told: Json = {"answer": answer(study), "warnings": warnings(study), "out": str(folder)}
-            told["measures"] = [
-                dict(zip(whole(study).columns, map(str, row), strict=True)) for row in whole(study).rows
-            ]
-            typer.echo(json.dumps(told, ensure_ascii=False))
-        else:
-            console.print(whole(study).markdown(), soft_wrap=True)
-            for warning in warnings(study):
-                console.print(warning, soft_wrap=True)
-            console.print(answer(study), soft_wrap=True)
-            console.print(f"report written to {page}", soft_wrap=True)
-    if study.errors:
-        first = study.errors[0]
-        raise InfrastructureError(
-            f"{len(study.errors)} of {counted(len(study.rows), 'seed')} ended in an error, the first one "
-            f"{first.id}: {first.error_kind}: {first.error}; rerun the command to retry them"
-        )
+        _show(console, write_congestion(folder), answer(study), warnings(study), [whole(study)], as_json=as_json)
+    _raise_errors(study.errors, len(study.rows))
+
+
+@app.command()
+def days(
+    scenario: Annotated[
+        str, typer.Option(help="A scenario's name or folder, or any .sumocfg with its demand in route files.")
+    ] = "paris_centre",
+    shares: Annotated[str, typer.Option(help="Shares of the drivers who are advised.")] = "0,0.25,0.5,0.75,1",
+    compliance: Annotated[float, typer.Option(help="Probability that a driver follows a day's advice.")] = 0.5,
+    memory: Annotated[float, typer.Option(help="Weight of all earlier days in what is remembered.")] = 0.7,
+    lag: Annotated[int, typer.Option(help="Age of the news in days.", metavar="N", parser=whole_number(0, 30))] = 0,
+    most: Annotated[
+        int, typer.Option("--days", help="Most days to drive.", metavar="N", parser=whole_number(2, 365))
+    ] = 30,
+    minutes: Annotated[float, typer.Option(help="How long after the warm-up departures count.")] = 60.0,
+    seeds: Annotated[str, typer.Option(help="Seeds of the traffic; at least 10 for an interval.")] = "0-2",
+    scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
+    warm_up: Annotated[
+        float | None, typer.Option(help="Seconds of traffic before it counts.", show_default="scenario's")
+    ] = None,
+    workers: Workers = None,
+    executor: ExecutorName = "processes",
+    ray_address: RayAddress = None,
+    ray_send: RaySend = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
+        ),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Advise a share of the drivers day after day until traffic settles, beside the user equilibrium.
+
+    Rerun the command to resume a stopped study.
+    """
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.studies.days import DaysPlan, DaysRow, read_days, run_days
+    from automotive_cosim.studies.days_page import answer, tables, warnings, write_days
+
+    plan = DaysPlan(
+        scenario,
+        shares=tuple(_numbers("shares", shares)),
+        compliance=compliance,
+        memory=memory,
+        lag=lag,
+        days=most,
+        minutes=minutes,
+        seeds=tuple(seeds_in(seeds)),
+        scale=scale,
+        warm_up_s=warm_up,
+    )
+    plan.check()
+    folder = out or _folder(plan)
+    where = executor_of(executor, workers, ray_address, ray_send)
+    console = Console(stderr=as_json, highlight=False)
+
+    def said(progress: Progress[DaysRow]) -> str:
+        errors = counted(progress.errors, "error") if progress.errors else ""
+        return f"{errors}{time_left(progress)}"
+
+    with where, ProgressView(console, "shares and seeds", said) as view:
+        run_days(plan, folder, executor=where, tell=view.tell)
+    study = read_days(folder)
+    if len(study.errors) < len(study.rows):
+        _show(console, write_days(folder), answer(study), warnings(study), tables(study)[:1], as_json=as_json)
+    _raise_errors(study.errors, len(study.rows))
 
 
 @app.command()
@@ -499,6 +553,37 @@ def report(folder: Annotated[Path, typer.Argument(help="Results folder of a stud
 
     page = write_page(folder)
     typer.echo(f"{page} written, with its data; tables in {folder / 'tables'}")
+
+
+def _show(
+    console: Console,
+    page: Path,
+    answer: str,
+    warnings: Sequence[str],
+    tables: Sequence[Table],
+    *,
+    as_json: bool,
+) -> None:
+    """Prints the result of a study of a whole network."""
+    if as_json:
+        told: Json = {"answer": answer, "warnings": list(warnings), "out": str(page.parent)}
+        for table in tables:
+            told[table.name] = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
+        print_json(told)
+        return
+    for table in tables:
+        console.print(table.markdown(), soft_wrap=True)
+    for text in (*warnings, answer, f"report written to {page}"):
+        console.print(text, soft_wrap=True)
+
+
+def _raise_errors(errors: Sequence[JobRow], count: int) -> None:
+    if errors:
+        first = errors[0]
+        raise InfrastructureError(
+            f"{len(errors)} of {counted(count, 'run')} ended in an error, the first one {first.id}: "
+            f"{first.error_kind}: {first.error}; rerun the command to retry them"
+        )
 
 
 def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
@@ -594,7 +679,7 @@ def _numbers(name: str, text: str) -> list[float]:
     return found
 
 
-def _folder(plan: StudyPlan | CongestionPlan) -> Path:
+def _folder(plan: StudyPlan | CongestionPlan | DaysPlan) -> Path:
     from automotive_cosim.interface.trace import canonical
 
     return Path("runs") / f"study-{hashlib.sha256(canonical(plan.as_json())).hexdigest()[:8]}"

@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from automotive_cosim.run.store import read_manifest
 from automotive_cosim.studies.congestion.page import write_congestion
-from automotive_cosim.studies.congestion.plan import KIND
+from automotive_cosim.studies.congestion.plan import KIND as CONGESTION
+from automotive_cosim.studies.days import KIND as DAYS
+from automotive_cosim.studies.days_page import write_days
 from automotive_cosim.studies.page import write_study
+
+WRITERS: dict[object, Callable[[Path], Path]] = {CONGESTION: write_congestion, DAYS: write_days}
+"""By kind of study; all others are studies of rerouting."""
 
 
 def write_page(folder: Path) -> Path:
@@ -17,4 +23,4 @@ def write_page(folder: Path) -> Path:
         UserError: the folder is not a study's, has no results, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
-    return write_congestion(folder) if read_manifest(folder)["plan"].get("study") == KIND else write_study(folder)
+    return WRITERS.get(read_manifest(folder)["plan"].get("study"), write_study)(folder)

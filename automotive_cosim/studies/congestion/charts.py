@@ -157,7 +157,7 @@ def _time_space(study: CongestionStudy, network: Network, number: int) -> Drawin
 
     def draw(axes: Axes) -> None:
         mesh = axes.pcolormesh(
-            minutes / 60, ends_m / 1000, speeds, cmap="RdYlGn", vmin=0, vmax=fastest, rasterized=True
+            minutes / 60, ends_m / 1000, speeds, cmap="RdYlBu", vmin=0, vmax=fastest, rasterized=True
         )
         bar = axes.figure.colorbar(mesh, ax=axes, pad=0.02)
         bar.set_label("mean speed, km/h")

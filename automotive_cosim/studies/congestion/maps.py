@@ -158,7 +158,7 @@ def _name_streets(axes: Axes, network: Network, per_km: dict[str, float]) -> Non
         axes.annotate(
             street,
             (x, y),
-            xytext=(0, 8),
+            xytext=(-9 * math.sin(math.radians(angle)), 9 * math.cos(math.radians(angle))),
             textcoords="offset points",
             fontsize=7.5,
             rotation=angle,

@@ -6,10 +6,6 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.report.charts import INK
-from automotive_cosim.report.templates import render
-from automotive_cosim.run.record import write_whole
-from automotive_cosim.run.store import cannot_write
 from automotive_cosim.scenarios.incidents import Jam
 from automotive_cosim.studies.congestion.charts import charts
 from automotive_cosim.studies.congestion.plan import measure_in, name_of
@@ -26,6 +22,7 @@ from automotive_cosim.studies.congestion.results import (
 )
 from automotive_cosim.studies.congestion.tables import mean, tables
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
+from automotive_cosim.studies.shown import Shown, write_shown
 from automotive_cosim.studies.warnings import steps_told
 
 
@@ -37,31 +34,13 @@ def write_congestion(folder: Path) -> Path:
         SetupError: the extra ``report`` is not installed.
     """
     study = read_congestion(folder)
-    made = tables(study)
-    plots = charts(study)
-    try:
-        for name in ("tables", "plots"):
-            (folder / name).mkdir(exist_ok=True)
-        for table in made:
-            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
-                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
-        for name, (_, wide, _) in plots.items():
-            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
-        page = folder / "report.html"
-        text = render(
-            "studies/congestion.html",
-            study=study,
-            answer=answer(study),
-            warnings=warnings(study),
-            tables=made,
-            plots=plots,
-            plan=study.plan.as_json(),
-            starts=study.manifest["starts"],
-        )
-        write_whole(page, text)
-    except OSError as error:
-        raise cannot_write(folder, error) from error
-    return page
+    plan = study.plan
+    about = (
+        f"{counted(len(study.rows), 'seed')}, {plan.minutes:g} minutes each; every measure begins in a copy of "
+        "the same traffic"
+    )
+    shown = Shown("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
+    return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
 
 
 def answer(study: CongestionStudy) -> str:
