@@ -10,6 +10,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cache
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -124,9 +125,8 @@ def _loaded(file: str, context: int, threads: int) -> Any:
     Raises:
         ModelError: the file is no model that it can run.
     """
-    import xllamacpp
-
-    chosen = xllamacpp.CommonParams()
+    runtime: Any = import_module("xllamacpp")
+    chosen = runtime.CommonParams()
     chosen.model.path = file
     chosen.n_ctx = context
     chosen.n_parallel = 1
@@ -134,6 +134,6 @@ def _loaded(file: str, context: int, threads: int) -> Any:
     chosen.warmup = False
     chosen.verbosity = -1
     try:
-        return xllamacpp.Server(chosen)
+        return runtime.Server(chosen)
     except (RuntimeError, ValueError, OSError) as error:
         raise ModelError(f"{file} cannot be run as a model: {error}") from None
