@@ -53,7 +53,7 @@ def setup(sphinx: Sphinx) -> None:
     _catalogue()
     _gallery()
     _commands()
-    _write("functions.md", "```text", _printed("functions"), "```")
+    _write("functions.md", "```text", _printed("show", "functions"), "```")
 
 
 def _write(page: str, *lines: str) -> None:

@@ -29,8 +29,10 @@ def compare(
     as_json: AsJson = False,
     tasks_from: TasksFrom = None,
 ) -> None:
-    """Compare two evaluations on the same instances; exit code 1 if success fell by more than the threshold, or
-    something that was planned was not run."""
+    """Compare two evaluations on the same instances.
+
+    Exit code 1 if success fell by more than the threshold, or something that was planned was not run.
+    """
     from automotive_cosim.report import regression
     from automotive_cosim.run.record import write_whole
 

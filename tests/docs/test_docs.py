@@ -127,7 +127,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
         (*SMALL, "--out", "runs/last"),
         "takes ten seconds in its own scenario; tests/cli/test_run.py runs it",
     ),
-    (r"validate", ("--gates", "start", "--seeds", "1"), "all gates take minutes; tests/proof tries them"),
+    (r"tasks validate", ("--gates", "start", "--seeds", "0"), "all gates take minutes; tests/proof tries them"),
     (r"drive [a-z]", HELP, "takes a minute; tests/drives drives"),
     (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_drives.py reports on some"),
     (r"(serve|mcp)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
@@ -200,7 +200,7 @@ def ran(reader, place):
         assert reader("eval", *plan).code == 0
         for name in ("first", "before", "after"):
             shutil.copytree(place / "runs/mine", place / "runs" / name)
-        assert reader("bundle", "runs/mine", "--out", "mine.bundle").code == 0
+        assert reader("publish", "bundle", "runs/mine", "--out", "mine.bundle").code == 0
         (place / "bundles").mkdir()
         shutil.copyfile(place / "mine.bundle", place / "bundles/mine.bundle")
     return place
@@ -220,7 +220,7 @@ def test_every_command_runs(line, reader, place, request):
         line = line.replace(" ID", f" {episode}")
     if added != HELP and "hamlet" in line and "import" not in line and not Path("hamlet").exists():
         assert reader("scenarios", "import", "docs/examples/hamlet.osm").code == 0
-    if line.startswith("automotive-cosim bundle"):
+    if line.startswith("automotive-cosim publish bundle"):
         Path("mine.bundle").unlink(missing_ok=True)
     words = shlex.split(line.split(" | ")[0].split(" > ")[0], comments=True)[1:]
     if "--tasks-from" in words:  # the catalogue of this process is complete

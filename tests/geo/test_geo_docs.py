@@ -43,7 +43,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_the_example_shows_in_the_command(folder: Path) -> None:
-    arguments = _block("console").removeprefix("$ automotive-cosim context ").split()
+    arguments = _block("console").removeprefix("$ automotive-cosim show context ").split()
     result = CliRunner().invoke(APP, arguments, catch_exceptions=False)
     assert set(_block("text").splitlines()) <= set(result.stdout.splitlines())
 
@@ -59,7 +59,7 @@ def test_the_example_shows_through_geo(folder: Path, drive: Callable[..., Drivin
 def test_the_refusal_is_the_one_shown(folder: Path) -> None:
     path = folder / "my_rules" / "FR-tours.toml"
     path.write_text(_block("toml").replace('topic = "limit"', 'topic = "limt"'), encoding="utf-8")
-    arguments = _block("console").removeprefix("$ automotive-cosim context ").split()
+    arguments = _block("console").removeprefix("$ automotive-cosim show context ").split()
     with pytest.raises(GeoDataError) as error:
         CliRunner().invoke(APP, arguments, catch_exceptions=False)
     assert f"error: {error.value}\n" == _block("text", 1)
@@ -86,7 +86,7 @@ def test_the_basics_of_each_status_are_counted() -> None:
     assert tuple(map(int, told)) == tuple(counts[status] for status in ("secondary", "knowledge", "uncertain"))
 
 
-@pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim context (.*)$", DOC, re.MULTILINE))
+@pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim show context (.*)$", DOC, re.MULTILINE))
 def test_the_commands_run(line: str) -> None:
     assert CliRunner().invoke(APP, line.split(), catch_exceptions=False).exit_code == 0
 
