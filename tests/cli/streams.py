@@ -61,9 +61,8 @@ OUTPUTS: dict[str, Callable[[], None]] = {
 def _child(words: list[str], output: str, told: IO[bytes]) -> None:
     os.dup2(told.fileno(), 2)
     sys.stderr = io.TextIOWrapper(io.FileIO(2, "w", closefd=False), write_through=True)
+    os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
     OUTPUTS[output]()
-    stdin = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(stdin, 0)
     sys.argv = ["automotive-cosim", *words]
     signal.alarm(MOST_S)
     code = 1
