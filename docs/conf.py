@@ -5,6 +5,7 @@ The pages of ``_made/`` come from the package at each build: what a command prin
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
 from collections.abc import Iterable, Sequence
@@ -16,7 +17,7 @@ from typer.cli import get_docs_for_click
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from automotive_cosim import __version__, scenarios
+from automotive_cosim import __version__, scenarios, schemas
 from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
@@ -33,7 +34,16 @@ author = "The automotive_cosim authors"
 project_copyright = "The automotive_cosim authors, Apache-2.0"
 version = release = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-INCLUDED = ("functions", "readme", "spaces", "drive_families", "drive_kinds", "drive_wakes")
+INCLUDED = (
+    "functions",
+    "readme",
+    "spaces",
+    "drive_families",
+    "drive_kinds",
+    "drive_wakes",
+    "fields_plan",
+    "fields_scenario",
+)
 """Pages of ``_made/`` that are parts of others."""
 exclude_patterns = ["_site", "examples", *(f"_made/{name}.md" for name in INCLUDED)]
 myst_heading_anchors = 4
@@ -60,6 +70,8 @@ def setup(sphinx: Sphinx) -> None:
     _gallery()
     _commands()
     _drives()
+    for name in ("plan", "scenario"):
+        _fields(name)
     _write("functions.md", "```text", _printed("show", "functions"), "```")
 
 
@@ -155,6 +167,22 @@ def _drives() -> None:
     )
     _table("drive_kinds.md", heads, kinds)
     _table("drive_wakes.md", ("change", "when"), [(each.name, each.about) for each in WAKES])
+
+
+def _fields(name: str) -> None:
+    """The fields of a file format, a table for each of its parts, from its JSON Schema."""
+    schema = json.loads(schemas.text(name))
+    page: list[str] = []
+    for about, part in (("", schema), *((each["description"], each) for each in schema["$defs"].values())):
+        fields = {field: each for field, each in part["properties"].items() if field != "kind"}
+        if "kind" in part["properties"]:
+            about = f"**`kind = \"{part['properties']['kind']['const']}\"`** {about}"
+        page += [about, "", "| field | default | meaning |", "|---|---|---|"] if fields else [about]
+        for field, each in fields.items():
+            default = json.dumps(each["default"]) if each.get("default") not in (None, {}, "") else ""
+            page.append(f"| `{field}` | {f'`{default}`' if default else ''} | {each.get('description', '')} |")
+        page.append("")
+    _write(f"fields_{name}.md", *page)
 
 
 def _table(page: str, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
