@@ -176,7 +176,7 @@ def _fields(name: str) -> None:
     for about, part in (("", schema), *((each["description"], each) for each in schema["$defs"].values())):
         fields = {field: each for field, each in part["properties"].items() if field != "kind"}
         if "kind" in part["properties"]:
-            about = f"**`kind = \"{part['properties']['kind']['const']}\"`** {about}"
+            about = f'**`kind = "{part["properties"]["kind"]["const"]}"`** {about}'
         page += [about, "", "| field | default | meaning |", "|---|---|---|"] if fields else [about]
         for field, each in fields.items():
             default = json.dumps(each["default"]) if each.get("default") not in (None, {}, "") else ""

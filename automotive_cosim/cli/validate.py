@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.batches import seeds_in, words
-from automotive_cosim.cli.options import AsJson, PartOf, Seeds, SuiteName, TaskNames, TasksFrom, whole_number
+from automotive_cosim.cli.options import AsJson, PartOf, SeedList, SuiteName, TaskNames, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -33,7 +33,7 @@ def validate(
             show_default=False,
         ),
     ] = None,
-    seeds: Seeds = "0-2",
+    seeds: SeedList = "0-2",
     gates: Annotated[
         str, typer.Option(help="Gates to try, separated by commas, by their names in the table; or `all`.")
     ] = "all",

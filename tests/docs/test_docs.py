@@ -240,7 +240,7 @@ def test_every_command_runs(line, reader, place, request):
 )
 def test_every_python_block_runs(page, reader, on_path, request):
     names: dict[str, object] = {"__name__": "__main__", "ask": None}
-    if page.stem == "evaluation":
+    if page == TOP / "docs/evaluation.md":
         request.getfixturevalue("ran")
     try:
         for language, text in blocks(page):
@@ -270,7 +270,7 @@ def test_pages_count_the_tasks_as_they_are():
         "docs/report.md": f"{len(standard)} tasks in eight modules; {pairs} of them are pairs, so there are "
         f"{len(standard) + pairs} halves",
         "docs/comparison.md": f"{len(standard)} tasks, {pairs} of them pairs",
-        "docs/tasks.md": f"{len(hard)} tasks, {hard_pairs} of them pairs",
+        "docs/reference/tasks.md": f"{len(hard)} tasks, {hard_pairs} of them pairs",
     }
     for page, words in told.items():
         assert words in (TOP / page).read_text(encoding="utf-8")
@@ -290,6 +290,7 @@ def test_pages_count_the_tasks_as_they_are():
 def test_pages_count_the_episodes_as_they_are(cli, line, words):
     planned = re.search(r"runs +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
     assert planned is not None
-    text = (TOP / "docs/evaluation.md").read_text(encoding="utf-8")
+    pages = ("docs/evaluation.md", "docs/reference/evaluation.md")
+    text = "".join((TOP / page).read_text(encoding="utf-8") for page in pages)
     assert f"automotive-cosim eval {line}" in text
     assert words.format(planned[1]) in text

@@ -73,7 +73,7 @@ def test_the_rules_of_each_status_are_counted() -> None:
     verified, whole = counts["verified"], sum(counts.values())
     for page, words in (
         ("README.md", f"{verified} of {whole}"),
-        ("docs/evaluation.md", f"Of our {whole} legal rules {verified} are verified"),
+        ("docs/reference/evaluation.md", f"Of our {whole} legal rules {verified} are verified"),
     ):
         assert words in (Path(__file__).parents[2] / page).read_text(encoding="utf-8"), page
 
