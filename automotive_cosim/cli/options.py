@@ -115,7 +115,7 @@ Seed = Annotated[
         "--seed", help="Seed; the same seed gives the same trace.", metavar="N", parser=whole_number(0, MOST_SEED)
     ),
 ]
-SeedList = Annotated[str, typer.Option("--seeds", help="SeedList, as in 0-4 or 0,3,7.", metavar="LIST")]
+SeedList = Annotated[str, typer.Option("--seeds", help="Seeds, as in 0-4 or 0,3,7.", metavar="LIST")]
 AgentName = Annotated[
     str,
     typer.Option("--agent", help="Agent; `agents` lists them; package.module:Class is one of your own."),

@@ -1,4 +1,4 @@
-"""docs/geo.md says what is so: its examples are run."""
+"""docs/geo.md and its reference say what is so: their examples are run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Status
 from automotive_cosim.geo.situation import CONDITIONS
 
-DOC = (Path(__file__).parents[2] / "docs" / "geo.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[2] / "docs"
+DOC = "".join((DOCS / page).read_text(encoding="utf-8") for page in ("geo.md", "reference/geo.md"))
 BLOCKS = re.findall(r"```(\w+)\n(.*?)```", DOC, re.DOTALL)
 APP = typer.Typer()
 APP.command(context_settings=context.COMMAND_SETTINGS)(context.context)
