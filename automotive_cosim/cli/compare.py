@@ -47,5 +47,5 @@ def compare(
         print_json(regression.as_json(found, threshold / 100))
     else:
         typer.echo(summary, nl=False)
-    if any(each.outcome(threshold / 100) != "as good" for each in found):
+    if any(each.outcome(threshold / 100) != "unchanged" for each in found):
         raise typer.Exit(1)

@@ -195,13 +195,10 @@ def evaluate(
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
-    values |= {"suite": suite} if suite is not None else {}
-    values |= {"split": split} if split is not None else {}
+    single = {"suite": suite, "split": split, "repeats": repeats, "held_out": held_out, "everywhere": everywhere}
+    values |= {name: value for name, value in single.items() if value not in (None, False)}
     values |= values_of(conditions)
     values |= {"settings": {**values.get("settings", {}), "minutes": minutes}} if minutes is not None else {}
-    values |= {"repeats": repeats} if repeats is not None else {}
-    values |= {"held_out": True} if held_out else {}
-    values |= {"everywhere": True} if everywhere else {}
     values = with_preset(values, preset) if preset is not None else values
     budget = Budget(budget_tokens, budget_usd)
     plan = make_plan(values)
