@@ -25,7 +25,16 @@ from automotive_cosim.cli.batches import (
     words,
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
-from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, number, print_json, whole_number
+from automotive_cosim.cli.options import (
+    SUITE_HELP,
+    TASKS_HELP,
+    AsJson,
+    MinutesMost,
+    TasksFrom,
+    number,
+    print_json,
+    whole_number,
+)
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
@@ -59,14 +68,14 @@ def evaluate(
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas.",
+            help=TASKS_HELP,
             show_default="all",
         ),
     ] = None,
     suite: Annotated[
         str | None,
         typer.Option(
-            help="Suite that the tasks are chosen from: standard, hard or all. An id selects a task in any suite.",
+            help=SUITE_HELP,
             show_default="standard",
         ),
     ] = None,
@@ -94,7 +103,6 @@ def evaluate(
         bool, typer.Option("--everywhere", help="Also run tasks in scenarios that they do not list.")
     ] = False,
     seeds: Annotated[str | None, typer.Option(help="Seeds, as in 0-4 or 0,3,7.", show_default="0")] = None,
-    mode: NoMode = None,
     repeats: Annotated[
         int | None,
         typer.Option(
@@ -129,7 +137,7 @@ def evaluate(
     budget_usd: Annotated[
         float | None,
         typer.Option(
-            help="The same in dollars, at the prices in the models' names.",
+            help="Stop after this many US dollars, at the prices in the models' names.",
             metavar="X",
             parser=number(0.000001, 10**9),
             show_default=False,
@@ -157,20 +165,15 @@ def evaluate(
             show_default=False,
         ),
     ] = None,
-    minutes: Annotated[
-        float | None,
-        typer.Option(
-            help="End drives after this many simulated minutes.",
-            parser=number(0.1, 60),
-            metavar="X",
-            show_default=False,
-        ),
-    ] = None,
+    minutes: MinutesMost = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **conditions: str | None,
 ) -> None:
-    """Run agents over tasks, scenarios and seeds, or over drives. Rerun the command to resume."""
+    """Run agents over tasks, scenarios and seeds, or over drives.
+
+    Rerun the command to resume.
+    """
     from automotive_cosim.cli.console import Console
     from automotive_cosim.errors import UnknownNameError, UserError
     from automotive_cosim.report.answer import answer
@@ -193,13 +196,10 @@ def evaluate(
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
-    values |= {"suite": suite} if suite is not None else {}
-    values |= {"split": split} if split is not None else {}
+    single = {"suite": suite, "split": split, "repeats": repeats, "held_out": held_out, "everywhere": everywhere}
+    values |= {name: value for name, value in single.items() if value not in (None, False)}
     values |= values_of(conditions)
     values |= {"settings": {**values.get("settings", {}), "minutes": minutes}} if minutes is not None else {}
-    values |= {"repeats": repeats} if repeats is not None else {}
-    values |= {"held_out": True} if held_out else {}
-    values |= {"everywhere": True} if everywhere else {}
     values = with_preset(values, preset) if preset is not None else values
     budget = Budget(budget_tokens, budget_usd)
     plan = make_plan(values)

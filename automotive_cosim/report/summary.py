@@ -31,8 +31,8 @@ DIMENSIONS = {
 }
 RATES = (
     "Per cent of the planned episodes, with 95 % Wilson intervals at the effective number of episodes (tasks are "
-    "clusters), then successes/planned episodes. An episode that ended in an infrastructure error or was not run "
-    "is no success and is counted separately."
+    "clusters), then successes/planned episodes. Episodes that errored or were not run count as failures here; "
+    "their number is shown separately."
 )
 
 SuccessOf = Callable[[Any], bool | None]

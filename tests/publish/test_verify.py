@@ -331,14 +331,14 @@ def test_the_commands_tell_by_their_exit_code(packed, tmp_path):
 
     from automotive_cosim.cli.main import app
 
-    fine = CliRunner().invoke(app, ["verify", str(packed), "--replay", "1"])
+    fine = CliRunner().invoke(app, ["publish", "verify", str(packed), "--replay", "1"])
     assert fine.exit_code == 0, fine.output
     assert "1 drive replayed" in fine.output
     assert "this check cannot tell" in fine.output
     data = bytearray(packed.read_bytes())
     data[data.index(b"wall_seconds") + 16] ^= 1
     (tmp_path / "b.bundle").write_bytes(data)
-    bad = CliRunner().invoke(app, ["verify", str(tmp_path / "b.bundle"), "--replay", "0"])
+    bad = CliRunner().invoke(app, ["publish", "verify", str(tmp_path / "b.bundle"), "--replay", "0"])
     assert bad.exit_code == 1 or isinstance(bad.exception, UserError)
 
 

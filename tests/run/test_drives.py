@@ -341,7 +341,7 @@ def test_drives_are_graded_again_compared_bundled_verified_and_ranked(folder: Pa
     assert [each.differs for each in regrade(folder)] == [False, False]
     assert not [each.problem for each in regrade(folder) if each.problem]
     found = changes(folder, folder)
-    assert {(each.unit, each.outcome(0.0)) for each in found} == {("drives", "as good")}
+    assert {(each.unit, each.outcome(0.0)) for each in found} == {("drives", "unchanged")}
     (tmp_path / "bundles").mkdir()
     contents = write_bundle(folder, tmp_path / "bundles" / "drives.zip")
     assert contents.counts.judged == 2
