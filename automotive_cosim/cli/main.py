@@ -23,6 +23,7 @@ from automotive_cosim.cli import (
     doctor,
     drive,
     evaluate,
+    export,
     functions,
     mcp,
     measures,
@@ -65,6 +66,7 @@ app.command()(validate.validate)
 app.command("eval")(evaluate.evaluate)
 app.command()(search.search)
 app.command()(measures.measures)
+app.command()(export.export)
 app.command()(results.report)
 app.command()(compare.compare)
 app.command()(results.replay)

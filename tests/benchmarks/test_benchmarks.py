@@ -39,6 +39,7 @@ CASES = {
     "decisions": Smallest(("--decisions", "40", "--envs", "1", "--only", "flat")),
     "default_limits": Smallest(("limits.json",)),
     "drives": Smallest(("--minutes", "0")),
+    "exchange": Smallest(("--scenarios", "grid"), program="qc_opendrive"),
     "eta": Smallest(("grid", "--seeds", "1", "--at", "5", "--step", "1")),
     "faults": Smallest(("--parts", "resets", "--resets", "1")),
     "futures": Smallest(

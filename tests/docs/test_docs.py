@@ -108,6 +108,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
         HELP,
         "takes minutes; tests/safety and tests/measures try them",
     ),
+    (r"export", HELP, "needs a recorded drive; tests/exchange has one"),
     (r"eval .*--executor ray", HELP, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
