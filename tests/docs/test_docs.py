@@ -130,6 +130,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     ),
     (r"validate", ("--gates", "start", "--seeds", "1"), "all gates take minutes; tests/proof tries them"),
     (r"drive [a-z]", HELP, "takes a minute; tests/drives drives"),
+    (r"report runs/hunt", HELP, "needs a search; tests/safety/test_trying.py has one"),
     (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_drives.py reports on some"),
     (r"(serve|mcp)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
