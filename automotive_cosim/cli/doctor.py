@@ -74,7 +74,10 @@ EXTRAS = {
 def doctor(
     as_json: AsJson = False,
 ) -> None:
-    """Check this machine and say what is missing and how to install it; exit code 1 if episodes cannot run."""
+    """Check this machine and say what is missing and how to install it.
+
+    Exit code 1 if episodes cannot run.
+    """
     findings = [check() for check in CHECKS]
     ready = all(each.state is not Health.MISSING for each in findings)
     if as_json:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, number, whole_number
+from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom, number, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 
@@ -30,7 +30,7 @@ def search(
             show_default=False,
         ),
     ],
-    agent: Annotated[str, typer.Option(help="Agent; `agents` lists them. package.module:Class is your own.")],
+    agent: AgentName,
     budget: Annotated[
         int,
         typer.Option(
@@ -40,7 +40,7 @@ def search(
             parser=whole_number(1, 1_000_000),
         ),
     ],
-    model: Annotated[str, typer.Option(help="Model for the agent.")] = "rules",
+    model: ModelName = "rules",
     sampler: Annotated[
         str, typer.Option(help="How points are chosen: climb, random, sobol, lhs, cma or bayes.")
     ] = "climb",

@@ -21,7 +21,7 @@ from automotive_cosim.cli.batches import (
     time_left,
     words,
 )
-from automotive_cosim.cli.options import AsJson, reads_results, whole_number
+from automotive_cosim.cli.options import AsJson, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.results import Study
     from automotive_cosim.studies.rows import DriveRow
 
-app = typer.Typer(help="Studies: how much rerouting gains in identical traffic.", no_args_is_help=True)
+app = typer.Typer(help="Measure how much time rerouting saves in identical traffic.", no_args_is_help=True)
 
 
 @app.command()
@@ -319,16 +319,6 @@ def suite(
     errors = sum(len(study.errors) for study in found)
     if errors:
         raise InfrastructureError(f"{counted(errors, 'drive')} ended in an error; rerun the command to retry them")
-
-
-@app.command()
-@reads_results
-def report(folder: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)]) -> None:
-    """Write report.html, choices.csv, tables and plots into a study's folder."""
-    from automotive_cosim.studies.page import write_study
-
-    page = write_study(folder)
-    typer.echo(f"{page} written; data in {folder / 'choices.csv'}, tables in {folder / 'tables'}")
 
 
 def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:

@@ -329,6 +329,7 @@ def test_progress_names_every_stage(formats: dict[str, Path], quick: ImportOptio
     assert all(0 <= share <= 1 for share in shares)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.sumo
 def test_western_paris_is_imported_and_flows_with_a_seed_nobody_tried(
