@@ -100,6 +100,20 @@ def upper_bound(count: int, total: int, confidence: float = CONFIDENCE) -> float
     return 1.0 if count == total else float(beta.ppf(confidence, count + 1, total - count))
 
 
+def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE) -> float:
+    """The one-sided upper bound of a rate of independent events, as per hour (Garwood 1936,
+    Biometrika 28); 3 / exposure if none was seen.
+
+    Raises:
+        ValueError: exposure is not above 0, or count is below 0.
+    """
+    if exposure <= 0 or count < 0:
+        raise ValueError(f"{count} in {exposure}")
+    from scipy.stats import chi2
+
+    return float(chi2.ppf(confidence, 2 * count + 2)) / 2 / exposure
+
+
 def rate(
     outcomes: Iterable[tuple[Hashable, bool | None]],
     not_run: Iterable[Hashable] = (),
