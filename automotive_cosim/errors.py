@@ -29,6 +29,8 @@ CLOSE = 3
 """At most so many names that contain an unknown one are offered for it."""
 SURE = 0.6
 """A name as similar as this goes before those."""
+FEW = 5
+"""Up to this number, all are named rather than one that is only a little similar."""
 LISTED = 20
 """An unknown name is answered with the known ones up to this number."""
 SHOWN = 80
@@ -62,7 +64,7 @@ class UnknownNameError(UserError):
         close = (
             get_close_matches(came, choices, n=1, cutoff=SURE)
             or [each for each in choices if len(came) > 2 and came in each][:CLOSE]
-            or get_close_matches(came, choices, n=1, cutoff=0.5)
+            or (get_close_matches(came, choices, n=1, cutoff=0.5) if len(choices) > FEW else [])
         )
         if close:
             *others, last = (f"'{each}'" for each in close)

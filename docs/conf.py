@@ -5,8 +5,10 @@ The pages of ``_made/`` come from the package at each build: what a command prin
 
 from __future__ import annotations
 
+import json
 import re
 import shutil
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 import typer
@@ -15,8 +17,11 @@ from typer.cli import get_docs_for_click
 from typer.main import get_command
 from typer.testing import CliRunner
 
-from automotive_cosim import __version__, scenarios
+from automotive_cosim import __version__, scenarios, schemas
 from automotive_cosim.cli.main import app
+from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.wakes import WAKES
 from automotive_cosim.interface import spaces
 from automotive_cosim.tasking.task import Dimension, Module
 from automotive_cosim.tasks import CATALOGUE
@@ -29,7 +34,18 @@ author = "The automotive_cosim authors"
 project_copyright = "The automotive_cosim authors, Apache-2.0"
 version = release = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
-exclude_patterns = ["_site", "examples", "_made/functions.md", "_made/readme.md", "_made/spaces.md"]
+INCLUDED = (
+    "functions",
+    "readme",
+    "spaces",
+    "drive_families",
+    "drive_kinds",
+    "drive_wakes",
+    "fields_plan",
+    "fields_scenario",
+)
+"""Pages of ``_made/`` that are parts of others."""
+exclude_patterns = ["_site", "examples", *(f"_made/{name}.md" for name in INCLUDED)]
 myst_heading_anchors = 4
 myst_enable_extensions = ["colon_fence", "deflist"]
 napoleon_numpy_docstring = False
@@ -53,7 +69,10 @@ def setup(sphinx: Sphinx) -> None:
     _catalogue()
     _gallery()
     _commands()
-    _write("functions.md", "```text", _printed("functions"), "```")
+    _drives()
+    for name in ("plan", "scenario"):
+        _fields(name)
+    _write("functions.md", "```text", _printed("show", "functions"), "```")
 
 
 def _write(page: str, *lines: str) -> None:
@@ -114,6 +133,61 @@ def _gallery() -> None:
         (MADE / "maps").mkdir(parents=True, exist_ok=True)
         shutil.copyfile(folder / "map.webp", MADE / "maps" / f"{name}.webp")
     _write("gallery.md", *page)
+
+
+def _drives() -> None:
+    """The tables of families, kinds of events and what ends a wait."""
+    _table(
+        "drive_families.md",
+        ("family", "season", "what it is", "what is staged"),
+        [(f"`{each.id}`", each.season, each.about, ", ".join(each.cast)) for each in FAMILIES.values()],
+    )
+    kinds = [
+        (
+            each.name,
+            each.about,
+            each.neutral,
+            each.lookalike,
+            each.source,
+            f"{each.lasts_s:.0f} s",
+            f"{each.weight:g}",
+            ", ".join(sorted(each.alerts)) or "words, or the switch",
+        )
+        for each in KINDS.values()
+    ]
+    heads = (
+        "kind",
+        "the event",
+        "neutral: true, but not due",
+        "its look-alike",
+        "times",
+        "prepares",
+        "weight",
+        "alerts",
+    )
+    _table("drive_kinds.md", heads, kinds)
+    _table("drive_wakes.md", ("change", "when"), [(each.name, each.about) for each in WAKES])
+
+
+def _fields(name: str) -> None:
+    """The fields of a file format, a table for each of its parts, from its JSON Schema."""
+    schema = json.loads(schemas.text(name))
+    page: list[str] = []
+    for about, part in (("", schema), *((each["description"], each) for each in schema["$defs"].values())):
+        fields = {field: each for field, each in part["properties"].items() if field != "kind"}
+        if "kind" in part["properties"]:
+            about = f'**`kind = "{part["properties"]["kind"]["const"]}"`** {about}'
+        page += [about, "", "| field | default | meaning |", "|---|---|---|"] if fields else [about]
+        for field, each in fields.items():
+            default = json.dumps(each["default"]) if each.get("default") not in (None, {}, "") else ""
+            page.append(f"| `{field}` | {f'`{default}`' if default else ''} | {each.get('description', '')} |")
+        page.append("")
+    _write(f"fields_{name}.md", *page)
+
+
+def _table(page: str, heads: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    lines = [" | ".join(map(str, row)) for row in (heads, ["---"] * len(heads), *rows)]
+    _write(page, *(f"| {line} |" for line in lines))
 
 
 def _commands() -> None:

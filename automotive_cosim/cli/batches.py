@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 R = TypeVar("R", bound="JobRow")
 
 EXECUTORS = ("processes", "ray")
+WHERE = "Where to run"
 
 Workers = Annotated[
     int | None,
@@ -32,16 +33,21 @@ Workers = Annotated[
         metavar="N",
         parser=whole_number(1, 4096),
         show_default="1; with ray, the CPUs of the cluster",
+        rich_help_panel=WHERE,
     ),
 ]
 ExecutorName = Annotated[
-    str, typer.Option("--executor", help="Where to run: processes of this machine, or ray for a cluster.")
+    str,
+    typer.Option(
+        "--executor", help="Where to run: processes of this machine, or ray for a cluster.", rich_help_panel=WHERE
+    ),
 ]
 RayAddress = Annotated[
     str | None,
     typer.Option(
         help="A running Ray cluster, as in 10.0.0.4:6379.",
         show_default="RAY_ADDRESS, else a new one on this machine",
+        rich_help_panel=WHERE,
     ),
 ]
 RaySend = Annotated[
@@ -50,6 +56,7 @@ RaySend = Annotated[
         help="A folder of your own agents, tasks or scenarios. Every node gets a copy and runs in it.",
         metavar="FOLDER",
         show_default=False,
+        rich_help_panel=WHERE,
     ),
 ]
 

@@ -29,8 +29,10 @@ def compare(
     as_json: AsJson = False,
     tasks_from: TasksFrom = None,
 ) -> None:
-    """Compare two evaluations on the same instances; exit code 1 if success fell by more than the threshold, or
-    something that was planned was not run."""
+    """Compare two evaluations on the same instances.
+
+    Exit code 1 if success fell by more than the threshold, or something that was planned was not run.
+    """
     from automotive_cosim.report import regression
     from automotive_cosim.run.record import write_whole
 
@@ -45,5 +47,5 @@ def compare(
         print_json(regression.as_json(found, threshold / 100))
     else:
         typer.echo(summary, nl=False)
-    if any(each.outcome(threshold / 100) != "as good" for each in found):
+    if any(each.outcome(threshold / 100) != "unchanged" for each in found):
         raise typer.Exit(1)

@@ -61,6 +61,7 @@ def _parameter(each: Condition, *, lists: bool) -> inspect.Parameter:
         f"--{each.word}",
         help=each.help + choices + (" Several are separated by commas." if lists and not each.choices else ""),
         metavar=None if each.choices else "SECONDS",
+        rich_help_panel="Conditions: what the agent is given, and at what speed",
         show_default=f"{each.default:g}" if isinstance(each.default, float) else str(each.default),
     )
     return inspect.Parameter(

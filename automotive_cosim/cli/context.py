@@ -1,4 +1,4 @@
-"""``automotive-cosim context``: the geo-context anywhere on earth."""
+"""``automotive-cosim show context``: the geo-context anywhere on earth."""
 
 from __future__ import annotations
 

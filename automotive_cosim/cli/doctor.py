@@ -61,7 +61,8 @@ EXTRAS = {
     "llm": Extra("openai", "--model openai/NAME"),
     "mcp": Extra("mcp", "mcp"),
     "openenv": Extra("openenv", "doors.openenv"),
-    "parquet": Extra("pyarrow", "studies as Parquet"),
+    "parquet": Extra("pyarrow", "studies and trajectories as Parquet"),
+    "pdf": Extra("typst", "report --safety as a PDF"),
     "ray": Extra("ray", "eval and study on a cluster"),
     "report": Extra("matplotlib", "report"),
     "rl": Extra("stable_baselines3", "training in Flat-v0"),
@@ -73,7 +74,10 @@ EXTRAS = {
 def doctor(
     as_json: AsJson = False,
 ) -> None:
-    """Check this machine and say what is missing and how to install it; exit code 1 if episodes cannot run."""
+    """Check this machine and say what is missing and how to install it.
+
+    Exit code 1 if episodes cannot run.
+    """
     findings = [check() for check in CHECKS]
     ready = all(each.state is not Health.MISSING for each in findings)
     if as_json:

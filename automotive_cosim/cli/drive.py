@@ -9,9 +9,8 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
-from automotive_cosim.cli.options import AsJson, number, print_json, whole_number
+from automotive_cosim.cli.options import AgentName, AsJson, Force, MinutesMost, ModelName, Seed, print_json
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -20,70 +19,42 @@ if TYPE_CHECKING:
 
 @takes_conditions()
 def drive(
-    name: Annotated[str, typer.Argument(help="Family of drives; --list lists them.")] = "",
-    seed: Annotated[
-        int,
-        typer.Option(
-            help="Seed; the same seed gives the same drive.", metavar="N", parser=whole_number(0, 2**31 - 1)
-        ),
-    ] = 0,
+    family: Annotated[
+        str, typer.Argument(help="Family of the drive; `show drives` lists them.", show_default=False)
+    ],
+    agent: AgentName = "rule-perfect",
+    model: ModelName = "rules",
     scenario: Annotated[
         str,
         typer.Option(
-            help="Drive here instead: a shipped scenario, or the path of a scenario, .sumocfg or .net.xml.",
+            help="A scenario's name or folder, or any .sumocfg or .net.xml(.gz), instead of the drive's own.",
             show_default=False,
         ),
     ] = "",
-    minutes: Annotated[
-        float | None,
-        typer.Option(
-            help="End it after this many simulated minutes.",
-            parser=number(0.1, 60),
-            metavar="X",
-            show_default=False,
-        ),
-    ] = None,
-    agent: Annotated[str, typer.Option(help="Agent; `agents` lists them.")] = "rule-perfect",
-    model: Annotated[str, typer.Option(help="Model for the agent.")] = "rules",
+    seed: Seed = 0,
+    minutes: MinutesMost = None,
     out: Annotated[
         Path | None,
-        typer.Option(
-            help="Folder for the row, the steps, the screens and the road, which `serve` shows.",
-            show_default="runs/<time>-<family>-<agent>-seed<seed>",
-        ),
+        typer.Option(help="Folder for the results.", show_default="runs/<time>-<family>-<agent>-seed<seed>"),
     ] = None,
-    list_them: Annotated[bool, typer.Option("--list", help="List the families of drives and exit.")] = False,
+    force: Force = False,
     as_json: AsJson = False,
     **conditions: str | None,
 ) -> None:
     """Run one drive of ten to thirty minutes, in which an agent keeps watch."""
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.drives.families import FAMILIES
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.run.drive import DriveSetup, run_drive
     from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.jobs import DriveJob
-    from automotive_cosim.run.record import stamped_folder
+    from automotive_cosim.run.record import check_folder, stamped_folder
     from automotive_cosim.run.row import as_json as row_json
 
-    console = Console(highlight=False)
-    if list_them:
-        listed = [{"id": family.id, "season": family.season, "about": family.about} for family in FAMILIES.values()]
-        if as_json:
-            print_json(listed)
-        else:
-            for family in listed:
-                console.print(f"{family['id']:24} {family['season']:7} {family['about']}", soft_wrap=True)
-        return
-    if not name:
-        raise UserError(f"drive needs the name of a family, such as {next(iter(FAMILIES))}; --list lists them")
-    if out is not None and (out / "row.json").exists():
-        raise UserError(f"{out} holds the results of a drive; give --out another folder")
     under = Conditions.named(given(conditions))
     player = make_agent(agent, model, AgentSettings(under, seed=seed))
     setup = DriveSetup(
-        name,
+        family,
         seed,
         player.name,
         player.model,
@@ -91,14 +62,29 @@ def drive(
         scenario=scenario,
         settings=DriveSettings(minutes=minutes),
     )
-    folder = out or stamped_folder(f"{name}-{player.name}-seed{seed}")
+    planned = DriveJob(setup).planned()
+    folder = out or stamped_folder(f"{family}-{player.name}-seed{seed}")
+    check_folder(folder, force=force)
     with closing(DriveRecorder(folder, setup, player)) as recorder:
-        record = run_drive(DriveJob(setup).planned(), setup, player, observers=[recorder])
+        record = run_drive(planned, setup, player, observers=[recorder])
     if as_json:
         print_json({**row_json(record.row), "out": str(folder)})
-    else:
-        _tell(console, record.row)
-        console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
+        return
+    console = Console(highlight=False)
+    _tell(console, record.row)
+    console.print(f"Recorded in {folder}; watch it with `automotive-cosim serve {folder}`", soft_wrap=True)
+
+
+def drives(as_json: AsJson = False) -> None:
+    """List the families of drives, with their season and what can happen in them."""
+    from automotive_cosim.drives.families import FAMILIES
+
+    listed = [{"id": family.id, "season": family.season, "about": family.about} for family in FAMILIES.values()]
+    if as_json:
+        print_json({"drives": listed})
+        return
+    for family in listed:
+        typer.echo(f"{family['id']:24} {family['season']:7} {family['about']}")
 
 
 def _tell(console: Console, row: DriveTrialRow) -> None:

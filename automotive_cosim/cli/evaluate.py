@@ -25,7 +25,16 @@ from automotive_cosim.cli.batches import (
     words,
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
-from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, number, print_json, whole_number
+from automotive_cosim.cli.options import (
+    SUITE_HELP,
+    TASKS_HELP,
+    AsJson,
+    MinutesMost,
+    TasksFrom,
+    number,
+    print_json,
+    whole_number,
+)
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
@@ -59,14 +68,14 @@ def evaluate(
     tasks: Annotated[
         str | None,
         typer.Option(
-            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas.",
+            help=TASKS_HELP,
             show_default="all",
         ),
     ] = None,
     suite: Annotated[
         str | None,
         typer.Option(
-            help="Suite that the tasks are chosen from: standard, hard or all. An id selects a task in any suite.",
+            help=SUITE_HELP,
             show_default="standard",
         ),
     ] = None,
@@ -94,7 +103,6 @@ def evaluate(
         bool, typer.Option("--everywhere", help="Also run tasks in scenarios that they do not list.")
     ] = False,
     seeds: Annotated[str | None, typer.Option(help="Seeds, as in 0-4 or 0,3,7.", show_default="0")] = None,
-    mode: NoMode = None,
     repeats: Annotated[
         int | None,
         typer.Option(
@@ -129,7 +137,7 @@ def evaluate(
     budget_usd: Annotated[
         float | None,
         typer.Option(
-            help="The same in dollars, at the prices in the models' names.",
+            help="Stop after this many US dollars, at the prices in the models' names.",
             metavar="X",
             parser=number(0.000001, 10**9),
             show_default=False,
@@ -157,28 +165,24 @@ def evaluate(
             show_default=False,
         ),
     ] = None,
-    minutes: Annotated[
-        float | None,
-        typer.Option(
-            help="End drives after this many simulated minutes.",
-            parser=number(0.1, 60),
-            metavar="X",
-            show_default=False,
-        ),
-    ] = None,
+    minutes: MinutesMost = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **conditions: str | None,
 ) -> None:
-    """Run agents over tasks, scenarios and seeds, or over drives. Rerun the command to resume."""
+    """Run agents over tasks, scenarios and seeds, or over drives.
+
+    Rerun the command to resume.
+    """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.errors import UnknownNameError
+    from automotive_cosim.errors import UnknownNameError, UserError
     from automotive_cosim.report.answer import answer
     from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
     from automotive_cosim.run.coverage import unit_of
+    from automotive_cosim.run.fit import misfits
     from automotive_cosim.run.forecast import forecast
     from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan, read_plan, with_preset
@@ -192,13 +196,10 @@ def evaluate(
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
-    values |= {"suite": suite} if suite is not None else {}
-    values |= {"split": split} if split is not None else {}
+    single = {"suite": suite, "split": split, "repeats": repeats, "held_out": held_out, "everywhere": everywhere}
+    values |= {name: value for name, value in single.items() if value not in (None, False)}
     values |= values_of(conditions)
     values |= {"settings": {**values.get("settings", {}), "minutes": minutes}} if minutes is not None else {}
-    values |= {"repeats": repeats} if repeats is not None else {}
-    values |= {"held_out": True} if held_out else {}
-    values |= {"everywhere": True} if everywhere else {}
     values = with_preset(values, preset) if preset is not None else values
     budget = Budget(budget_tokens, budget_usd)
     plan = make_plan(values)
@@ -210,9 +211,9 @@ def evaluate(
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     kept = Pictures(pictures or (Pictures.ALL if len(plan.jobs()) <= PICTURED else Pictures.NONE))
+    known = read_trials(folder) if (folder / "manifest.json").is_file() else {}
     if dry_run:
-        rows = read_trials(folder).values() if (folder / "manifest.json").is_file() else ()
-        needs = forecast(plan.jobs(), workers or 1, rows)
+        needs = forecast(plan.jobs(), workers or 1, known.values())
         lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
         for line in _forecast_in_words(needs, workers or 1):
             console.print(line, soft_wrap=True)
@@ -221,6 +222,9 @@ def evaluate(
         if as_json:
             print_json({**needs.as_json(), "to_fix": lacks, "out": str(folder)})
         return
+    left = [job for job in plan.jobs() if job.id not in known or known[job.id].error is not None]
+    if unfit := tuple(misfits(left)):
+        raise UserError("; ".join(unfit))
     with where, ProgressView(console, f"{unit}s", _said) as view:
         try:
             end = run_plan(

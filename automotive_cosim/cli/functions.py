@@ -1,4 +1,4 @@
-"""``automotive-cosim functions``: what an agent can call."""
+"""``automotive-cosim show functions``: what an agent can call."""
 
 from __future__ import annotations
 

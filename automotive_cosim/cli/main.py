@@ -19,28 +19,23 @@ from automotive_cosim.cli import (
     agents,
     bench,
     compare,
-    context,
     doctor,
     drive,
     evaluate,
-    functions,
+    export,
     mcp,
     measures,
-    memory,
-    playback,
     publish,
     results,
     run,
     scenarios,
-    schema,
-    screens,
     search,
     serve,
-    signals,
+    show,
     study,
     tasks,
-    validate,
 )
+from automotive_cosim.cli.former import refuse_former
 from automotive_cosim.cli.terminal import discard_output, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.plain import plain
@@ -59,34 +54,26 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-app.command()(run.run)
-app.command()(drive.drive)
-app.command()(validate.validate)
-app.command("eval")(evaluate.evaluate)
-app.command()(search.search)
-app.command()(measures.measures)
-app.command()(results.report)
-app.command()(compare.compare)
-app.command()(results.replay)
-app.command()(results.regrade)
-app.command()(publish.bundle)
-app.command()(publish.verify)
-app.command()(publish.leaderboard)
-app.command()(bench.bench)
-app.command()(playback.playback)
-app.command()(serve.serve)
-app.command()(screens.screens)
-app.command()(schema.schema)
-app.command()(functions.functions)
-app.command()(doctor.doctor)
-app.command()(mcp.mcp)
-app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
-app.add_typer(study.app, name="study")
-app.add_typer(scenarios.app, name="scenarios")
-app.add_typer(tasks.app, name="tasks")
-app.add_typer(agents.app, name="agents")
-app.add_typer(memory.app, name="memory")
-app.add_typer(signals.app, name="signals")
+RUN, READ, CONTENTS, TOOLS = "Run agents", "Read, check and publish results", "Tasks and places", "Tools"
+app.command(rich_help_panel=RUN)(run.run)
+app.command(rich_help_panel=RUN)(drive.drive)
+app.command("eval", rich_help_panel=RUN)(evaluate.evaluate)
+app.command(rich_help_panel=RUN)(search.search)
+app.add_typer(study.app, name="study", rich_help_panel=RUN)
+app.command(rich_help_panel=READ)(serve.serve)
+app.command(rich_help_panel=READ)(results.report)
+app.command(rich_help_panel=READ)(compare.compare)
+app.command(rich_help_panel=READ)(results.replay)
+app.command(rich_help_panel=READ)(measures.measures)
+app.command(rich_help_panel=READ)(export.export)
+app.add_typer(publish.app, name="publish", rich_help_panel=READ)
+app.add_typer(tasks.app, name="tasks", rich_help_panel=CONTENTS)
+app.add_typer(scenarios.app, name="scenarios", rich_help_panel=CONTENTS)
+app.add_typer(agents.app, name="agents", rich_help_panel=CONTENTS)
+app.add_typer(show.app, name="show", rich_help_panel=CONTENTS)
+app.command(rich_help_panel=TOOLS)(doctor.doctor)
+app.command(rich_help_panel=TOOLS)(bench.bench)
+app.command(rich_help_panel=TOOLS)(mcp.mcp)
 
 
 def _version(wanted: bool) -> None:
@@ -133,6 +120,7 @@ def main() -> None:
 def _run() -> int:
     """Runs a command; returns the exit code."""
     try:
+        refuse_former(sys.argv[1:])
         return app(standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):

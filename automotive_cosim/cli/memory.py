@@ -1,4 +1,4 @@
-"""``automotive-cosim memory``: what ASURADA remembers from earlier episodes."""
+"""``automotive-cosim show memory``: what ASURADA remembers from earlier episodes."""
 
 from __future__ import annotations
 
@@ -10,16 +10,13 @@ import typer
 from automotive_cosim.cli.options import print_json
 from automotive_cosim.errors import UserError
 
-app = typer.Typer(help="What ASURADA remembers from earlier episodes.", no_args_is_help=True)
 
-
-@app.command()
-def show(
+def memory(
     file: Annotated[Path, typer.Argument(help="The file given to `run --memory`.")],
     place: Annotated[str, typer.Option(help="Only places whose name contains this.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
 ) -> None:
-    """Show which strategy was tried where, for what, and how often it worked; the latest first."""
+    """Show what ASURADA remembers: which strategy it tried where, for what, and how often it worked."""
     from automotive_cosim.agents.memory import Memory
 
     if not file.is_file():

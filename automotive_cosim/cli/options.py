@@ -45,25 +45,11 @@ TasksFrom = Annotated[
 """For every command that names tasks; its callback handles the value, so the command ignores it."""
 
 
-SuiteName = Annotated[
-    str,
-    typer.Option(
-        "--suite",
-        help="Suite that the tasks are chosen from: standard, hard or all. An id selects a task in any suite.",
-    ),
-]
+TASKS_HELP = "Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas."
+TaskNames = Annotated[str, typer.Option("--tasks", help=TASKS_HELP)]
+SUITE_HELP = "Task suite: standard, hard or all. An id selects a task in any suite."
+SuiteName = Annotated[str, typer.Option("--suite", help=SUITE_HELP)]
 """For every command that chooses tasks by words."""
-
-
-def _refuse_mode(mode: str | None) -> None:
-    if mode is not None:
-        from automotive_cosim.run.former import INSTEAD
-
-        raise UserError(f"modes no longer exist; {INSTEAD}")
-
-
-NoMode = Annotated[str | None, typer.Option("--mode", "--modes", hidden=True, callback=_refuse_mode)]
-"""An option of earlier versions; its callback says what has replaced it."""
 
 
 def reads_results(command: Callable[P, None]) -> Callable[P, None]:
@@ -106,6 +92,53 @@ def whole_number(least: int, most: int) -> Callable[[str], int]:
     return parse
 
 
+def number(least: float, most: float) -> Callable[[str], float]:
+    """A parser of numbers in a range, ends included; its error says what came and what was expected."""
+
+    def parse(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not least <= value <= most:
+            raise typer.BadParameter(f"{text!r} is not a number from {least:g} to {most:g}")
+        return value
+
+    return parse
+
+
+MOST_SEED = 2**31 - 1
+"""SUMO takes no larger one."""
+Seed = Annotated[
+    int,
+    typer.Option(
+        "--seed", help="Seed; the same seed gives the same trace.", metavar="N", parser=whole_number(0, MOST_SEED)
+    ),
+]
+SeedList = Annotated[str, typer.Option("--seeds", help="Seeds, as in 0-4 or 0,3,7.", metavar="LIST")]
+AgentName = Annotated[
+    str,
+    typer.Option("--agent", help="Agent; `agents` lists them; package.module:Class is one of your own."),
+]
+ModelName = Annotated[
+    str,
+    typer.Option(
+        "--model", help="Model for the agent: rules, replay/FOLDER, replay/NAME, openai/NAME, PROVIDER/NAME."
+    ),
+]
+MinutesMost = Annotated[
+    float | None,
+    typer.Option(
+        "--minutes",
+        help="End drives after this many simulated minutes.",
+        metavar="X",
+        parser=number(0.1, 60),
+        show_default=False,
+    ),
+]
+Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.")]
+
+
 @dataclass(frozen=True, slots=True)
 class PartOf:
     """One of several parts, as in ``3/10``."""
@@ -125,21 +158,6 @@ class PartOf:
     def taken(self, all_of_them: tuple[str, ...]) -> tuple[str, ...]:
         """Every Nth item, so that all parts together have every item."""
         return all_of_them[self.number - 1 :: self.of]
-
-
-def number(least: float, most: float) -> Callable[[str], float]:
-    """A parser of numbers in a range, ends included; its error says what came and what was expected."""
-
-    def parse(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not least <= value <= most:
-            raise typer.BadParameter(f"{text!r} is not a number from {least:g} to {most:g}")
-        return value
-
-    return parse
 
 
 def lon_lat(text: str) -> tuple[float, float]:

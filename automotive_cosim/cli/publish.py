@@ -1,4 +1,4 @@
-"""``automotive-cosim bundle``, ``verify`` and ``leaderboard``: publish and check evaluations."""
+"""``automotive-cosim publish``: packs, checks and compares evaluations for others."""
 
 from __future__ import annotations
 
@@ -10,13 +10,17 @@ from typing import Annotated
 import typer
 
 from automotive_cosim.cli.batches import Workers
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results, whole_number
 from automotive_cosim.contracts.plain import counted
 
 MOST_LISTED = 50
 """How many problems are printed."""
 
 
+app = typer.Typer(help="Pack, check, judge again and compare evaluations.", no_args_is_help=True)
+
+
+@app.command()
 def bundle(
     folder: Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)],
     out: Annotated[Path, typer.Option(help="File to write.", show_default=False)],
@@ -35,6 +39,7 @@ def bundle(
     typer.echo(f"sha256 of its bundle.json: {made.sha256}")
 
 
+@app.command()
 def verify(
     path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
     replays: Annotated[
@@ -84,6 +89,49 @@ def verify(
     typer.echo("no problem found")
 
 
+@app.command()
+@reads_results
+def regrade(
+    folder: Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)],
+    tasks_from: TasksFrom = None,
+    as_json: AsJson = False,
+) -> None:
+    """Judge the stored trials again by the current checks and print what changes; nothing is written."""
+    from automotive_cosim.run.coverage import coverage
+    from automotive_cosim.run.regrade import regrade as judged_again
+    from automotive_cosim.run.rows import read_trials
+    from automotive_cosim.run.store import read_evaluation
+
+    found = coverage(read_evaluation(folder), read_trials(folder))
+    if as_json:
+        judged = list(judged_again(folder))
+        print_json(
+            {
+                "planned": found.planned,
+                "not_run": len(found.not_run),
+                "changed": sum(each.differs for each in judged),
+                "not_judged": sum(bool(each.problem) for each in judged),
+                "episodes": [asdict(each) for each in judged],
+            }
+        )
+        return
+    words = {True: "solved", False: "not solved", None: "not judged"}
+    count = differing = missing = 0
+    for each in judged_again(folder):
+        count += 1
+        if each.problem:
+            missing += 1
+            typer.echo(f"{each.episode}: cannot be judged: {each.problem}")
+        elif each.differs:
+            differing += 1
+            typer.echo(f"{each.episode}: {words[each.before]} before, {words[each.now]} now")
+            for change in each.changes:
+                typer.echo(f"    {change.part.replace('_', ' ')} {'yes' if change.now else 'no'}: {change.why}")
+    told = f", {missing} could not be judged" if missing else ""
+    typer.echo(f"{differing} of {count} verdicts change{told}; {found}")
+
+
+@app.command()
 def leaderboard(
     folder: Annotated[Path, typer.Argument(help="Folder of bundles.", show_default=False)],
     out: Annotated[Path, typer.Option(help="Page to write.", show_default=False)],

@@ -1,4 +1,4 @@
-"""``automotive-cosim report``, ``replay`` and ``regrade``: commands on an evaluation's folder."""
+"""``automotive-cosim report`` and ``replay``: commands on a folder of results."""
 
 from __future__ import annotations
 
@@ -8,15 +8,29 @@ from typing import Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
+from automotive_cosim.cli.options import AsJson, TasksFrom, number, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.errors import UserError
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)]
 
 
 @reads_results
-def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
-    """Write report.html, tables and plots into the folder of an evaluation, of tasks or drives, or a study."""
+def report(
+    folder: Folder,
+    safety: Annotated[
+        bool,
+        typer.Option("--safety", help="Write a safety report to file: safety/ with a page, a PDF and its data."),
+    ] = False,
+    agent: Annotated[
+        str | None, typer.Option(help="Agent of the safety report, if there are several.", show_default=False)
+    ] = None,
+    tasks_from: TasksFrom = None,
+) -> None:
+    """Write report.html, tables and plots into the folder of an evaluation or a study."""
+    if safety:
+        _safety(folder, agent or "")
+        return
     from automotive_cosim.report.evaluation import write_report
     from automotive_cosim.report.results import read_results
     from automotive_cosim.run.store import read_manifest
@@ -31,6 +45,14 @@ def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
     typer.echo(f"{page} written; tables in {folder / 'tables'}, plots in {folder / 'plots'}")
 
 
+def _safety(folder: Path, agent: str) -> None:
+    from automotive_cosim.safety.dossier.filing import write_dossier
+
+    page, pdf = write_dossier(folder, agent)
+    typer.echo(f"{page} written; its data in {page.parent / 'data'}")
+    typer.echo(f"{pdf} written" if pdf else "no PDF: pip install 'automotive-cosim[pdf]'")
+
+
 @reads_results
 def replay(
     folder: Annotated[Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)],
@@ -40,12 +62,35 @@ def replay(
             help="In a folder of `eval`: id of the episode or drive, or the beginning of it.", show_default=False
         ),
     ] = "",
+    play: Annotated[
+        bool, typer.Option("--play", help="Print the recorded steps at their pace instead; of `run` alone.")
+    ] = False,
+    film: Annotated[
+        Path | None,
+        typer.Option(help="Write the recorded screens as an animation instead, .webp or .gif; of `run` alone."),
+    ] = None,
+    speed: Annotated[
+        float,
+        typer.Option(
+            help="How many times as fast as recorded --play and --film are.",
+            metavar="X",
+            parser=number(0.1, 1000),
+        ),
+    ] = 4.0,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
-    """Replay the actions of a stored episode or drive and compare the traces; exit code 1 if they differ."""
+    """Replay the actions of a stored trial and compare the traces, or play back its record.
+
+    Exit code 1 if the traces differ. With --play or --film, show what was recorded; nothing runs again.
+    """
     from automotive_cosim.run.rerun import rerun
 
+    if play or film is not None:
+        if episode or as_json:
+            raise UserError("--play and --film show the record of one `run`; omit the episode and --json")
+        _show_record(folder, film, speed)
+        return
     compared = rerun(folder, episode)
     different = [step for step in compared if step.differs]
     if as_json:
@@ -62,38 +107,22 @@ def replay(
     typer.echo("the only step is the same" if len(compared) == 1 else f"all {len(compared)} steps are the same")
 
 
-@reads_results
-def regrade(folder: Folder, tasks_from: TasksFrom = None, as_json: AsJson = False) -> None:
-    """Judge the stored trials again by the current checks and print what changes; nothing is written."""
-    from automotive_cosim.run.coverage import coverage
-    from automotive_cosim.run.regrade import regrade as judged_again
-    from automotive_cosim.run.rows import read_trials
-    from automotive_cosim.run.store import read_evaluation
+def _show_record(folder: Path, film: Path | None, speed: float) -> None:
+    """Prints a record step by step, at its pace, or writes its screens as an animation."""
+    from time import sleep
 
-    found = coverage(read_evaluation(folder), read_trials(folder))
-    if as_json:
-        judged = list(judged_again(folder))
-        print_json(
-            {
-                "planned": found.planned,
-                "not_run": len(found.not_run),
-                "changed": sum(each.differs for each in judged),
-                "not_judged": sum(bool(each.problem) for each in judged),
-                "episodes": [asdict(each) for each in judged],
-            }
-        )
+    from automotive_cosim.report.playback import frames, write_film
+
+    if film is not None and film.suffix not in (".webp", ".gif"):
+        raise UserError(f"{film} is not an animation; give --film a name ending in .webp or .gif")
+    shown = list(frames(folder))
+    if film is not None:
+        write_film(shown, film, speed)
+        typer.echo(f"{film} written, {counted(len(shown), 'step')}")
         return
-    words = {True: "solved", False: "not solved", None: "not judged"}
-    count = differing = missing = 0
-    for each in judged_again(folder):
-        count += 1
-        if each.problem:
-            missing += 1
-            typer.echo(f"{each.episode}: cannot be judged: {each.problem}")
-        elif each.differs:
-            differing += 1
-            typer.echo(f"{each.episode}: {words[each.before]} before, {words[each.now]} now")
-            for change in each.changes:
-                typer.echo(f"    {change.part.replace('_', ' ')} {'yes' if change.now else 'no'}: {change.why}")
-    told = f", {missing} could not be judged" if missing else ""
-    typer.echo(f"{differing} of {count} verdicts change{told}; {found}")
+    before_s = 0.0
+    for frame in shown:
+        sleep((frame.since_s - before_s) / speed)
+        before_s = frame.since_s
+        typer.echo(frame.words)
+        typer.echo(f"     {frame.picture}")

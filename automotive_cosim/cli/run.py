@@ -12,7 +12,17 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
-from automotive_cosim.cli.options import AsJson, NoMode, TasksFrom, lon_lat, tell_opening, whole_number
+from automotive_cosim.cli.options import (
+    AgentName,
+    AsJson,
+    Force,
+    ModelName,
+    Seed,
+    TasksFrom,
+    lon_lat,
+    tell_opening,
+    whole_number,
+)
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import PLACE, GeoInput
 from automotive_cosim.episode.conditions import Conditions
@@ -61,20 +71,14 @@ def run(
         ),
     ] = None,
     half: Annotated[str, typer.Option(help="Half of a pair: first or second.")] = "first",
-    agent: Annotated[
-        str, typer.Option(help="Agent; `agents` lists them; package.module:Class is one of your own.")
-    ] = "asurada",
-    model: Annotated[
-        str,
-        typer.Option(help="Model for the agent: rules, replay/FOLDER, replay/NAME, openai/NAME, PROVIDER/NAME."),
-    ] = "rules",
+    agent: AgentName = "asurada",
+    model: ModelName = "rules",
     tasks_from: TasksFrom = None,
-    mode: NoMode = None,
     without: Annotated[
         str,
         typer.Option(
             help="Parts of the agent to switch off, separated by commas: "
-            "gps, context, queries, screen, brevity, reflection, memory."
+            "gps, context, queries, screen, reflection, memory."
         ),
     ] = "",
     memory: Annotated[
@@ -115,12 +119,7 @@ def run(
     no_gps: Annotated[
         bool, typer.Option("--no-gps", help="No GPS: the place is unknown, and the network needs no projection.")
     ] = False,
-    seed: Annotated[
-        int,
-        typer.Option(
-            help="Seed; the same seed gives the same trace.", metavar="N", parser=whole_number(0, 2**31 - 1)
-        ),
-    ] = 0,
+    seed: Seed = 0,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<half>-<agent>-seed<seed>"),
@@ -131,7 +130,7 @@ def run(
             "--pair", help="Run the agent twice from the same instant, with its place and without, side by side."
         ),
     ] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace the results in --out.")] = False,
+    force: Force = False,
     as_json: AsJson = False,
     actions: Annotated[
         Path | None,

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim import scenarios
-from automotive_cosim.cli.batches import tell_notes
+from automotive_cosim.cli.batches import seeds_in, tell_notes
 from automotive_cosim.cli.calibrate import calibrate_scenario
 from automotive_cosim.cli.options import AsJson, number, print_json, tell_opening, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
@@ -269,12 +269,14 @@ def equilibrate_scenario(
             "--system-optimum", help="Then search for routes with a lower total travel time, and compare."
         ),
     ] = False,
-    draws: Annotated[
-        int,
+    seeds: Annotated[
+        str | None,
         typer.Option(
-            parser=whole_number(2, 100), metavar="N", help="Number of seeds with which both states are driven."
+            help="Seeds with which both states are driven, as in 1-10.",
+            metavar="LIST",
+            show_default="the ten after --seed",
         ),
-    ] = 10,
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Give a scenario's drivers their user-equilibrium routes, found by repeated simulation.
@@ -303,10 +305,13 @@ def equilibrate_scenario(
 
     options = Options(steps, gap, minutes * 60.0, seed)
     optimum = target.with_name(f"{target.name}_optimum")
+    driven = [*range(seed + 1, seed + 11)] if seeds is None else seeds_in(seeds)
+    if seed in driven or len(set(driven)) < 2:
+        raise UserError(f"--seeds is {seeds}; give two or more seeds, but not {seed}, with which the search runs")
     if system_optimum:
         check_target(optimum, OPTIMUM, force=force)  # before the equilibrium, which takes minutes
     found = equilibrate(folder, target, options, tell, force=force)
-    compared = compare(target, optimum, options, draws, tell_total, force=force) if system_optimum else None
+    compared = compare(target, optimum, options, driven, tell_total, force=force) if system_optimum else None
     best = min(found, key=lambda step: step.gap.relative)
     if as_json:
         print_json(

@@ -1,4 +1,4 @@
-"""``automotive-cosim schema``: the formats of files that users write, for use in editors."""
+"""``automotive-cosim show schema``: the formats of files that users write, for use in editors."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ def schema(
 
     if name is None:
         if out is not None:
-            raise UserError(f"--out {out} needs the NAME of a schema; `automotive-cosim schema` lists them")
+            raise UserError(f"--out {out} needs the NAME of a schema; `automotive-cosim show schema` lists them")
         for known in schemas.names():
             typer.echo(f"{known:<10}{schemas.about(known)}")
         return

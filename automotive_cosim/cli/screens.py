@@ -1,4 +1,4 @@
-"""``automotive-cosim screens``: every screen of the cockpit in one picture."""
+"""``automotive-cosim show screens``: every screen of the cockpit in one picture."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, number, whole_number
+from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom, number, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 
@@ -22,10 +22,15 @@ SETTINGS = "search.json"
 
 
 def search(
-    space_file: Annotated[
-        Path, typer.Option("--space", help="TOML file with the factors and their values.", show_default=False)
+    space_name: Annotated[
+        str,
+        typer.Option(
+            "--space",
+            help="TOML file with the factors and their values, or a space of the library, such as cut-in.",
+            show_default=False,
+        ),
     ],
-    agent: Annotated[str, typer.Option(help="Agent; `agents` lists them. package.module:Class is your own.")],
+    agent: AgentName,
     budget: Annotated[
         int,
         typer.Option(
@@ -35,7 +40,7 @@ def search(
             parser=whole_number(1, 1_000_000),
         ),
     ],
-    model: Annotated[str, typer.Option(help="Model for the agent.")] = "rules",
+    model: ModelName = "rules",
     sampler: Annotated[
         str, typer.Option(help="How points are chosen: climb, random, sobol, lhs, cma or bayes.")
     ] = "climb",
@@ -77,17 +82,18 @@ def search(
     from automotive_cosim.safety.hunt import hunt
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import make_sampler
-    from automotive_cosim.safety.space import read_space
+    from automotive_cosim.safety.space import read_space, space_file
     from automotive_cosim.safety.trying import check_space, trial_of, trying
 
-    space = read_space(space_file)
+    file = space_file(space_name)
+    space = read_space(file)
     plan = make_plan({"agents": [agent], "models": [model], "trials": [_plain(trial_of(space.nominal))]})
     plan.check()
     check_space(space, plan)
-    folder = out or Path("runs") / f"search-{space_file.stem}-{agent.replace(':', '.')}"
+    folder = out or Path("runs") / f"search-{file.stem}-{agent.replace(':', '.')}"
     console = Console(stderr=as_json, highlight=False)
     about: Json = {
-        "space": space_file.read_text(encoding="utf-8"),
+        "space": file.read_text(encoding="utf-8"),
         "agent": agent,
         "model": model,
         "sampler": sampler,

@@ -40,9 +40,7 @@ if TYPE_CHECKING:
 
 VIA = "What a trip's via edges are: stops, which every route passes, or route, which other routes may leave."
 
-app = typer.Typer(
-    help="Studies: how much rerouting gains, and what a measure does to congestion.", no_args_is_help=True
-)
+app = typer.Typer(help="Measure what rerouting saves and what a measure does to congestion.", no_args_is_help=True)
 
 
 @app.command()
@@ -543,16 +541,6 @@ def compare(
             console.print(f"{name} was run with another {'; '.join(what)}", soft_wrap=True)
         console.print(table.markdown(), soft_wrap=True)
     raise typer.Exit(not all(pair.is_same for pair in found))
-
-
-@app.command()
-@reads_results
-def report(folder: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)]) -> None:
-    """Write report.html, tables, plots and data into a study's folder."""
-    from automotive_cosim.studies.pages import write_page
-
-    page = write_page(folder)
-    typer.echo(f"{page} written, with its data; tables in {folder / 'tables'}")
 
 
 def _show(

@@ -1,4 +1,4 @@
-"""``automotive-cosim tasks``: lists, shows and exports the catalogue."""
+"""``automotive-cosim tasks``: lists, shows, exports and proves the catalogue."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, SuiteName, TasksFrom, print_json, whole_number
+from automotive_cosim.cli.options import AsJson, Seed, SuiteName, TaskNames, TasksFrom, print_json
+from automotive_cosim.cli.validate import validate
 from automotive_cosim.contracts.plain import counted
 
 if TYPE_CHECKING:
@@ -21,15 +22,8 @@ PICTURES = (".webp", ".png", ".jpg")
 PICTURE_WIDTH = 640
 NOT_MEASURED = "not measured since the situation last changed"
 
-app = typer.Typer(help="List, show and export tasks.", no_args_is_help=True)
-
-TaskNames = Annotated[
-    str,
-    typer.Option(
-        "--tasks",
-        help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas.",
-    ),
-]
+app = typer.Typer(help="List, show, export and prove tasks.", no_args_is_help=True)
+app.command("validate")(validate)
 
 
 @app.command("list")
@@ -107,9 +101,7 @@ def show(
             help="Also draw the reference solution, screen by screen, to a .webp, .png or .jpg.", show_default=False
         ),
     ] = None,
-    seed: Annotated[
-        int, typer.Option(help="Seed for the picture.", metavar="N", parser=whole_number(0, 10**6))
-    ] = 0,
+    seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""

@@ -1,4 +1,4 @@
-"""``automotive-cosim validate``: proves tasks."""
+"""``automotive-cosim tasks validate``: proves tasks."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.batches import words
-from automotive_cosim.cli.options import AsJson, PartOf, SuiteName, TasksFrom, whole_number
+from automotive_cosim.cli.batches import seeds_in, words
+from automotive_cosim.cli.options import AsJson, PartOf, SeedList, SuiteName, TaskNames, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
@@ -22,12 +22,7 @@ FAILED = 1
 
 
 def validate(
-    tasks: Annotated[
-        str,
-        typer.Option(
-            help="Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas."
-        ),
-    ] = "all",
+    tasks: TaskNames = "all",
     suite: SuiteName = "standard",
     part: Annotated[
         PartOf | None,
@@ -38,13 +33,7 @@ def validate(
             show_default=False,
         ),
     ] = None,
-    seeds: Annotated[
-        int,
-        typer.Option(help="How many seeds to prove each task with.", metavar="N", parser=whole_number(1, 1000)),
-    ] = 3,
-    first_seed: Annotated[
-        int, typer.Option(help="The first seed.", metavar="N", parser=whole_number(0, 10**6))
-    ] = 0,
+    seeds: SeedList = "0-2",
     gates: Annotated[
         str, typer.Option(help="Gates to try, separated by commas, by their names in the table; or `all`.")
     ] = "all",
@@ -86,7 +75,7 @@ def validate(
             raise UserError(
                 f"--part {part.number}/{part.of} contains none of {counted(asked, 'task')}; give fewer parts"
             )
-    numbers = tuple(range(first_seed, first_seed + seeds))
+    numbers = tuple(seeds_in(seeds))
     before = None if against is None else read_traces(against)
     console = Console(stderr=True, markup=True)
 

@@ -135,7 +135,7 @@ def function_named(name: str) -> CarFunction:
         ActionError: there is none.
     """
     if name not in functions():
-        raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim functions")))
+        raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim show functions")))
     return functions()[name]
 
 

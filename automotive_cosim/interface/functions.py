@@ -76,7 +76,7 @@ def action_of(name: str, arguments: str | Mapping[str, Any] | None = None) -> Ac
         ActionError: there is no such function, or the arguments do not fit it.
     """
     if name not in functions() and name not in BY_HAND:
-        raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim functions")))
+        raise ActionError(str(UnknownNameError("function", name, functions(), "automotive-cosim show functions")))
     given = _object(name, arguments) if isinstance(arguments, str) else dict(arguments or {})
     if "action_type" in given:
         raise ActionError(f"{name} takes no action_type; its name says it")

@@ -166,7 +166,7 @@ def _cameras(built: Built) -> int:
 
 def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) -> Iterator[str]:
     if assumed_km > 0:
-        yield f"the limit on {assumed_km:.2f} km of road: by the law of {country} or as is common there"
+        yield f"speed limits on {assumed_km:.2f} km: assumed from the law of {country} or common practice"
     mapped = sum(node.tags.get("highway") == "traffic_signals" for node in extract.nodes.values())
     if mapped:
         points = counted(mapped, "point")
@@ -175,7 +175,7 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
         yield f"right of way in {built.roundabouts} roundabouts"
     density_m = sum(edge.length_m for edge in built.edges if edge.built_up is None)
     if density_m:
-        yield f"built-up or not on {density_m / 1000:.2f} km of road, by the density of the streets"
+        yield f"built-up area on {density_m / 1000:.2f} km: inferred from street density"
     if built.opened:
         ways = sorted({way_of(edge_id) for edge_id in built.opened})
         yield f"lanes for buses or taxis that part the lanes for cars, opened to cars: {in_words('way', ways)}"

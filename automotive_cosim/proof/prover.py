@@ -195,7 +195,7 @@ class Prover:
 
 
 def read_traces(path: Path) -> Mapping[str, str]:
-    """The traces that ``validate --json`` printed: a SHA-256 by task, half and seed.
+    """The traces that ``tasks validate --json`` printed: a SHA-256 by task, half and seed.
 
     Raises:
         UserError: the file cannot be read, or has none.
@@ -204,10 +204,10 @@ def read_traces(path: Path) -> Mapping[str, str]:
         traces = read_json(path)["traces"]
     except (OSError, ValueError, LookupError, TypeError) as error:
         raise UserError(
-            f"cannot read traces from {path}: {error}; give the output of `automotive-cosim validate --json`"
+            f"cannot read traces from {path}: {error}; give the output of `automotive-cosim tasks validate --json`"
         ) from error
     if not isinstance(traces, dict) or not all(isinstance(sha256, str) for sha256 in traces.values()):
-        raise UserError(f"{path} has no traces; give the output of `automotive-cosim validate --json`")
+        raise UserError(f"{path} has no traces; give the output of `automotive-cosim tasks validate --json`")
     return traces
 
 

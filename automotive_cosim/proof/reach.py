@@ -159,7 +159,7 @@ def _is_reached(task_id: str, half: str, seed: int, simulations: Simulations) ->
 def main() -> None:
     """Measures, and says what is not reached."""
     parser = argparse.ArgumentParser(description="Measure how often the situation of each half comes about.")
-    parser.add_argument("--tasks", default="all", help="as for `automotive-cosim validate`")
+    parser.add_argument("--tasks", default="all", help="as for `automotive-cosim tasks validate`")
     parser.add_argument("--suite", default="standard", help="standard, hard or all")
     parser.add_argument("--first-seed", type=int, default=100)
     parser.add_argument("--seeds", type=int, default=20)

@@ -83,7 +83,9 @@ def unpack(bundle: Path, folder: Path) -> None:
         with open_file(bundle) as file, zipfile.ZipFile(file) as archive:
             _unpack(bundle, archive, folder)
     except (zipfile.BadZipFile, NotImplementedError, OSError, EOFError, ValueError, RuntimeError) as error:
-        raise UserError(f"{bundle} is not a bundle: {error}; `automotive-cosim bundle` makes one") from error
+        raise UserError(
+            f"{bundle} is not a bundle: {error}; `automotive-cosim publish bundle` makes one"
+        ) from error
 
 
 def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
@@ -104,4 +106,4 @@ def _unpack(bundle: Path, archive: zipfile.ZipFile, folder: Path) -> None:
             while chunk := source.read(_CHUNK_BYTES):
                 target.write(chunk)
     if not (folder / NAME).is_file():
-        raise UserError(f"{bundle} is not a bundle: it has no {NAME}; `automotive-cosim bundle` makes one")
+        raise UserError(f"{bundle} is not a bundle: it has no {NAME}; `automotive-cosim publish bundle` makes one")

@@ -137,7 +137,9 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
         UserError: there is no bundle without a problem, or the page cannot be written.
     """
     if not folder.is_dir():
-        raise UserError(f"{folder} is not a folder; give one with bundles, which `automotive-cosim bundle` makes")
+        raise UserError(
+            f"{folder} is not a folder; give one with bundles, which `automotive-cosim publish bundle` makes"
+        )
     entries: list[BoardEntry] = []
     driven: list[DrivenEntry] = []
     left_out: list[str] = []

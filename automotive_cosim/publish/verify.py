@@ -186,7 +186,9 @@ def _archive_problems(folder: Path, bundle: Path) -> Iterator[Problem]:
         again = Path(name) / bundle.name
         archive.pack(folder, again)
         if not filecmp.cmp(again, bundle, shallow=False):
-            yield Problem(bundle.name, "", "is not, to the byte, the archive that `bundle` makes of its files")
+            yield Problem(
+                bundle.name, "", "is not, to the byte, the archive that `publish bundle` makes of its files"
+            )
 
 
 def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator[Problem]:
@@ -232,7 +234,7 @@ def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) 
         for name in line.keys() - known:
             yield Problem(ROWS, f"line {number} {name}", "is not a field of a row")
         if strict and text != json.dumps(as_json(rows[line["id"]]), ensure_ascii=False):
-            yield Problem(ROWS, f"line {number}", "is not in the form in which `bundle` writes it")
+            yield Problem(ROWS, f"line {number}", "is not in the form in which `publish bundle` writes it")
     if strict and names != sorted(names):
         yield Problem(ROWS, "", "is not sorted by id")
 

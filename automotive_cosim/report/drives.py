@@ -223,9 +223,9 @@ def _kinds(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
     return Table(
         "kinds",
         "Kinds of events",
-        ("Kind", "Required act", *(each.label for each in groups)),
+        ("Kind", "Situation", *(each.label for each in groups)),
         tuple(lines),
-        "Events met, out of those that required an act; then look-alikes left alone, out of all.",
+        "Events met, out of those that required an act; then look-alikes (which only resemble one) left alone.",
         heads=2,
     )
 

@@ -86,8 +86,8 @@ class SuccessChange:
         return self.found is None or bool(self.problems) or any(each.not_run for each in self.rates)
 
     def outcome(self, allowed: float) -> str:
-        """``worse``, ``incomplete`` or ``as good``."""
-        return "worse" if self.is_worse(allowed) else "incomplete" if self.is_incomplete else "as good"
+        """``worse``, ``incomplete`` or ``unchanged``."""
+        return "worse" if self.is_worse(allowed) else "incomplete" if self.is_incomplete else "unchanged"
 
 
 def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessChange, ...]:
@@ -127,7 +127,7 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
         labels = ("; ".join(each.label for each in results.contestants) or "nobody" for results in (old, new))
         named = " and ".join(f"{folder} ({label})" for folder, label in zip((before, after), labels, strict=True))
         raise UserError(
-            f"{named} have no contestant in common; compare the same agent, model and geo control before and after "
+            f"{named} have no agent in common; compare the same agent, model and geo control before and after "
             "a change. To compare two agents, or people and an agent, use Compare in `automotive-cosim serve`"
         )
     return tuple(found)
@@ -223,9 +223,9 @@ def sentence(found: Sequence[SuccessChange], allowed: float) -> str:
     told = [
         f"{each.contestant.label} is {each.outcome(allowed)}: {_before_and_after(each)}"
         for each in found
-        if each.outcome(allowed) != "as good"
+        if each.outcome(allowed) != "unchanged"
     ]
-    return "; ".join(told or [f"No contestant is worse: {_before_and_after(found[-1])}"]) + "."
+    return "; ".join(told or [f"No agent is worse: {_before_and_after(found[-1])}"]) + "."
 
 
 def _before_and_after(each: SuccessChange) -> str:
@@ -272,7 +272,7 @@ def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
         for each in found
     ]
     return {
-        "ok": all(each["outcome"] == "as good" for each in contestants),
+        "ok": all(each["outcome"] == "unchanged" for each in contestants),
         "answer": sentence(found, allowed),
         "versions": list(found[0].versions),
         "mixed_versions": bool(mixed_versions(found)),

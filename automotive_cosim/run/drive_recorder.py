@@ -31,13 +31,15 @@ from automotive_cosim.drives.watch import Watch
 from automotive_cosim.interface.trace import plain
 from automotive_cosim.run.collect import PICTURE_QUALITY
 from automotive_cosim.run.drive import DriveObserver, DriveRecord, DriveSetup
-from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.record import remove, write_whole
 from automotive_cosim.run.road import NAME
 from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.words import action_in_words
 
 SHOWN = "shown.jsonl"
+OURS = ("row.json", "timeline.json", "steps.jsonl", SHOWN, "screenshots", NAME)
+"""What an earlier drive left in the folder."""
 
 
 class DriveRecorder(DriveObserver):
@@ -65,6 +67,8 @@ class DriveRecorder(DriveObserver):
     def departed(self, watch: Watch) -> None:
         """Creates the folder and begins its files."""
         setup = self._setup
+        for name in OURS:
+            remove(self.folder / name)
         (self.folder / "screenshots").mkdir(parents=True, exist_ok=True)
         about: Json = {
             "task": setup.family,

@@ -365,7 +365,7 @@ def families_named(asked: Iterable[str]) -> tuple[str, ...]:
             if word in ("all", family.scenario, family.season) or fnmatchcase(family.id, word)
         }
         if not named:
-            raise UnknownNameError("family of drives", word, FAMILIES, "automotive-cosim drive --list")
+            raise UnknownNameError("family of drives", word, FAMILIES, "automotive-cosim show drives")
         chosen |= named
     return tuple(family for family in FAMILIES if family in chosen)
 

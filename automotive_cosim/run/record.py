@@ -93,7 +93,7 @@ class Recorder(EpisodeObserver):
         """Creates the folder and writes step 0."""
         self.folder.mkdir(parents=True, exist_ok=True)
         for name in OURS:
-            _remove(self.folder / name)
+            remove(self.folder / name)
         try:
             (self.folder / "screenshots").mkdir()
         except FileExistsError:
@@ -142,7 +142,8 @@ def write_whole(path: Path, text: str) -> None:
     draft.replace(path)
 
 
-def _remove(path: Path) -> None:
+def remove(path: Path) -> None:
+    """Removes a file or folder, if there is one."""
     if path.is_dir():
         shutil.rmtree(path)
     else:

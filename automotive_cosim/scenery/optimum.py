@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import tempfile
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -103,7 +103,13 @@ class SystemOptimum:
 
 
 def compare(
-    folder: Path, target: Path, options: Options, draws: int, tell: Callable[[OptimumStep], None], *, force: bool
+    folder: Path,
+    target: Path,
+    options: Options,
+    seeds: Sequence[int],
+    tell: Callable[[OptimumStep], None],
+    *,
+    force: bool,
 ) -> SystemOptimum:
     """Looks for a system optimum from an equilibrium on, and drives both with seeds of their own.
 
@@ -111,7 +117,7 @@ def compare(
         folder: what ``equilibrate`` wrote.
         target: folder of a copy of it on the routes of the best step; it appears once it is complete.
         options: as for the equilibrium; its gap is not used.
-        draws: seeds with which both are driven, two or more.
+        seeds: with which both are driven, two or more, none of them that of the search.
         tell: called after every step.
         force: replace the target.
 
@@ -128,10 +134,7 @@ def compare(
         begun = _equilibrium(folder, Path(scratch))
         steps, best = _search(begun, options, tell, path)
         kept = min(steps, key=lambda step: step.total.total_s).number
-        own, least = (
-            tuple(_driven(each, path, options, options.seed + 1 + draw) for draw in range(draws))
-            for each in (begun, best)
-        )
+        own, least = (tuple(_driven(each, path, options, seed) for seed in seeds) for each in (begun, best))
     found = SystemOptimum(steps, kept, own, least)
     record: Json = {"options": asdict(options)} | found.as_json()
     variant.write_variant(target, begun.scenario, begun.configuration, (ROUTES, best.demand), (RECORD, record))

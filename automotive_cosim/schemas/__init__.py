@@ -23,7 +23,7 @@ def text(name: str) -> str:
         UnknownNameError: there is none of that name.
     """
     if name not in names():
-        raise UnknownNameError("schema", name, names(), "automotive-cosim schema")
+        raise UnknownNameError("schema", name, names(), "automotive-cosim show schema")
     return (files(__name__) / f"{name}{SUFFIX}").read_text(encoding="utf-8")
 
 

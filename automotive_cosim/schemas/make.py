@@ -22,7 +22,7 @@ FORMATS: Mapping[str, tuple[str, Callable[[], Json]]] = {
     "bundle": ("bundle.json, what a bundle of an evaluation holds", lambda: documented(Contents)),
     "episode": ("what one episode runs, `setup` in an episode.json", lambda: documented(EpisodeSetup, null=True)),
     "plan": ("plan.toml, what `eval --plan` runs", lambda: documented(Plan)),
-    "rules": ("traffic rules of a place, a file in `context --rules FOLDER`", lambda: documented(RuleFile)),
+    "rules": ("traffic rules of a place, a file in `show context --rules FOLDER`", lambda: documented(RuleFile)),
     "scenario": ("scenario.toml, what SUMO's own files have no word for", lambda: documented(ScenarioFile)),
 }
 """What each is of, and what makes it."""

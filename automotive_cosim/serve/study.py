@@ -36,10 +36,10 @@ from automotive_cosim.traffic.fork import Simulations
 
 QUESTIONS: Mapping[str, str] = {
     "understood": "I understood what the driver wanted.",
-    "sure": "I am sure that I ended it the right way.",
+    "sure": "I am confident that I finished it correctly.",
     "hard": "It was hard to do.",
 }
-SCALE = ("not at all", "a little", "partly", "mostly", "entirely")
+SCALE = ("not at all", "a little", "somewhat", "mostly", "entirely")
 """Answers 1 to 5."""
 LOG = "log.jsonl"
 AWAY_S = 20.0

@@ -44,6 +44,8 @@ KIND = "days"
 
 WEEK = 5
 """Days whose mean is compared with that of as many days before."""
+NEAR = 0.02
+"""Relative gap up to which the routes count as near a user equilibrium, as in ``scenery.equilibrium.Options``."""
 SETTLED = 0.01
 """Traffic has settled when the two differ by less than this share."""
 
@@ -177,8 +179,14 @@ class DaysRow(JobRow):
         return next((day for day, found in enumerate(is_over) if found), None)
 
     def last(self, of: Callable[[Day], float | None]) -> float | None:
-        """The mean of a figure over the last ``WEEK`` days; None if it is not known."""
-        values = [of(day) for day in self.days[-WEEK:]]
+        """The mean of a figure over the last ``WEEK`` days; None if it is not known.
+
+        Of the user equilibrium, that of the day with the smallest gap, as the search does not approach it evenly.
+        """
+        days = self.days[-WEEK:]
+        if self.share is None:
+            days = (min(self.days, key=lambda day: day.relative_gap),) if self.days else ()
+        values = [of(day) for day in days]
         known = [value for value in values if value is not None]
         return fmean(known) if known else None
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
 from automotive_cosim.report.tables import Table, TableRow
-from automotive_cosim.studies.days import SETTLED, WEEK, Day, DaysRow, DaysStudy, read_days
+from automotive_cosim.studies.days import NEAR, SETTLED, WEEK, Day, DaysRow, DaysStudy, read_days
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.shown import Shown, write_shown
 from automotive_cosim.studies.tables import NONE, told, told_mean
@@ -91,7 +91,17 @@ def warnings(study: DaysStudy) -> list[str]:
     seeds = len(study.plan.seeds)
     if seeds < LEAST_SEEDS:
         found.append(f"{counted(seeds, 'seed')}: no interval of a mean below {LEAST_SEEDS} seeds.")
-    unsettled = [named(share) for share in shares(study) if any(row.settled is None for row in study.of(share))]
+    gap = over_seeds(study.of(None), lambda day: day.relative_gap)
+    if gap is not None and gap.value > NEAR:
+        found.append(
+            f"The nearest that was found to a user equilibrium has a relative gap of {gap.value:.1%}, more than "
+            f"{NEAR:.0%}: differences from it are differences from a guess."
+        )
+    unsettled = [
+        named(share)
+        for share in shares(study)
+        if share is not None and any(row.settled is None for row in study.of(share))
+    ]
     if unsettled:
         found.append(f"Not settled in every seed: {', '.join(unsettled)}; run more --days.")
     late = sum(row.days[-1].unfinished for row in study.rows if row.days)
@@ -120,7 +130,9 @@ def tables(study: DaysStudy) -> list[Table]:
             (
                 named(share),
                 str(len(here)),
-                NONE if None in settled else f"{fmean(day for day in settled if day is not None):.0f}",
+                NONE
+                if share is None or None in settled
+                else f"{fmean(day for day in settled if day is not None):.0f}",
                 told_mean(mean_s(study, share), ".1f"),
                 told_mean(over_seeds(here, lambda day: day.advised_s), ".1f"),
                 told_mean(over_seeds(here, lambda day: day.others_s), ".1f"),
@@ -142,7 +154,8 @@ def tables(study: DaysStudy) -> list[Table]:
     )
     note = (
         f"Means of the last {WEEK} days, from the planned departure to the arrival. Settled: the mean of {WEEK} "
-        f"days differs by less than {SETTLED:.0%} from that of the {WEEK} days before. Differences: seed by seed. "
+        f"days differs by less than {SETTLED:.0%} from that of the {WEEK} days before. User equilibrium: the day "
+        "with the smallest gap. Differences: seed by seed. "
         "Relative gap: what all drivers lost against the routes that were quickest that day; 0 is a user "
         "equilibrium."
     )

@@ -159,7 +159,7 @@ class _Reader:
     def start(self, name: str, attributes: dict[str, str], line: int) -> None:
         """Checks an element."""
         if name not in ELEMENTS and self.within and "metadata" not in self.within:
-            unknown = UnknownNameError("element of SUMO", name[:80], ELEMENTS, "docs/scenarios.md")
+            unknown = UnknownNameError("element of SUMO", name[:80], ELEMENTS, "docs/reference/scenarios.md")
             raise ScenarioError(f"{self.path} line {line}: {unknown}")
         if name == "param":
             self._take_parameter(attributes, line)

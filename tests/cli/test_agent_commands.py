@@ -71,17 +71,17 @@ def test_an_agent_of_ones_own_is_run_from_the_working_folder(cli, tmp_path):
 def test_what_is_kept_can_be_shown(cli, tmp_path):
     for _ in range(2):
         cli("run", "--json", *GRID, "--memory", "kept.sqlite")
-    kept = json.loads(cli("memory", "show", "kept.sqlite", "--json").out)
+    kept = json.loads(cli("show", "memory", "kept.sqlite", "--json").out)
     assert [(entry["worked"], entry["failed"]) for entry in kept] == [(2, 0)]
     assert "click index=Max" in kept[0]["steps"]
-    text = cli("memory", "show", "kept.sqlite").out
+    text = cli("show", "memory", "kept.sqlite").out
     assert kept[0]["goal"] in text
     assert "2 of 2" in text
-    assert cli("memory", "show", "kept.sqlite", "--place", "Nowhere").out == "0 strategies\n"
+    assert cli("show", "memory", "kept.sqlite", "--place", "Nowhere").out == "0 strategies\n"
 
 
 def test_a_missing_memory_is_told_and_not_made(cli, tmp_path):
-    ran = cli("memory", "show", "none.sqlite")
+    ran = cli("show", "memory", "none.sqlite")
     assert ran.code == 2
     assert "no memory" in ran.err
     assert not list(tmp_path.iterdir())

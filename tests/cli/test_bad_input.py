@@ -41,7 +41,7 @@ def _assert_refused(ran, *words):
         (["--seed", "one"], ["--seed", "one"]),
         (["--actions", "nowhere.jsonl"], ["nowhere.jsonl"]),
         (["--taks", "x"], ["--taks"]),
-        (["--mode", "monitoring"], ["modes no longer exist", "automotive-cosim drive"]),
+        (["--mode", "monitoring"], ["modes no longer exist", "`drive FAMILY`"]),
         (["surplus"], ["surplus"]),
     ],
 )
@@ -57,7 +57,7 @@ def test_a_row_of_an_episode_that_was_not_planned_is_not_replayed(cli, tmp_path)
     (tmp_path / "manifest.json").write_text(json.dumps(manifest))
     (tmp_path / "episodes.jsonl").write_text(json.dumps(row) + "\n")
     _assert_refused(cli("replay", ".", "own"), "manifest.json has no episode own-1")
-    for command in (["report", "."], ["compare", ".", "."], ["regrade", "."], ["study", "report", "."]):
+    for command in (["report", "."], ["compare", ".", "."], ["publish", "regrade", "."]):
         for text in ("{}", '{"format": 1}', '{"format": 1, "plan": 3}', "[" * 10_000):
             (tmp_path / "manifest.json").write_text(text)
             _assert_refused(cli(*command))
@@ -74,7 +74,7 @@ def test_a_folder_of_an_earlier_version_is_read_unless_it_has_monitoring(cli, tm
     assert [row.id for row in found.rows] == [job.id]
     manifest["plan"] = plan | {"modes": ["prompted", "monitoring"]}
     (tmp_path / "manifest.json").write_text(json.dumps(manifest))
-    for command in (["report", "."], ["compare", ".", "."], ["regrade", "."], ["replay", ".", job.id]):
+    for command in (["report", "."], ["compare", ".", "."], ["publish", "regrade", "."], ["replay", ".", job.id]):
         _assert_refused(cli(*command), "manifest.json has an older format", "drives have replaced monitoring")
 
 

@@ -158,7 +158,7 @@ def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
     assert again.code == 0, again.err
     assert again.out.count("the same\n") >= 4
     assert "all 3 steps are the same" in again.out
-    judged_again = cli("regrade", "e")
+    judged_again = cli("publish", "regrade", "e")
     assert (judged_again.code, judged_again.out) == (0, "0 of 1 verdicts change; 1 of 1 planned episode judged\n")
     lines = read_trace(tmp_path / "e", name)
     lines[2]["signals"]["Vehicle.Speed"] = -1.0
@@ -179,7 +179,7 @@ def test_a_folder_that_is_no_evaluation_is_told(cli, tmp_path, plan, said):
     if plan is not None:
         with opened(tmp_path / "f", plan, JobRow, parts=()):
             pass
-    for command in (("report", "f"), ("replay", "f", "x"), ("regrade", "f"), ("compare", "f", "f")):
+    for command in (("report", "f"), ("replay", "f", "x"), ("publish", "regrade", "f"), ("compare", "f", "f")):
         ran = cli(*command)
         assert (ran.code, ran.err.count("\n")) == (2, 1)
         assert said in ran.err

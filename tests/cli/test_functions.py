@@ -1,4 +1,4 @@
-"""``automotive-cosim functions``."""
+"""``automotive-cosim show functions``."""
 
 import json
 
@@ -6,10 +6,10 @@ import pytest
 
 
 def test_it_lists_every_function_in_words_and_in_the_form_of_each_api(cli):
-    ran = cli("functions")
+    ran = cli("show", "functions")
     assert ran.code == 0
     assert "set_hvac_temperature(which: driver|passenger, celsius: 16 to 28)" in ran.out
-    every = json.loads(cli("functions", "--json").out)
+    every = json.loads(cli("show", "functions", "--json").out)
     assert ran.out.splitlines()[-1].startswith(f"{len(every)} functions")
     assert 60 <= len(every) <= 90
     for option, schema, inside in (
@@ -17,13 +17,13 @@ def test_it_lists_every_function_in_words_and_in_the_form_of_each_api(cli):
         ("--mcp", "inputSchema", ""),
         ("--anthropic", "input_schema", ""),
     ):
-        told = json.loads(cli("functions", option).out)
+        told = json.loads(cli("show", "functions", option).out)
         flat = [each[inside] if inside else each for each in told]
         assert [(each["name"], each[schema]) for each in flat] == [(e["name"], e["parameters"]) for e in every]
 
 
 @pytest.mark.parametrize("options", [("--json", "--mcp"), ("--openai", "--anthropic")])
 def test_two_forms_are_refused(cli, options):
-    ran = cli("functions", *options)
+    ran = cli("show", "functions", *options)
     assert (ran.code, ran.out) == (2, "")
     assert "give one of them" in ran.err

@@ -8,6 +8,7 @@ from typer.main import get_command
 
 from automotive_cosim import __version__
 from automotive_cosim.agents import AGENTS
+from automotive_cosim.cli.former import COMMANDS, OPTIONS
 from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.tasking.task import Suite
@@ -15,20 +16,6 @@ from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 
 HEAVY = ("libsumo", "pydantic", "shapely", "pyproj", "PIL", "openai", "matplotlib", "jinja2", "scipy", "pandas")
-COMMANDS = (
-    "run",
-    "eval",
-    "report",
-    "compare",
-    "replay",
-    "regrade",
-    "bench",
-    "context",
-    "scenarios",
-    "tasks",
-    "agents",
-    "schema",
-)
 
 
 def test_help_names_every_command_and_loads_nothing_heavy():
@@ -41,8 +28,8 @@ def test_help_names_every_command_and_loads_nothing_heavy():
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert done.stderr == ""
     assert done.stdout.splitlines()[-1] == "LOADED"
-    for command in COMMANDS:
-        assert command in done.stdout
+    for command in get_command(app).commands:
+        assert f" {command} " in done.stdout
 
 
 def every_command(command=None, path=()):
@@ -118,10 +105,9 @@ def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
 
 
 OTHERS = {
-    ("mcp",), ("serve",),
-    ("report",), ("playback",), ("screens",), ("schema",), ("study", "report"), ("tasks", "export"),
-    ("signals", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
-    ("scenarios", "download"), ("bundle",), ("leaderboard",), ("measures",),
+    ("mcp",), ("serve",), ("measures",), ("report",), ("show", "screens"), ("show", "schema"), ("tasks", "export"),
+    ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"), ("scenarios", "download"),
+    ("publish", "bundle"), ("publish", "leaderboard"), ("export",),
 }  # fmt: skip
 """Commands whose result is a file, or a server."""
 
@@ -133,6 +119,24 @@ def test_every_command_that_lists_or_reports_does_so_as_json(cli, command):
     assert ("--json" in told) is (command not in OTHERS and not is_group)
 
 
+@pytest.mark.parametrize("former", [*COMMANDS, *(" ".join(words) for words in OPTIONS)])
+def test_a_former_name_is_answered_with_the_present_one(cli, former):
+    ran = cli(*former.split(), "anything")
+    assert (ran.code, ran.out, ran.err.count("\n")) == (2, "", 1)
+    assert ran.err.startswith("error: ")
+    if former in COMMANDS:
+        assert ran.err == f"error: `{former}` is now `{COMMANDS[former]}`\n"
+        *command, last = COMMANDS[former].split()
+        assert tuple(command if last.startswith("--") else [*command, last]) in set(every_command())
+        assert tuple(former.split()) not in set(every_command())
+
+
+def test_every_command_stands_under_a_heading():
+    panels = {command.rich_help_panel for command in get_command(app).commands.values()}
+    assert 3 <= len(panels) <= 5
+    assert all(isinstance(panel, str) for panel in panels)
+
+
 @pytest.mark.parametrize(
     "command",
     [
@@ -140,7 +144,8 @@ def test_every_command_that_lists_or_reports_does_so_as_json(cli, command):
         "agents show t3a",
         "scenarios list",
         "scenarios show grid",
-        "signals list",
+        "show signals",
+        "show drives",
         "tasks show hvac_fan_max",
     ],
 )

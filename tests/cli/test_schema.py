@@ -1,4 +1,4 @@
-"""``automotive-cosim schema``."""
+"""``automotive-cosim show schema``."""
 
 import json
 import subprocess
@@ -8,30 +8,31 @@ from automotive_cosim import schemas
 
 
 def test_it_lists_every_format(cli):
-    ran = cli("schema")
+    ran = cli("show", "schema")
     assert ran.code == 0
     assert tuple(line.split()[0] for line in ran.out.splitlines()) == schemas.names()
 
 
 def test_it_prints_one_or_writes_it(cli, tmp_path):
-    printed = cli("schema", "plan").out
+    printed = cli("show", "schema", "plan").out
     assert json.loads(printed)["title"] == "plan"
-    assert cli("schema", "plan", "--out", "plan.schema.json").code == 0
+    assert cli("show", "schema", "plan", "--out", "plan.schema.json").code == 0
     assert (tmp_path / "plan.schema.json").read_text(encoding="utf-8") == printed
 
 
 def test_a_wrong_name_is_one_line(cli):
-    ran = cli("schema", "plam")
+    ran = cli("show", "schema", "plam")
     assert (ran.code, ran.out) == (2, "")
     assert (
-        ran.err == "error: no schema named 'plam': did you mean 'plan'? List them with `automotive-cosim schema`.\n"
+        ran.err
+        == "error: no schema named 'plam': did you mean 'plan'? List them with `automotive-cosim show schema`.\n"
     )
-    assert "needs the NAME of a schema" in cli("schema", "--out", "x.json").err
+    assert "needs the NAME of a schema" in cli("show", "schema", "--out", "x.json").err
 
 
 def test_it_reads_what_is_shipped_and_loads_nothing_for_it():
     code = (
-        "import sys; sys.argv = ['automotive-cosim', 'schema', 'rules']\n"
+        "import sys; sys.argv = ['automotive-cosim', 'show', 'schema', 'rules']\n"
         "from automotive_cosim.cli.main import main\n"
         "try: main()\n"
         "finally: print([name for name in ('shapely', 'automotive_cosim.geo') if name in sys.modules])"

@@ -28,6 +28,8 @@ from automotive_cosim.cli.live import Live
 from automotive_cosim.cli.main import CLOSED_PIPE
 from automotive_cosim.cli.terminal import Plain, escaped
 from automotive_cosim.formats.plain import plain
+from tests.cli.streams import OUTPUTS
+from tests.cli.test_main import every_command
 
 EVIL = "\x1b[2J\x1b]0;owned\x07\x9b1A\r\x08\u202e"
 
@@ -128,7 +130,7 @@ def test_a_command_does_its_work_without_the_streams_that_it_lacks(tmp_path: Pat
     program = shlex.join([sys.executable, "-m", "automotive_cosim_main"])
     table = tmp_path / "plan.schema.json"
     done = subprocess.run(
-        ["sh", "-c", f"{program} schema plan --out {table} {closed}"], capture_output=True, text=True
+        ["sh", "-c", f"{program} show schema plan --out {table} {closed}"], capture_output=True, text=True
     )
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(table.read_text("utf-8"))["title"] == "plan"
@@ -157,3 +159,32 @@ def test_a_name_of_any_letters_ends_without_a_traceback(tmp_path: Path, name: st
     assert done.returncode == 2
     assert done.stderr.startswith(b"error: ")
     assert done.stderr.count(b"\n") == 1
+
+
+PRINTS = ("--help", "agents list --json", "show signals", "show drives", "show schema plan")
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(sys.platform != "linux", reason="forks, and asks for /dev/full")
+def test_no_command_ends_with_a_traceback_whatever_its_output_and_names(tmp_path: Path) -> None:
+    """A name that is neither ASCII nor UTF-8, for every command; some that print, with every output."""
+    every = [command for command in every_command() if command]
+    asked = [
+        *(("ascii", [*command, "größe-東京-\udcf6"]) for command in every),
+        *((output, words.split()) for output in OUTPUTS for words in PRINTS),
+    ]
+    done = subprocess.run(
+        [sys.executable, "-m", "tests.cli.streams"],
+        input=json.dumps(asked),
+        capture_output=True,
+        text=True,
+        check=True,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(Path(__file__).parents[2])},
+    )
+    ends = json.loads(done.stdout)
+    assert [end for end in ends if "Traceback" in end[3] or end[2] not in (0, 2, CLOSED_PIPE)] == []
+    codes = {output: {code for kind, words, code, _ in ends if kind == output} for output in OUTPUTS}
+    assert codes["closed"] == {0}
+    assert codes["without a reader"] == {CLOSED_PIPE}
+    assert codes["full"] == {2}

@@ -1,4 +1,4 @@
-"""``automotive-cosim validate`` refuses what it cannot prove; ``tests/proof`` has what it proves."""
+"""``automotive-cosim tasks validate`` refuses what it cannot prove; ``tests/proof`` has what it proves."""
 
 import pytest
 from hypothesis import given
@@ -25,7 +25,7 @@ from automotive_cosim.proof.prover import GATES, Proof
 )
 def test_bad_input_is_one_line(cli, tmp_path, words, said):
     (tmp_path / "file").touch()
-    ran = cli("validate", *words)
+    ran = cli("tasks", "validate", *words)
     assert (ran.code, ran.err.count("\n")) == (2, 1)
     assert ran.err.startswith("error: ")
     assert said in ran.err

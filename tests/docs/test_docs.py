@@ -108,6 +108,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
         HELP,
         "takes minutes; tests/safety and tests/measures try them",
     ),
+    (r"export", HELP, "needs a recorded drive; tests/exchange has one"),
     (r"eval .*--executor ray", HELP, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
@@ -128,8 +129,9 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
         (*SMALL, "--out", "runs/last"),
         "takes ten seconds in its own scenario; tests/cli/test_run.py runs it",
     ),
-    (r"validate", ("--gates", "start", "--seeds", "1"), "all gates take minutes; tests/proof tries them"),
+    (r"tasks validate", ("--gates", "start", "--seeds", "0"), "all gates take minutes; tests/proof tries them"),
     (r"drive [a-z]", HELP, "takes a minute; tests/drives drives"),
+    (r"report runs/hunt", HELP, "needs a search; tests/safety/test_trying.py has one"),
     (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_drives.py reports on some"),
     (r"(serve|mcp)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
@@ -201,7 +203,7 @@ def ran(reader, place):
         assert reader("eval", *plan).code == 0
         for name in ("first", "before", "after"):
             shutil.copytree(place / "runs/mine", place / "runs" / name)
-        assert reader("bundle", "runs/mine", "--out", "mine.bundle").code == 0
+        assert reader("publish", "bundle", "runs/mine", "--out", "mine.bundle").code == 0
         (place / "bundles").mkdir()
         shutil.copyfile(place / "mine.bundle", place / "bundles/mine.bundle")
     return place
@@ -221,7 +223,7 @@ def test_every_command_runs(line, reader, place, request):
         line = line.replace(" ID", f" {episode}")
     if added != HELP and "hamlet" in line and "import" not in line and not Path("hamlet").exists():
         assert reader("scenarios", "import", "docs/examples/hamlet.osm").code == 0
-    if line.startswith("automotive-cosim bundle"):
+    if line.startswith("automotive-cosim publish bundle"):
         Path("mine.bundle").unlink(missing_ok=True)
     words = shlex.split(line.split(" | ")[0].split(" > ")[0], comments=True)[1:]
     if "--tasks-from" in words:  # the catalogue of this process is complete
@@ -241,7 +243,7 @@ def test_every_command_runs(line, reader, place, request):
 )
 def test_every_python_block_runs(page, reader, on_path, request):
     names: dict[str, object] = {"__name__": "__main__", "ask": None}
-    if page.stem == "evaluation":
+    if page == TOP / "docs/evaluation.md":
         request.getfixturevalue("ran")
     try:
         for language, text in blocks(page):
@@ -271,7 +273,7 @@ def test_pages_count_the_tasks_as_they_are():
         "docs/report.md": f"{len(standard)} tasks in eight modules; {pairs} of them are pairs, so there are "
         f"{len(standard) + pairs} halves",
         "docs/comparison.md": f"{len(standard)} tasks, {pairs} of them pairs",
-        "docs/tasks.md": f"{len(hard)} tasks, {hard_pairs} of them pairs",
+        "docs/reference/tasks.md": f"{len(hard)} tasks, {hard_pairs} of them pairs",
     }
     for page, words in told.items():
         assert words in (TOP / page).read_text(encoding="utf-8")
@@ -291,6 +293,7 @@ def test_pages_count_the_tasks_as_they_are():
 def test_pages_count_the_episodes_as_they_are(cli, line, words):
     planned = re.search(r"runs +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
     assert planned is not None
-    text = (TOP / "docs/evaluation.md").read_text(encoding="utf-8")
+    pages = ("docs/evaluation.md", "docs/reference/evaluation.md")
+    text = "".join((TOP / page).read_text(encoding="utf-8") for page in pages)
     assert f"automotive-cosim eval {line}" in text
     assert words.format(planned[1]) in text

@@ -50,7 +50,7 @@ def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(ev
     assert first.returncode == 0, first.stderr
     cases = ElementTree.parse(tmp_path / "first/compare.xml").findall(".//testcase")
     assert len(cases) == 3
-    assert "as good" in (tmp_path / "first/compare.md").read_text(encoding="utf-8")
+    assert "unchanged" in (tmp_path / "first/compare.md").read_text(encoding="utf-8")
     won = sum(
         json.loads(row)["success"] for row in (tmp_path / "first/after/episodes.jsonl").read_text().splitlines()
     )

@@ -1,4 +1,4 @@
-"""``automotive-cosim context``."""
+"""``automotive-cosim show context``."""
 
 from __future__ import annotations
 

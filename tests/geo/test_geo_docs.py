@@ -1,4 +1,4 @@
-"""docs/geo.md says what is so: its examples are run."""
+"""docs/geo.md and its reference say what is so: their examples are run."""
 
 from __future__ import annotations
 
@@ -24,7 +24,8 @@ from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Status
 from automotive_cosim.geo.situation import CONDITIONS
 
-DOC = (Path(__file__).parents[2] / "docs" / "geo.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parents[2] / "docs"
+DOC = "".join((DOCS / page).read_text(encoding="utf-8") for page in ("geo.md", "reference/geo.md"))
 BLOCKS = re.findall(r"```(\w+)\n(.*?)```", DOC, re.DOTALL)
 APP = typer.Typer()
 APP.command(context_settings=context.COMMAND_SETTINGS)(context.context)
@@ -43,7 +44,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def test_the_example_shows_in_the_command(folder: Path) -> None:
-    arguments = _block("console").removeprefix("$ automotive-cosim context ").split()
+    arguments = _block("console").removeprefix("$ automotive-cosim show context ").split()
     result = CliRunner().invoke(APP, arguments, catch_exceptions=False)
     assert set(_block("text").splitlines()) <= set(result.stdout.splitlines())
 
@@ -59,7 +60,7 @@ def test_the_example_shows_through_geo(folder: Path, drive: Callable[..., Drivin
 def test_the_refusal_is_the_one_shown(folder: Path) -> None:
     path = folder / "my_rules" / "FR-tours.toml"
     path.write_text(_block("toml").replace('topic = "limit"', 'topic = "limt"'), encoding="utf-8")
-    arguments = _block("console").removeprefix("$ automotive-cosim context ").split()
+    arguments = _block("console").removeprefix("$ automotive-cosim show context ").split()
     with pytest.raises(GeoDataError) as error:
         CliRunner().invoke(APP, arguments, catch_exceptions=False)
     assert f"error: {error.value}\n" == _block("text", 1)
@@ -73,7 +74,7 @@ def test_the_rules_of_each_status_are_counted() -> None:
     verified, whole = counts["verified"], sum(counts.values())
     for page, words in (
         ("README.md", f"{verified} of {whole}"),
-        ("docs/evaluation.md", f"Of our {whole} legal rules {verified} are verified"),
+        ("docs/reference/evaluation.md", f"Of our {whole} legal rules {verified} are verified"),
     ):
         assert words in (Path(__file__).parents[2] / page).read_text(encoding="utf-8"), page
 
@@ -86,7 +87,7 @@ def test_the_basics_of_each_status_are_counted() -> None:
     assert tuple(map(int, told)) == tuple(counts[status] for status in ("secondary", "knowledge", "uncertain"))
 
 
-@pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim context (.*)$", DOC, re.MULTILINE))
+@pytest.mark.parametrize("line", re.findall(r"^    automotive-cosim show context (.*)$", DOC, re.MULTILINE))
 def test_the_commands_run(line: str) -> None:
     assert CliRunner().invoke(APP, line.split(), catch_exceptions=False).exit_code == 0
 

@@ -2,7 +2,7 @@
 
 A change that means to alter them (another signal, another text on a screen) renews the record:
 
-    automotive-cosim validate --suite all --seeds 3 --gates start --workers 2 --json > tests/proof/traces.json
+    automotive-cosim tasks validate --suite all --gates start --workers 2 --json > tests/proof/traces.json
 
 CI compares all that are on record for one seed, and the seeds take turns; here are some.
 """

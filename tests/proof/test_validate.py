@@ -16,7 +16,7 @@ from automotive_cosim.proof.batch import ProofPlan
 from automotive_cosim.proof.prover import Proof, Prover
 from automotive_cosim.run.store import read_rows
 
-PROGRAM = (sys.executable, "-c", "from automotive_cosim.cli.main import main; main()", "validate")
+PROGRAM = (sys.executable, "-c", "from automotive_cosim.cli.main import main; main()", "tasks", "validate")
 OWN = """
 import os, time
 from dataclasses import dataclass
@@ -80,7 +80,7 @@ def whole(sumo, tmp_path_factory):
     home = tmp_path_factory.mktemp("proven")
     (home / "tasks").mkdir()
     (home / "tasks" / "own.py").write_text(OWN)
-    asked = words("own_one,own_two", "--seeds", "2", "--json", "--out", "whole")
+    asked = words("own_one,own_two", "--seeds", "0-1", "--json", "--out", "whole")
     return subprocess.run(asked, cwd=home, capture_output=True, text=True, check=False), home / "whole"
 
 
@@ -107,7 +107,7 @@ def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(
     assert head.startswith("4 proofs by 3 gates, ")
     assert [line.split()[1] for line in lines] == ["1/4", "2/4", "3/4", "4/4"]
     assert {path.name for path in folder.parent.iterdir()} == {"tasks", "whole"}
-    shared = validate("own_one,own_two", "--seeds", "2", "--json", "--workers", "2")
+    shared = validate("own_one,own_two", "--seeds", "0-1", "--json", "--workers", "2")
     assert told(shared) == told(alone)
     assert {path.name for path in tmp_path.iterdir()} == {"tasks"}
 
@@ -116,7 +116,7 @@ def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(
     (cut / "manifest.json").write_bytes((folder / "manifest.json").read_bytes())
     lines = (folder / "episodes.jsonl").read_bytes().splitlines(keepends=True)
     (cut / "episodes.jsonl").write_bytes(lines[0] + lines[1][:40])
-    again = validate("own_one,own_two", "--seeds", "2", "--json", "--out", "cut")
+    again = validate("own_one,own_two", "--seeds", "0-1", "--json", "--out", "cut")
     assert told(again) == told(alone)
     written = (cut / "episodes.jsonl").read_bytes().splitlines(keepends=True)
     assert written[0] == lines[0]
@@ -129,11 +129,11 @@ def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(
 def test_another_plan_or_a_changed_task_wants_another_folder(validate, whole, tmp_path):
     _, folder = whole
     shutil.copytree(folder, tmp_path / "f")
-    other = validate("own_one,own_two", "--seeds", "1", "--out", "f")
+    other = validate("own_one,own_two", "--seeds", "0", "--out", "f")
     assert other.returncode == 2
     assert "started with a different plan: seeds was [0, 1] and is [0]" in other.stderr
     (tmp_path / "tasks" / "own.py").write_text(OWN.replace("Split it.", "Part it."))
-    changed = validate("own_one,own_two", "--seeds", "2", "--out", "f")
+    changed = validate("own_one,own_two", "--seeds", "0-1", "--out", "f")
     assert (changed.returncode, changed.stderr.count("\n")) == (2, 1)
     assert "a different plan: task_files was" in changed.stderr
     assert len(read_rows(tmp_path / "f", Proof)) == 4
@@ -148,7 +148,7 @@ def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(
     command, program, tmp_path, until, session, how
 ):
     (tmp_path / "wait").touch()
-    words = command("own_one,own_waits", "--seeds", "1", "--workers", "2", "--out", "f", only="oracle,start")
+    words = command("own_one,own_waits", "--seeds", "0", "--workers", "2", "--out", "f", only="oracle,start")
     process = program(*words, stderr=subprocess.PIPE)
     lines = tmp_path / "f" / "episodes.jsonl"
     try:
@@ -175,7 +175,7 @@ def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(
 
 @pytest.mark.sumo
 def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(validate, tmp_path):
-    ran = validate("own_one,own_raises,own_dies", "--seeds", "1", "--out", "f", only="oracle,start")
+    ran = validate("own_one,own_raises,own_dies", "--seeds", "0", "--out", "f", only="oracle,start")
     assert ran.returncode == 3
     assert "own_raises, seed 0\n    RuntimeError: no such thing\n" in ran.stderr
     assert "own_dies, seed 0\n    WorkerDied: the worker died with exit code -9\n" in ran.stderr
@@ -187,7 +187,7 @@ def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(va
 
 @pytest.mark.sumo
 def test_a_gate_that_fails_is_told_beneath_its_task_and_sets_the_exit_code(validate):
-    ran = validate("own_twice", "--seeds", "1", "--json")
+    ran = validate("own_twice", "--seeds", "0", "--json")
     assert ran.returncode == 1
     _, first, *faults = ran.stderr.splitlines()
     assert first.endswith("1/1 own_twice, seed 0")

@@ -58,10 +58,10 @@ def test_names_and_texts_stay_texts(case, folder, unpacked, tmp_path, cli):
     renewed(unpacked, shelf / f"{EVIL.replace('/', '')}.bundle")
     shown = [
         cli("report", folder),
-        cli("regrade", folder),
-        cli("verify", folder, "--replay", "0"),
-        cli("bundle", folder, "--out", tmp_path / "again.bundle"),
-        cli("leaderboard", shelf, "--out", tmp_path / "page.html"),
+        cli("publish", "regrade", folder),
+        cli("publish", "verify", folder, "--replay", "0"),
+        cli("publish", "bundle", folder, "--out", tmp_path / "again.bundle"),
+        cli("publish", "leaderboard", shelf, "--out", tmp_path / "page.html"),
     ]
     for ran in shown:
         assert plain(ran.out + ran.err) == ran.out + ran.err

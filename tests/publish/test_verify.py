@@ -158,6 +158,7 @@ def test_every_field_of_a_row_is_found_by_its_trace_plan_and_verdict_whatever_th
     assert f"{ROWS} wall_seconds" in missed
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_every_field_of_a_trace_is_found_or_on_the_list(folder):
     row = judged(folder)
@@ -200,6 +201,7 @@ def is_found(path: Path) -> bool:
         return True
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_every_field_of_the_manifest_and_the_contents_is_found_or_on_the_list(unpacked, tmp_path):
     missed = set()
@@ -329,14 +331,14 @@ def test_the_commands_tell_by_their_exit_code(packed, tmp_path):
 
     from automotive_cosim.cli.main import app
 
-    fine = CliRunner().invoke(app, ["verify", str(packed), "--replay", "1"])
+    fine = CliRunner().invoke(app, ["publish", "verify", str(packed), "--replay", "1"])
     assert fine.exit_code == 0, fine.output
     assert "1 drive replayed" in fine.output
     assert "this check cannot tell" in fine.output
     data = bytearray(packed.read_bytes())
     data[data.index(b"wall_seconds") + 16] ^= 1
     (tmp_path / "b.bundle").write_bytes(data)
-    bad = CliRunner().invoke(app, ["verify", str(tmp_path / "b.bundle"), "--replay", "0"])
+    bad = CliRunner().invoke(app, ["publish", "verify", str(tmp_path / "b.bundle"), "--replay", "0"])
     assert bad.exit_code == 1 or isinstance(bad.exception, UserError)
 
 

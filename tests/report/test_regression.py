@@ -38,7 +38,7 @@ def test_the_same_twice_is_as_good(tmp_path):
     found = changes(first, write(tmp_path / "b", lost={1}))
     assert [each.unit for each in found] == ["episodes", "pairs"]
     assert not any(each.is_worse(0.0) for each in found)
-    assert "as good" in markdown(found, 0.0)
+    assert "unchanged" in markdown(found, 0.0)
     assert "Lost," not in markdown(found, 0.0)
 
 
@@ -91,7 +91,7 @@ def test_junit_counts_what_it_lists(tmp_path):
 
 
 def test_runs_that_share_nothing_are_refused(tmp_path):
-    with pytest.raises(UserError, match="have no contestant in common"):
+    with pytest.raises(UserError, match="have no agent in common"):
         changes(write(tmp_path / "a"), write(tmp_path / "b", agent="t3a"))
 
 

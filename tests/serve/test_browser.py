@@ -269,7 +269,7 @@ def perform(page: Any, action: Action, game: Overseen) -> int:
             page.mouse.wheel(0, 100 if action.direction == "down" else -100)
         case ActionType.STATUS:
             page.get_by_label("Reason for declining").select_option(str(action.reason or "none"))
-            names = {"complete": "Done", "not_needed": "Not needed", "infeasible": "Cannot or must not"}
+            names = {"complete": "Done", "not_needed": "Not needed", "infeasible": "Can't or not allowed"}
             page.get_by_role("button", name=names[str(action.goal_status)]).click()
         case _:
             raise AssertionError(f"no hand for {action}")

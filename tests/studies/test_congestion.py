@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from automotive_cosim.cli.results import report
 from automotive_cosim.cli.study import app
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.studies.congestion.drive import run_congestion
@@ -252,9 +253,8 @@ def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> N
         pairs(tmp_path, tmp_path / "other")
 
 
-def test_the_command_writes_the_report(driven: Path) -> None:
-    told = CliRunner().invoke(app, ["report", str(driven)])
-    assert told.exit_code == 0, told.output
+def test_the_report_is_whole(driven: Path) -> None:
+    report(driven)
     page = (driven / "report.html").read_text(encoding="utf-8")
     assert page.index("<h1>“roadworks edge=main limit_kmh=9”") < page.index("The network with each measure")
     for name in ("delay", "map", "map_change", "mfd", "time_space", "time_space_measure"):

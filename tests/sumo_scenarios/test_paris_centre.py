@@ -134,7 +134,7 @@ def test_axes_without_a_signal(edges: list[str], net: Net) -> None:
 
 @pytest.mark.slow
 def test_a_hurried_driver_holds_80_on_the_avenue_foch(held_s: Callable[..., float]) -> None:
-    """In other traffic than ``validate`` has, which finds 80 in a 50 there with its seeds."""
+    """In other traffic than ``tasks validate`` has, which finds 80 in a 50 there with its seeds."""
     drive = dict(factor=1.6, speed_kmh=78.0, limit_kmh=50.0, within_s=240.0)
     assert held_s("paris_centre", "foch", seed=159, **drive) >= 15
 

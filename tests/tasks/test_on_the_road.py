@@ -53,7 +53,7 @@ def verdict(episode: Episode) -> Verdict:
 @pytest.mark.long
 @pytest.mark.parametrize("module", SAMPLE)
 def test_a_task_of_each_module_passes_every_gate(simulations, module: str):
-    """All tasks are proven by ``automotive-cosim validate``; here one each, the cheapest gates aside."""
+    """All tasks are proven by ``automotive-cosim tasks validate``; here one each, the cheapest gates aside."""
     task = min((task for task in CATALOGUE.values() if task.module == module), key=lambda task: task.optimal_steps)
     later = ("random", "reach", "effect", "uncoupled")  # the last two have findings that are not settled yet
     prover = Prover(tuple(gate for gate in GATES if gate not in later), simulations)

@@ -21,7 +21,7 @@ def family_named(name: str) -> Family:
         UnknownNameError: there is none.
     """
     if name not in FAMILIES:
-        raise UnknownNameError("family of drives", name, FAMILIES, "automotive-cosim drive --list")
+        raise UnknownNameError("family of drives", name, FAMILIES, "automotive-cosim show drives")
     return FAMILIES[name]
 
 

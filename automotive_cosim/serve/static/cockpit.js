@@ -12,7 +12,7 @@ const KEYS = { Escape: { action_type: "navigate_back" }, Home: { action_type: "n
 
 export const RULES = [
   "You get what an agent gets: the driver's words, the screen, the readings of the car and its receivers, and the facts about the place. You see neither the road nor the verdict.",
-  "The road does not wait. An act takes a second; without an act, a second passes anyway. An episode ends after two minutes.",
+  "The traffic does not wait. Each action takes one second, and the clock also runs while you do nothing. An episode ends after two minutes.",
   "Do what the driver needs, and nothing else. Sometimes nothing has to be done, or the request must not be granted: then say so.",
   "Ask the driver only for what you cannot find out otherwise. Use “Look up” for rules, weather and roads; warnings are on the screen “Safety”.",
   "At the end, declare: done, not needed, or that it cannot or must not be done, with the reason if you can. You are judged by the same checks as an agent.",
@@ -24,7 +24,7 @@ export function rulesCard() {
 }
 
 // Plays one person's episodes: `base` is the server's path, `query` identifies the person, `say` shows an error.
-export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel = "Leave" }) {
+export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel = "Quit" }) {
   const address = (what, more = {}) => `${base}${what}?${new URLSearchParams({ ...query, ...more })}`;
   const act = async (action) => { try { foresee(await send(address("/act"), action)); say(null); } catch (error) { say(error); } };
   let scene = null;
@@ -39,7 +39,7 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
   const context = h("pre");
   const readings = h("dl", { class: "readings" });
   const typed = h("form", { class: "filters", hidden: true });
-  const reason = h("select", { "aria-label": "Reason for declining" }, REASONS.map((each) => h("option", { value: each }, each === "none" ? "no reason" : plain(each))));
+  const reason = h("select", { "aria-label": "Reason for declining" }, REASONS.map((each) => h("option", { value: each }, each === "none" ? "No reason given" : each === "already_so" ? "Already done" : plain(each))));
   const declare = (status_) => act({ action_type: "status", goal_status: status_, reason: status_ === "complete" ? "none" : reason.value });
   const answer = h("input", { type: "text", maxlength: 120, "aria-label": "Say to the driver, ask, or look up", placeholder: "Say, ask, or look up" });
   const button = (label, action, kind) => h("button", { type: "button", class: kind, onclick: action }, label);
@@ -57,7 +57,7 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
       button("Back", () => act({ action_type: "navigate_back" })), button("Home", () => act({ action_type: "navigate_home" })), button("Enter", () => act({ action_type: "keyboard_enter" })),
       h("form", { class: "filters say", onsubmit: (event) => { event.preventDefault(); speak("answer"); } }, answer, h("button", { type: "submit" }, "Say"), button("Ask", () => speak("ask_driver")), button("Look up", () => speak("query")))),
     h("div", { class: "card transport" },
-      button("Done", () => declare("complete"), "main"), button("Not needed", () => declare("not_needed")), button("Cannot or must not", () => declare("infeasible")), reason,
+      button("Done", () => declare("complete"), "main"), button("Not needed", () => declare("not_needed")), button("Can't or not allowed", () => declare("infeasible")), reason,
       button(leaveLabel, async () => { try { await send(address("/leave"), {}); } catch (error) { say(error); } })),
     practice, told, h("details", { class: "card", open: true }, h("summary", {}, "What is known about the place"), context),
     h("details", { class: "card" }, h("summary", {}, "Readings of the car and its receivers"), readings));

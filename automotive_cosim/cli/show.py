@@ -1,0 +1,18 @@
+"""``automotive-cosim show``: what the car, the map and the files consist of."""
+
+from __future__ import annotations
+
+import typer
+
+from automotive_cosim.cli import context, drive, functions, memory, schema, screens, signals
+
+app = typer.Typer(
+    help="Show screens, signals, functions, drives, local law and file formats.", no_args_is_help=True
+)
+app.command()(screens.screens)
+app.command()(signals.signals)
+app.command()(functions.functions)
+app.command("drives")(drive.drives)
+app.command(context_settings=context.COMMAND_SETTINGS)(context.context)
+app.command()(memory.memory)
+app.command()(schema.schema)
