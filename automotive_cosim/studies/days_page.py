@@ -18,6 +18,9 @@ from automotive_cosim.studies.tables import NONE, told, told_mean
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+LEAST_SHARE = 0.0005
+"""Smaller differences are none in the answer, which has a tenth of a per cent."""
+
 EQUILIBRIUM = "user equilibrium"
 
 
@@ -68,7 +71,8 @@ def answer(study: DaysStudy) -> str:
     for what, mean in others.items():
         if mean is not None:
             share = least_s / mean.value - 1
-            parts.append(f"{abs(share):.1%} {'less' if share < 0 else 'more'} than {what}")
+            far = f"{abs(share):.1%} {'less' if share < 0 else 'more'} than"
+            parts.append(f"{far if abs(share) >= LEAST_SHARE else 'as long as'} {what}")
     beside = f", {' and '.join(parts)}" if parts else ""
     over = counted(found[best].seeds, "seed")
     return (
@@ -80,6 +84,8 @@ def answer(study: DaysStudy) -> str:
 def _settled(study: DaysStudy, share: float | None) -> str:
     days = [row.settled for row in study.of(share)]
     known = [day for day in days if day is not None]
+    if known == [0] * len(days):
+        return "nobody takes another route"
     if len(known) == len(days):
         return f"traffic settles by day {max(known)}"
     return f"traffic does not settle in {study.plan.days} days in {len(days) - len(known)} of {len(days)} seeds"
@@ -239,7 +245,7 @@ def _shares(study: DaysStudy) -> Drawing | None:
             axes.axhline(equal.value, color=INK, linestyle="--", linewidth=1, label=EQUILIBRIUM)
         axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
         axes.set_xlabel("% of the drivers advised")
-        axes.set_ylabel("mean travel time once settled, s")
+        axes.set_ylabel("mean travel time of the last days, s")
         legend(axes)
 
     return 4.4, draw
