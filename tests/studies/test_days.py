@@ -12,11 +12,11 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes
 from automotive_cosim.studies.days import (
     WEEK,
-    Day,
     DaysJob,
     DaysPlan,
     DaysRow,
     DaysStudy,
+    StudyDay,
     has_settled,
     make_days,
     run_chain,
@@ -27,8 +27,8 @@ Draw = Callable[..., Path]
 PLAN = DaysPlan("grid", shares=(0.0, 1.0), seeds=(0, 1))
 
 
-def day(mean_s: float, **more: object) -> Day:
-    made = Day(
+def day(mean_s: float, **more: object) -> StudyDay:
+    made = StudyDay(
         mean_s=mean_s, advised_s=None, others_s=mean_s, relative_gap=0.1, changed=5, unfinished=0, teleports=0
     )
     return replace(made, **more)  # type: ignore[arg-type]
@@ -48,7 +48,7 @@ def study() -> DaysStudy:
         for each in (
             replace(row(0.0, seed), days=(day(200.0, changed=0),)),
             row(1.0, seed, *down),
-            row(None, seed, *[145.6] * 2 * WEEK),
+            replace(row(None, seed), days=(day(190.0), day(145.6, relative_gap=0.01), day(150.0))),
         )
     ]
     return DaysStudy(Path(), {}, PLAN, tuple(rows))
@@ -75,6 +75,8 @@ def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
     assert [str(each[6]) for each in table.rows] == ["–", "−50.0", "−54.4"]
     assert set(charts(found)) == {"days", "shares"}
     assert warnings(found) == ["2 seeds: no interval of a mean below 10 seeds."]
+    far = replace(found, rows=(*found.rows[:2], row(None, 0, 150.0), *found.rows[3:5], row(None, 1, 150.0)))
+    assert any("relative gap of 10.0%, more than 2%" in each for each in warnings(far))
     restless = replace(found, rows=(*found.rows[:4], row(1.0, 1, 200.0, 100.0), found.rows[5]))
     assert any("Not settled in every seed: 100% advised" in each for each in warnings(restless))
 
