@@ -64,6 +64,7 @@ def test_it_settles_when_a_week_is_as_the_week_before() -> None:
     assert advised.settled == 12, "two even weeks after three days of change"
 
 
+@pytest.mark.slow
 def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
     found = study()
     assert answer(found) == (
