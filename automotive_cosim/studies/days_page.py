@@ -12,7 +12,7 @@ from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WID
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.days import NEAR, SETTLED, WEEK, DaysRow, DaysStudy, StudyDay, read_days
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
-from automotive_cosim.studies.network_report import NetworkReport, write_shown
+from automotive_cosim.studies.shown import ShownStudy, write_shown
 from automotive_cosim.studies.tables import NONE, told, told_mean
 
 if TYPE_CHECKING:
@@ -34,9 +34,7 @@ def write_days(folder: Path) -> Path:
     study = read_days(folder)
     plan = study.plan
     about = f"{counted(len(plan.seeds), 'seed')}, up to {counted(plan.days, 'day')} of {plan.minutes:g} minutes"
-    shown = NetworkReport(
-        "Study from day to day", about, answer(study), warnings(study), tables(study), charts(study)
-    )
+    shown = ShownStudy("Study from day to day", about, answer(study), warnings(study), tables(study), charts(study))
     return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
 
 

@@ -27,7 +27,7 @@ from automotive_cosim.studies.congestion.results import (
     read_congestion,
     throughput_per_h,
 )
-from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, FlowOutcome, FlowState, RoadFlow
+from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, FlowState, FlowSums, MeasureOutcome
 from automotive_cosim.studies.congestion.tables import emissions, whole, worst
 from automotive_cosim.studies.versions import pairs
 
@@ -37,16 +37,16 @@ from .conftest import Draw
 def cell(
     from_s: float, time_s: float, lost_s: float, road_class: str = "primary", queue_m: float = 0.0
 ) -> FlowCell:
-    flow = RoadFlow(time_s=time_s, lost_s=lost_s, distance_m=10 * (time_s - lost_s))
+    flow = FlowSums(time_s=time_s, lost_s=lost_s, distance_m=10 * (time_s - lost_s))
     return FlowCell(from_s=from_s, road_class=road_class, flow=flow, queue_m=queue_m, longest_m=2 * queue_m)
 
 
-def outcome(*found: FlowCell, measure: str = "", backlog: int = 0) -> FlowOutcome:
+def outcome(*found: FlowCell, measure: str = "", backlog: int = 0) -> MeasureOutcome:
     """An hour in which a vehicle arrives every minute."""
     states = [
         FlowState(at_s=60.0 * n, running=9, backlog=backlog, departed=n, arrived=n, teleported=0) for n in range(61)
     ]
-    return FlowOutcome(measure=measure, cells=found, states=tuple(states))
+    return MeasureOutcome(measure=measure, cells=found, states=tuple(states))
 
 
 PLAN = CongestionPlan("grid", measures=("closure edge=c1c2",), demand=(1.0, 2.0), step_s=0.1)

@@ -28,7 +28,7 @@ INTERVAL_S, EPOCH_S = 60.0, 300.0
 """Length of the intervals of the flow on every edge, and of those over which travel times vary (five minutes, as in
 FHWA's reports on reliability)."""
 
-NetworkMeasure = AnyIncident | Advice | SignalControl
+Measure = AnyIncident | Advice | SignalControl
 MEASURES = {**KINDS, "advice": Advice, "signals": SignalControl}
 
 
@@ -190,14 +190,14 @@ class CongestionJob:
         return 3_600.0 + 10 * self.plan.duration_s * (1 + len(self.plan.measures))
 
 
-def measure_in(text: str, place: str) -> NetworkMeasure:
+def measure_in(text: str, place: str) -> Measure:
     """The measure that a line describes, as ``closure edge=c2c3``, ``advice share=0.5`` or
     ``signals control=static``.
 
     Raises:
         UserError: it is none.
     """
-    found: NetworkMeasure = read_line(text, MEASURES if place == "--measure" else KINDS, place)
+    found: Measure = read_line(text, MEASURES if place == "--measure" else KINDS, place)
     return found
 
 

@@ -26,7 +26,7 @@ from automotive_cosim.studies.congestion.results import (
     throughput_per_h,
     waited_s,
 )
-from automotive_cosim.studies.congestion.rows import Emitted, FlowOutcome, RoadFlow
+from automotive_cosim.studies.congestion.rows import Emitted, FlowSums, MeasureOutcome
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.tables import NONE, told, told_mean
 from automotive_cosim.traffic.network import Network, read_network
@@ -44,7 +44,7 @@ def tables(study: CongestionStudy) -> list[Table]:
     return [table for table in made if table.rows]
 
 
-def mean(study: CongestionStudy, measure: str, of: Callable[[FlowOutcome], float]) -> float:
+def mean(study: CongestionStudy, measure: str, of: Callable[[MeasureOutcome], float]) -> float:
     """The mean of a figure over the seeds."""
     found = [of(outcome) for _, outcome in study.outcomes(measure)]
     return fmean(found) if found else 0.0
@@ -59,7 +59,7 @@ def whole(study: CongestionStudy) -> Table:
         found = indices(plan, outcomes)
         if found is None:
             continue
-        flow = sum((flow_in(plan, outcome) for outcome in outcomes), RoadFlow())
+        flow = sum((flow_in(plan, outcome) for outcome in outcomes), FlowSums())
         before_h = mean(study, "", lambda each: delay_h(plan, each))
         added = change(study, measure) if measure else None
         rows.append(
@@ -125,7 +125,7 @@ def by_class(study: CongestionStudy) -> Table:
                 found = indices(plan, outcomes, part)
                 if found is None:
                     continue
-                flow = sum((flow_in(plan, outcome, part) for outcome in outcomes), RoadFlow())
+                flow = sum((flow_in(plan, outcome, part) for outcome in outcomes), FlowSums())
                 queues = [queue_m(plan, outcome, part) for outcome in outcomes]
                 rows.append(
                     (
@@ -173,7 +173,7 @@ def emissions(study: CongestionStudy) -> Table:
     """What all vehicles emit and consume, by emission class."""
     hours = WHOLE.hours(study.plan)
 
-    def per_h(outcome: FlowOutcome, name: str, of: Callable[[Emitted], float]) -> float:
+    def per_h(outcome: MeasureOutcome, name: str, of: Callable[[Emitted], float]) -> float:
         return sum(of(each) for each in outcome.emitted if each.emission_class == name) / hours
 
     kinds: tuple[tuple[Callable[[Emitted], float], str], ...] = (
