@@ -1,5 +1,6 @@
 # `make run` is the main job, `make test-fast` the inner loop, `make check test` what a change must pass. Each makes its
 # own environment.
+# `make test TURN=1/3` leaves out two thirds of the longest tests.
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
@@ -14,7 +15,7 @@ run: $(VENV)/.run
 	$(BIN)/automotive-cosim run --pair
 
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest -n auto --dist worksteal --durations=10
+	$(BIN)/python -m pytest -n auto --dist worksteal --durations=10 $(if $(TURN),--turn $(TURN))
 
 test-fast: $(VENV)/.dev
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not sumo and not slow" -q

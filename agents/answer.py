@@ -3,6 +3,8 @@
 Situation: what the driver wants and what matters here
 Plan: what is left to do after this action
 Action: {"action_type": ...}
+
+or the same as one JSON object: ``{"situation": ..., "plan": ..., "action": {...}}``.
 """
 
 from __future__ import annotations
@@ -19,6 +21,8 @@ from automotive_cosim.errors import ActionError
 
 LONGEST = 20_000
 """Characters at the end of an answer in which to look for the action."""
+LONGEST_WORDS = 120
+"""Characters of situation and plan in an answer that is held to a schema: small models do not end by themselves."""
 LONGEST_REPAIRED = 2_000
 """Characters of it in which to repair an object."""
 END_TOKEN = re.compile(
@@ -51,6 +55,8 @@ def read(text: str) -> ParsedAnswer:
         ActionError: it has no action, or a malformed one; the message says which.
     """
     text = ended(text)
+    if (told := _object(text)) is not None:
+        return ParsedAnswer(str(told["situation"]), str(told["plan"]), parse(told["action"]), strict=True)
     strict = re.search(r"^Action: *(\{.*\})\s*\Z", text, re.DOTALL | re.MULTILINE)
     if strict is not None:
         try:
@@ -76,6 +82,30 @@ def _answer(text: str, action: Json, *, strict: bool) -> ParsedAnswer:
     return ParsedAnswer(
         labelled(text, "situation", "reason", "thought"), labelled(text, "plan"), parse(action), strict
     )
+
+
+def schema(action: Json) -> Json:
+    """The JSON Schema of an answer that is one object.
+
+    Args:
+        action: the schema of its action.
+    """
+    words = {"type": "string", "maxLength": LONGEST_WORDS}
+    return {
+        "type": "object",
+        "properties": {"situation": words, "plan": words, "action": action},
+        "required": ["situation", "plan", "action"],
+        "additionalProperties": False,
+    }
+
+
+def _object(text: str) -> Json | None:
+    """The answer, if all of it is one object of that form."""
+    try:
+        told = json.loads(text)
+    except (ValueError, RecursionError):
+        return None
+    return told if isinstance(told, dict) and told.keys() == {"situation", "plan", "action"} else None
 
 
 def ended(text: str) -> str:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from automotive_cosim.agents.base import Stage, StageName
 from automotive_cosim.agents.settings import AgentSettings
-from automotive_cosim.contracts import Observation
+from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.errors import OutOfBudgetError
 from automotive_cosim.models.base import ChatMessage, ChatModel, ModelReply, digest
 
@@ -28,14 +28,19 @@ class Asking:
         self._tokens = 0
         self._seconds = 0.0
 
-    def ask(self, text: str, pictures: Sequence[bytes]) -> tuple[ModelReply, str]:
+    def ask(self, text: str, pictures: Sequence[bytes], form: Json | None = None) -> tuple[ModelReply, str]:
         """The answer, and the question's digest.
+
+        Args:
+            text: the question.
+            pictures: sent with it.
+            form: JSON Schema of the answer, for a model that is held to it.
 
         Raises:
             OutOfBudgetError: the episode's tokens or seconds are spent.
             ModelError: the model does not answer.
         """
-        return self.converse([ChatMessage("user", text, tuple(pictures))])
+        return self.converse([ChatMessage("user", text, tuple(pictures), form=form)])
 
     def converse(self, messages: Sequence[ChatMessage]) -> tuple[ModelReply, str]:
         """The answer to the last of several messages, and the digest of them all; raises like ``ask``."""

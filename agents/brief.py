@@ -61,8 +61,16 @@ def entries(elements: Sequence[Element]) -> Iterator[tuple[str, str]]:
     """Each visible element's kind, and what it reads: index, label, meaning and state."""
     for index, element in listed(tuple(elements)):
         kind = KINDS.get(element.class_name, element.class_name.casefold())
-        can_act = element.is_clickable or element.is_editable or element.is_scrollable
-        yield kind, _entry(element, None if kind in SHOWS and not can_act else index)
+        yield kind, _entry(element, None if kind in SHOWS and not _can_act(element) else index)
+
+
+def indices(elements: Sequence[Element]) -> list[int]:
+    """Those of the visible elements that can be acted on."""
+    return [index for index, element in listed(tuple(elements)) if _can_act(element)]
+
+
+def _can_act(element: Element) -> bool:
+    return element.is_clickable or element.is_editable or element.is_scrollable
 
 
 def told(elements: Sequence[Element]) -> str:
@@ -82,13 +90,17 @@ def changes(before: Sequence[Element], after: Sequence[Element]) -> str:
     return f"gone: {', '.join(gone) or 'nothing'}\nnew: {', '.join(new) or 'nothing'}"
 
 
-def actions(kinds: Collection[ActionType], *, by_point: bool) -> str:
-    """The actions as names with their fields, and how a target is given."""
+def actions(kinds: Collection[ActionType], *, by_point: bool, by_name: bool = False) -> str:
+    """The actions as names with their fields, and how a target is given.
+
+    Args:
+        kinds: the actions to list.
+        by_point: whether a target is a point alone.
+        by_name: whether to leave out what each is for.
+    """
     point = "x and y are pixels" if by_point else "x and y, in pixels, may stand in place of index"
-    return (
-        f"{signatures(kinds, by_point=by_point)}\nFields in brackets may be left out; {point}. "
-        "A switch is off unless it is marked [on]."
-    )
+    names = signatures(kinds, by_point=by_point, is_told=not by_name)
+    return f"{names}\nFields in brackets may be left out; {point}. A switch is off unless it is marked [on]."
 
 
 def context(text: str, words: str) -> str:

@@ -7,14 +7,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from automotive_cosim.agents import answer, prompt
+from automotive_cosim.agents import answer, brief, prompt
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import marked, png
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
+from automotive_cosim.cockpit.actions import schema_of
 from automotive_cosim.contracts import Action, ActionType, Observation
+from automotive_cosim.contracts.given import PromptLength
 from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.errors import ActionError, UserError
 from automotive_cosim.interface.observe import Channel, See
@@ -22,8 +24,8 @@ from automotive_cosim.models.base import ChatModel
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
 """Characters of its own text that it carries over to the next turn."""
-WATCH_HISTORY = 20
-"""Lines of history in a watch, which lasts for hundreds of turns."""
+WATCH_HISTORY, SHORT_HISTORY = 20, 6
+"""Lines of history in a watch, which lasts for hundreds of turns, and in a short prompt."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -140,7 +142,7 @@ class ModelAgent:
         number = len(self._history) + 1
         line = (
             prompt.step(number, last.action, last.seen, now.feedback, lesson)
-            if self._profile.brief
+            if self._profile.length is not PromptLength.LONG
             else prompt.summary(number, last.action, now.feedback, prompt.target(last.action, last.seen), lesson)
         )
         self._done.append(done)
@@ -150,9 +152,7 @@ class ModelAgent:
     def _reflect(self, last: _Turn, now: Observation) -> str:
         screens = [_shown(last.seen), _shown(now)] if self._sees else []
         pictures = tuple(screen for screen in screens if screen is not None)
-        text = prompt.look_back(
-            last.seen, last.action, now, last.plan, bool(pictures), is_brief=self._profile.brief
-        )
+        text = prompt.look_back(last.seen, last.action, now, last.plan, bool(pictures), length=self._profile.length)
         reply, asked = self._asking.ask(text, pictures)
         lesson = one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
         self._asking.note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))
@@ -163,12 +163,16 @@ class ModelAgent:
         if self._sees and seen.screenshot is not None:
             with_marks = _marked(seen)
             pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
-        history = self._history[-WATCH_HISTORY:] if self._keeps_watch else self._history
+        last = WATCH_HISTORY if self._keeps_watch else len(self._history)
+        if self._profile.length is PromptLength.SHORT:
+            last = SHORT_HISTORY
+        history = self._history[len(self._history) - last :] if last < len(self._history) else self._history
         text = prompt.turn(
             self._profile, seen, history, plan, self._recalled, bool(pictures), on_watch=self._keeps_watch
         )
         self._asking.note(StageName.PERCEIVE, seen, text)
-        reply, asked = self._asking.ask(text, pictures)
+        action = schema_of(self._profile.actions, None if seen.elements is None else brief.indices(seen.elements))
+        reply, asked = self._asking.ask(text, pictures, answer.schema(action))
         try:
             understood = answer.read(reply.text)
             if understood.action.action_type not in self._profile.actions:

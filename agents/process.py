@@ -195,7 +195,8 @@ def _message(message: ChatMessage) -> Json:
     told: Json = {"role": message.role, "text": message.text, "pictures": pictures}
     if message.calls:
         told["calls"] = [asdict(call) for call in message.calls]
-    return told | ({"call_id": message.call_id} if message.call_id else {})
+    told |= {"call_id": message.call_id} if message.call_id else {}
+    return told | ({} if message.form is None else {"form": message.form})
 
 
 def _told(error: BaseException) -> str:

@@ -30,6 +30,7 @@ from automotive_cosim.contracts import (
     Observation,
     VehicleState,
 )
+from automotive_cosim.contracts.given import PromptLength
 from automotive_cosim.interface.observe import Channel
 
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable", "is_long_clickable")
@@ -73,7 +74,7 @@ def turn(
     given = profile.channels
     is_listed, is_told = Channel.ELEMENTS in given, Channel.CONTEXT in given
     return fill(
-        WATCH if on_watch else "brief" if profile.brief else profile.name,
+        WATCH if on_watch else profile.name if profile.length is PromptLength.LONG else profile.length,
         {
             "grammar": _grammar(profile, by_point=not is_listed, on_watch=on_watch),
             "goal": driver_words(observation),
@@ -83,7 +84,7 @@ def turn(
             "elements": _elements(profile, observation) if is_listed else None,
             "pictures": (PICTURES if is_listed else PICTURE) if pictures else None,
             "seen": "the screen, its elements" if is_listed else "the screen",
-            "vehicle": _vehicle(observation.vehicle, is_brief=profile.brief) if Channel.VEHICLE in given else None,
+            "vehicle": _vehicle(observation.vehicle, profile.length) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
             "context": _context(profile, observation, on_watch=on_watch) if is_told else None,
@@ -104,7 +105,7 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
             "feedback": _result(observation),
             "elements": _elements(profile, observation) if is_listed else None,
             "pictures": PICTURE if pictures else None,
-            "vehicle": _vehicle(observation.vehicle, is_brief=profile.brief) if Channel.VEHICLE in given else None,
+            "vehicle": _vehicle(observation.vehicle, profile.length) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
             "context": _context(profile, observation, on_watch=on_watch) if Channel.CONTEXT in given else None,
@@ -132,7 +133,10 @@ BEFORE_AND_AFTER = "Two pictures come with this text: the screen before the acti
 def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
     """The actions; in a watch, a wait ends when something changes and nothing ends the watch."""
     kinds = profile.actions - (UNASKED if on_watch else frozenset())
-    text = (brief.actions if profile.brief else grammar)(kinds, by_point=by_point)
+    if profile.length is PromptLength.LONG:
+        text = grammar(kinds, by_point=by_point)
+    else:
+        text = brief.actions(kinds, by_point=by_point, by_name=profile.length is PromptLength.SHORT)
     return text.replace(FIELDS[ActionType.WAIT].about, WAITS) if on_watch else text
 
 
@@ -142,7 +146,7 @@ def look_back(
     after: Observation,
     plan: str = "",
     pictures: bool = False,
-    is_brief: bool = False,
+    length: PromptLength = PromptLength.STANDARD,
 ) -> str:
     """The prompt that asks about the result of an action, or of an answer that could not be read."""
     slots = {
@@ -152,7 +156,7 @@ def look_back(
         "feedback": _result(after),
         "pictures": BEFORE_AND_AFTER if pictures else None,
     }
-    if is_brief:
+    if length is not PromptLength.LONG:
         lists = (before.elements, after.elements)
         changes = None if lists[0] is None or lists[1] is None else brief.changes(lists[0], lists[1])
         return fill("lesson", slots | {"action": action_words(action, before), "changes": changes})
@@ -202,13 +206,14 @@ def _result(observation: Observation) -> str:
 
 
 def _elements(profile: AgentProfile, observation: Observation) -> str:
-    return brief.told(observation.elements or ()) if profile.brief else elements(observation)
+    is_long = profile.length is PromptLength.LONG
+    return elements(observation) if is_long else brief.told(observation.elements or ())
 
 
 def _context(profile: AgentProfile, observation: Observation, *, on_watch: bool) -> str:
     """The geo-context; short only for who can ask for the rest, and not in a watch, where anything can matter."""
     text = observation.context or "unknown"
-    if profile.brief and ActionType.QUERY in profile.actions and not on_watch:
+    if profile.length is not PromptLength.LONG and ActionType.QUERY in profile.actions and not on_watch:
         return brief.context(text, driver_words(observation))
     return _lines(text)
 
@@ -237,10 +242,10 @@ def listing(index: int, element: Element) -> Json:
     return entry | {flag.removeprefix("is_"): True for flag in SHOWN_FLAGS if getattr(element, flag)}
 
 
-def _vehicle(vehicle: VehicleState | None, *, is_brief: bool = False) -> str:
+def _vehicle(vehicle: VehicleState | None, length: PromptLength) -> str:
     if vehicle is None:
         return "unknown"
-    if is_brief:
+    if length is not PromptLength.LONG:
         return brief.vehicle(vehicle)
     shown = {name: value for name, value in asdict(vehicle).items() if value is not None}
     shown["restrictions"] = in_words(vehicle.restrictions)

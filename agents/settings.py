@@ -8,6 +8,7 @@ from enum import StrEnum
 from pathlib import Path
 
 from automotive_cosim.contracts import UNCALLED, ActionType
+from automotive_cosim.contracts.given import PromptLength
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.interface.observe import Channel
@@ -21,9 +22,6 @@ class AgentPart(StrEnum):
     QUERIES = "queries"
     SCREEN = "screen"
     """The screenshots; the list of elements stays."""
-    BREVITY = "brevity"
-    """The short prompt, which tells what an action takes once and of the screen what changed. Without it, the agent
-    gets every element as a JSON object and, to reflect, both lists: the prompt of version 0.2."""
     REFLECTION = "reflection"
     MEMORY = "memory"
 
@@ -78,8 +76,8 @@ class AgentProfile:
     actions: frozenset[ActionType] = SCREEN_ALONE
     """Actions that its prompt offers; anything else is refused."""
     reflects: bool = True
-    brief: bool = True
-    """Whether its prompt is the short one."""
+    length: PromptLength = PromptLength.STANDARD
+    """How much its prompt spells out."""
     remembers: bool = False
     """Whether it can remember what worked from one episode to the next."""
 
@@ -98,7 +96,7 @@ class AgentProfile:
             self,
             channels=channels,
             actions=frozenset(actions),
-            brief=self.brief and AgentPart.BREVITY not in without,
+            length=settings.conditions.prompt,
             reflects=self.reflects and AgentPart.REFLECTION not in without,
             remembers=self.remembers and AgentPart.MEMORY not in without and settings.memory is not None,
         )

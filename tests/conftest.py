@@ -17,6 +17,7 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 from typing import Any
+from zlib import crc32
 
 import pytest
 import typer.main
@@ -54,10 +55,22 @@ TRAFFIC = Path(__file__).parent / "traffic"
 _forbidden = False
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--turn", metavar="I/N", help="of the tests marked `long`, run the I-th of N parts")
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     for item in items:
         if "sumo" in getattr(item, "fixturenames", ()):
             item.add_marker("sumo")
+    if config.option.turn:
+        part, parts = map(int, config.option.turn.split("/"))
+        if not 1 <= part <= parts:
+            raise pytest.UsageError(f"--turn is {config.option.turn}; give a part from 1 to {parts}")
+        long = [item for item in items if item.get_closest_marker("long")]
+        left = [item for item in long if crc32(item.nodeid.encode()) % parts != part - 1]
+        config.hook.pytest_deselected(items=left)
+        items[:] = [item for item in items if item not in set(left)]
     items.sort(key=lambda item: item.get_closest_marker("long") is None)  # else a worker waits for one at the end
 
 

@@ -175,13 +175,14 @@ def evaluate(
     Rerun the command to resume.
     """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.errors import UnknownNameError
+    from automotive_cosim.errors import UnknownNameError, UserError
     from automotive_cosim.report.answer import answer
     from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
     from automotive_cosim.run.collect import Pictures
     from automotive_cosim.run.coverage import unit_of
+    from automotive_cosim.run.fit import misfits
     from automotive_cosim.run.forecast import forecast
     from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan, read_plan, with_preset
@@ -210,9 +211,9 @@ def evaluate(
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     kept = Pictures(pictures or (Pictures.ALL if len(plan.jobs()) <= PICTURED else Pictures.NONE))
+    known = read_trials(folder) if (folder / "manifest.json").is_file() else {}
     if dry_run:
-        rows = read_trials(folder).values() if (folder / "manifest.json").is_file() else ()
-        needs = forecast(plan.jobs(), workers or 1, rows)
+        needs = forecast(plan.jobs(), workers or 1, known.values())
         lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
         for line in _forecast_in_words(needs, workers or 1):
             console.print(line, soft_wrap=True)
@@ -221,6 +222,9 @@ def evaluate(
         if as_json:
             print_json({**needs.as_json(), "to_fix": lacks, "out": str(folder)})
         return
+    left = [job for job in plan.jobs() if job.id not in known or known[job.id].error is not None]
+    if unfit := tuple(misfits(left)):
+        raise UserError("; ".join(unfit))
     with where, ProgressView(console, f"{unit}s", _said) as view:
         try:
             end = run_plan(

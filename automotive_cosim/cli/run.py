@@ -78,7 +78,7 @@ def run(
         str,
         typer.Option(
             help="Parts of the agent to switch off, separated by commas: "
-            "gps, context, queries, screen, brevity, reflection, memory."
+            "gps, context, queries, screen, reflection, memory."
         ),
     ] = "",
     memory: Annotated[

@@ -22,8 +22,13 @@ SETTINGS = "search.json"
 
 
 def search(
-    space_file: Annotated[
-        Path, typer.Option("--space", help="TOML file with the factors and their values.", show_default=False)
+    space_name: Annotated[
+        str,
+        typer.Option(
+            "--space",
+            help="TOML file with the factors and their values, or a space of the library, such as cut-in.",
+            show_default=False,
+        ),
     ],
     agent: AgentName,
     budget: Annotated[
@@ -77,17 +82,18 @@ def search(
     from automotive_cosim.safety.hunt import hunt
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import make_sampler
-    from automotive_cosim.safety.space import read_space
+    from automotive_cosim.safety.space import read_space, space_file
     from automotive_cosim.safety.trying import check_space, trial_of, trying
 
-    space = read_space(space_file)
+    file = space_file(space_name)
+    space = read_space(file)
     plan = make_plan({"agents": [agent], "models": [model], "trials": [_plain(trial_of(space.nominal))]})
     plan.check()
     check_space(space, plan)
-    folder = out or Path("runs") / f"search-{space_file.stem}-{agent.replace(':', '.')}"
+    folder = out or Path("runs") / f"search-{file.stem}-{agent.replace(':', '.')}"
     console = Console(stderr=as_json, highlight=False)
     about: Json = {
-        "space": space_file.read_text(encoding="utf-8"),
+        "space": file.read_text(encoding="utf-8"),
         "agent": agent,
         "model": model,
         "sampler": sampler,

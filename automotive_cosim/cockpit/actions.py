@@ -247,15 +247,16 @@ def grammar(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = False)
     )
 
 
-def signatures(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = False) -> str:
+def signatures(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = False, is_told: bool = True) -> str:
     """The same in fewer words: each action as a name with its fields, those in brackets optional.
 
     Args:
         kinds: the actions to list.
         by_point: see ``grammar``.
+        is_told: whether each says what it does.
     """
     return "\n".join(
-        f"- {kind}({', '.join(_signature(takes, by_point))}): {_about(takes, by_point)}"
+        f"- {kind}({', '.join(_signature(takes, by_point))})" + (f": {_about(takes, by_point)}" if is_told else "")
         for kind, takes in FIELDS.items()
         if kind in kinds
     )
@@ -284,6 +285,36 @@ def json_schema() -> Json:
         "properties": {"action_type": {"enum": [str(kind) for kind in FIELDS]}},
         "oneOf": [_member(kind, takes) for kind, takes in FIELDS.items()],
     }
+
+
+def schema_of(kinds: Collection[ActionType], indices: Sequence[int] | None) -> Json:
+    """The actions of some kinds as a JSON Schema that servers turn into a grammar: fields in a fixed order, and a
+    target given in one way.
+
+    Args:
+        kinds: the actions.
+        indices: those of the elements that can be acted on; None if a target is a point.
+    """
+    members = []
+    for kind, takes in FIELDS.items():
+        if kind not in kinds or (takes.target and indices is not None and not indices):
+            continue
+        target = () if not takes.target else ("x", "y") if indices is None else ("index",)
+        optional = [name for name in takes.optional if name != "index" or indices]
+        schemas = {name: field_schema(name) for name in (*target, *takes.required, *optional)}
+        if "index" in schemas:
+            schemas["index"] = {"enum": list(indices or ())}
+        for axis in {"x", "y"} & schemas.keys():
+            schemas[axis] |= {"minimum": 0, "maximum": DISTANCE_LIMIT_PX}
+        members.append(
+            {
+                "type": "object",
+                "properties": {"action_type": {"const": str(kind)}} | schemas,
+                "required": ["action_type", *target, *takes.required],
+                "additionalProperties": False,
+            }
+        )
+    return {"anyOf": members}
 
 
 def _member(kind: ActionType, takes: Takes) -> Json:

@@ -96,6 +96,17 @@ class FeedbackDetail(StrEnum):
     VERBOSE = "verbose"
 
 
+class PromptLength(StrEnum):
+    """How much of the same facts the prompt of T3A, M3A and ASURADA spells out."""
+
+    STANDARD = "standard"
+    """What an action takes once, each element in a few words, and of the rules those that can matter."""
+    SHORT = "short"
+    """For small models: actions by name alone, fewer words on how to answer, the last steps of the history."""
+    LONG = "long"
+    """Every element as a JSON object and, to reflect, both lists of them: the prompt of version 0.2."""
+
+
 class Language(StrEnum):
     """The languages of car and driver, by the codes of ``HMI.LANGUAGE``."""
 

@@ -16,7 +16,16 @@ from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import Channel, Clock, FeedbackDetail, GeoInput, Interface, Language, See
+from automotive_cosim.contracts.given import (
+    Channel,
+    Clock,
+    FeedbackDetail,
+    GeoInput,
+    Interface,
+    Language,
+    PromptLength,
+    See,
+)
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.docs import field_docs
@@ -120,6 +129,17 @@ class Conditions:
         ),
     ] = Interface.TOUCH  # fmt: skip
     """How the agent acts: on the screen (``touch``), by typed functions of the car (``functions``), or ``both``."""
+    prompt: Annotated[
+        PromptLength,
+        OneOf(PromptLength, "length of the prompt"),
+        Words(
+            "Prompt", "{} prompt", "{}_prompt", "Success by prompt",
+            "How much the prompt of T3A, M3A and ASURADA spells out; short is for small models, long is that of "
+            "version 0.2.",
+        ),
+    ] = PromptLength.STANDARD  # fmt: skip
+    """How much the prompt of T3A, M3A and ASURADA spells out: ``standard``, ``short`` for small
+    models, or ``long``."""
 
     @classmethod
     def named(cls, values: Mapping[str, object]) -> Conditions:

@@ -63,6 +63,8 @@ class Chat:
 
     longest: str = "max_tokens"
     """Name of the limit of an answer's tokens, which OpenAI itself has changed."""
+    is_guided: bool = False
+    """Whether the server is told the form of the answer and holds the model to it."""
 
     def path(self, model: str) -> str:
         """See ``ProviderApi``."""
@@ -75,7 +77,11 @@ class Chat:
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
         """See ``ProviderApi``."""
         named = {self.longest if name == "max_tokens" else name: value for name, value in limits.items()}
-        return {"model": model, "messages": [self._message(message) for message in messages]} | named
+        told = {"model": model, "messages": [self._message(message) for message in messages]} | named
+        form = messages[-1].form if self.is_guided else None
+        if form is not None:
+            told["response_format"] = {"type": "json_schema", "json_schema": {"name": "answer", "schema": form}}
+        return told
 
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""

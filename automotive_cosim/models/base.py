@@ -41,6 +41,8 @@ class ChatMessage:
     """What the assistant calls."""
     call_id: str = ""
     """The call that it is the result of."""
+    form: Json | None = None
+    """JSON Schema of the answer that is asked for, for models that can be held to one."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -16,7 +16,7 @@ from contextlib import closing
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import NoneType
-from typing import TYPE_CHECKING, Any, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
 from urllib.parse import parse_qsl, quote
 
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
@@ -26,6 +26,7 @@ from automotive_cosim.models.turns import LocalTurns, Turns
 
 if TYPE_CHECKING:
     import openai
+    from _typeshed import DataclassInstance
 
 BODY_LIMIT_BYTES = 4_000_000
 """Longest body to read; an answer of a few thousand tokens has some tens of kilobytes."""
@@ -57,21 +58,37 @@ class Settings:
     usd_per_million_out: float = 0.0
     usd_per_million_cached: float | None = None
     """Of those that go in, the ones that the provider has cached; None for the same price."""
+    guided: bool = False
+    """Whether the server holds the model to the JSON Schema of an action (``response_format``)."""
 
     @classmethod
     def read(cls, query: str) -> Settings:
-        """Settings from ``name=value&name=value``.
+        """Settings from ``name=value&name=value``; see ``read_settings``."""
+        return read_settings(cls, query)
 
-        Raises:
-            UserError: an unknown name, or a value that is not a number or out of range.
-        """
-        known = {name: get_args(kind) or (kind,) for name, kind in get_type_hints(cls).items()}
-        chosen: dict[str, Any] = {}
-        for name, value in parse_qsl(query, keep_blank_values=True):
-            if name not in known:
-                raise UnknownNameError("model setting", name, known)
-            chosen[name] = _number(name, value, known[name])
-        return replace(cls(), **chosen)
+
+S = TypeVar("S", bound="DataclassInstance")
+
+
+def read_settings(kind: type[S], query: str) -> S:
+    """The settings of a model from ``name=value&name=value``.
+
+    Raises:
+        UserError: an unknown name, or a value that is not a number or out of range.
+    """
+    known = {name: get_args(each) or (each,) for name, each in get_type_hints(kind).items()}
+    chosen: dict[str, Any] = {}
+    for name, value in parse_qsl(query, keep_blank_values=True):
+        if name not in known:
+            raise UnknownNameError("model setting", name, known)
+        chosen[name] = _switch(name, value) if bool in known[name] else _number(name, value, known[name])
+    return kind(**chosen)
+
+
+def _switch(name: str, value: str) -> bool:
+    if value not in ("0", "1"):
+        raise UserError(f"model setting {name} is {value!r}; give 0 or 1")
+    return value == "1"
 
 
 def _number(name: str, value: str, kinds: tuple[type, ...]) -> float | int | None:
@@ -81,7 +98,7 @@ def _number(name: str, value: str, kinds: tuple[type, ...]) -> float | int | Non
         number = int(value) if int in kinds else float(value)
     except ValueError:
         number = -1
-    positive = name in ("timeout_s", "max_tokens", "per_minute")
+    positive = name in ("timeout_s", "max_tokens", "per_minute", "context", "threads")
     if not 0 <= number < 1e12 or (positive and number == 0):
         wanted = "a whole number" if int in kinds else "a number"
         raise UserError(f"model setting {name} is {value!r}; give {wanted} {'above' if positive else 'from'} 0")
@@ -111,7 +128,8 @@ def make_remote(spec: str, api: ProviderApi | None = None, turns: Turns | None =
         )
     if not base_url and provider != "openai":
         raise SetupError(f"model {whole!r} requires an address in {prefix}_BASE_URL, e.g. http://127.0.0.1:8000/v1")
-    spoken = api or Chat("max_completion_tokens" if provider == "openai" else "max_tokens")
+    longest = "max_completion_tokens" if provider == "openai" else "max_tokens"
+    spoken = api or Chat(longest, is_guided=settings.guided)
     return Remote(spec, model, settings, _Endpoint(provider, base_url or None, key), spoken, turns or LocalTurns())
 
 

@@ -11,9 +11,9 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.given import See
+from automotive_cosim.contracts.given import PromptLength, See
 from automotive_cosim.models.remote import Settings
-from automotive_cosim.run.jobs import DriveJob, EpisodeJob
+from automotive_cosim.run.jobs import DriveJob, TrialJob
 from automotive_cosim.run.meter import Budget
 from automotive_cosim.run.trial_row import TrialRow
 
@@ -41,6 +41,15 @@ class Tokens:
 A_STEP: Mapping[str, Tokens] = {"t3a": Tokens(1450, 100), "m3a": Tokens(1450, 100), "asurada": Tokens(1950, 100)}
 """Text of one step with its reflection, as the built-in agents send it to the stand-in (40 tasks, grid, November
 2026). Its answers are shorter than a model's, which gives reasons; 100 tokens are our estimate."""
+BY_PROMPT: Mapping[PromptLength, float] = {
+    PromptLength.STANDARD: 1.0,
+    PromptLength.SHORT: 0.75,
+    PromptLength.LONG: 3.0,
+}
+"""What another prompt makes of that (nine tasks on grid: T3A's turns have 910, 1,250 and 2,650 tokens, and lessons
+of 240, 240 and 3,400)."""
+LONGEST = 1.5
+"""The longest question of a trial, of that."""
 OTHER_STEP = Tokens(3000, 150)
 """The same for other agents, whose prompts are longer."""
 DRIVE_STEPS, DRIVE_SHARE = 85, 1.5
@@ -94,7 +103,7 @@ class CostForecast:
         return ""
 
 
-def forecast(jobs: Sequence[EpisodeJob | DriveJob], workers: int, rows: Iterable[TrialRow] = ()) -> CostForecast:
+def forecast(jobs: Sequence[TrialJob], workers: int, rows: Iterable[TrialRow] = ()) -> CostForecast:
     """What the jobs that have not run yet will take.
 
     Args:
@@ -130,7 +139,7 @@ def asks(model: str) -> bool:
     return not model.startswith(("rules", "none", "replay/"))
 
 
-def _seconds(job: EpisodeJob | DriveJob) -> float:
+def _seconds(job: TrialJob) -> float:
     if isinstance(job, DriveJob):
         return DRIVE_S
     return GRID_EPISODE_S if job.scenario == "grid" else EPISODE_S
@@ -148,7 +157,13 @@ def _own(rows: Iterable[TrialRow]) -> dict[Hashable, Tokens]:
     }
 
 
-def _tokens(job: EpisodeJob | DriveJob, own: Mapping[Hashable, Tokens]) -> tuple[Range, Range]:
+def pictures_of(job: TrialJob) -> int:
+    """How many pictures a step's question has, if the model sees any."""
+    is_listed = job.setup.conditions.see is See.TREE
+    return 0 if is_listed else PICTURED.get(job.setup.agent, int(job.setup.agent not in A_STEP))
+
+
+def _tokens(job: TrialJob, own: Mapping[Hashable, Tokens]) -> tuple[Range, Range]:
     """What is sent and received in a trial."""
     known = own.get((job.setup.agent, job.setup.model, type(job.planned())))
     low, high = (LEAST, MOST) if known is None else (LEAST_KNOWN, MOST_KNOWN)
@@ -156,15 +171,28 @@ def _tokens(job: EpisodeJob | DriveJob, own: Mapping[Hashable, Tokens]) -> tuple
     return Range(low * known.sent, high * known.sent), Range(low * known.received, high * known.received)
 
 
-def expected(job: EpisodeJob | DriveJob) -> Tokens:
+def expected(job: TrialJob) -> Tokens:
     """The tokens of a trial before anything is known, with the steps of the reference solution or of a drive."""
     step = A_STEP.get(job.setup.agent, OTHER_STEP)
-    pictures = 0 if job.setup.conditions.see is See.TREE else PICTURED.get(job.setup.agent, step is OTHER_STEP)
+    sent = _sent(job)
     if isinstance(job, DriveJob):
-        steps, text = DRIVE_STEPS, DRIVE_SHARE * step.sent
+        steps, text = DRIVE_STEPS, DRIVE_SHARE * sent
     else:
-        steps, text = 1 + len(job.task.half(job.setup.half).moves), step.sent
+        steps, text = 1 + len(job.task.half(job.setup.half).moves), sent
+    pictures = pictures_of(job)
     return Tokens(steps * (text + pictures * PICTURE), steps * step.received)
+
+
+def longest_question(job: TrialJob) -> int:
+    """Tokens of the longest question in a trial, without its pictures and functions."""
+    sent = _sent(job)
+    return round(LONGEST * (DRIVE_SHARE * sent if isinstance(job, DriveJob) else sent))
+
+
+def _sent(job: TrialJob) -> float:
+    """Tokens of text that a step of a task sends."""
+    agent = job.setup.agent
+    return A_STEP[agent].sent * BY_PROMPT[job.setup.conditions.prompt] if agent in A_STEP else OTHER_STEP.sent
 
 
 def _usd(model: str, sent: Range, received: Range) -> Range:

@@ -258,6 +258,7 @@ def _messages(told: list[Json]) -> list[ChatMessage]:
                 ToolCall(str(call["id"]), str(call["name"]), call["arguments"]) for call in each.get("calls", ())
             ),
             str(each.get("call_id", "")),
+            form if isinstance(form := each.get("form"), dict) else None,
         )
         for each in told
     ]

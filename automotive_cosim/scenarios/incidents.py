@@ -217,6 +217,37 @@ class BrakingLeader(EgoIncident):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CutIn(EgoIncident):
+    """A vehicle beside the ego's lane moves into it, close in front, whether there is room or not."""
+
+    kind: Literal["cut_in"] = "cut_in"
+    gap_m: Annotated[float, Gt(0)] = 20.0
+    """Gap to it when it moves over."""
+    slower_kmh: Annotated[float, Ge(0)] = 15.0
+    """By how much it is slower than the ego."""
+    from_kmh: Annotated[float, Ge(0)] = 20.0
+    """How fast the ego must be; until then, and for a road with two lanes, it is waited for."""
+    hold_s: Annotated[float, Gt(0)] = 8.0
+    """How long it keeps its speed and the lane before it drives on."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CutOut(EgoIncident):
+    """The vehicle ahead of the ego leaves the lane and lets the ego see a car that stands in it. If there is none
+    ahead, a car first pulls out in front of the ego."""
+
+    kind: Literal["cut_out"] = "cut_out"
+    within_m: Annotated[float, Gt(0)] = 60.0
+    """How near a vehicle must be to count as the one ahead."""
+    reveal_m: Annotated[float, Gt(0)] = 40.0
+    """How far ahead of that vehicle the other one stands."""
+    from_kmh: Annotated[float, Ge(0)] = 20.0
+    """How fast the ego must be; until then, and for a road with two lanes, it is waited for."""
+    ahead_m: Annotated[float, Gt(0)] = 25.0
+    """Gap to a car that pulls out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AheadIncident(EgoIncident):
     """An incident on the ego's route some way ahead, wherever that is by then, as far as a road there has room."""
 
@@ -243,6 +274,8 @@ AnyIncident = Annotated[
     | Pedestrians
     | EmergencyVehicle
     | BrakingLeader
+    | CutIn
+    | CutOut
     | AheadIncident,
     TaggedBy("kind"),
 ]

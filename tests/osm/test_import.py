@@ -263,7 +263,7 @@ def test_however_often_it_is_terminated_an_import_leaves_nothing(
     while importing.poll() is None:
         importing.send_signal(signal.SIGTERM)
         time.sleep(0.001)
-    assert importing.returncode == 143
+    assert importing.returncode in (143, -signal.SIGTERM)  # the same to a shell; the latter as the interpreter ends
     assert list(tmp_path.iterdir()) == []
 
 
@@ -329,6 +329,7 @@ def test_progress_names_every_stage(formats: dict[str, Path], quick: ImportOptio
     assert all(0 <= share <= 1 for share in shares)
 
 
+@pytest.mark.long
 @pytest.mark.slow
 @pytest.mark.sumo
 def test_western_paris_is_imported_and_flows_with_a_seed_nobody_tried(

@@ -74,6 +74,7 @@ def test_a_run_is_the_same_again_and_leaves_the_folder_alone(imported: Imported)
     assert {path.name: (path.stat().st_mtime_ns, path.stat().st_size) for path in folder.iterdir()} == before
 
 
+@pytest.mark.long
 def test_more_demand_means_more_vehicles_and_in_the_end_a_jam(imported: Imported) -> None:
     scenario = load(imported[0])
     calm = measure(scenario, observe_s=300, scale=0.5)

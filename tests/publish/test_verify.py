@@ -158,6 +158,7 @@ def test_every_field_of_a_row_is_found_by_its_trace_plan_and_verdict_whatever_th
     assert f"{ROWS} wall_seconds" in missed
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_every_field_of_a_trace_is_found_or_on_the_list(folder):
     row = judged(folder)
@@ -200,6 +201,7 @@ def is_found(path: Path) -> bool:
         return True
 
 
+@pytest.mark.long
 @pytest.mark.slow
 def test_every_field_of_the_manifest_and_the_contents_is_found_or_on_the_list(unpacked, tmp_path):
     missed = set()

@@ -130,6 +130,7 @@ def tries(folder):
     return len((folder / "tries").read_text())
 
 
+@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
 def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
@@ -235,6 +236,7 @@ def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble, simulat
     assert ends[1].sim_seconds == 15.0
 
 
+@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
 def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants_and_never_again(tmp_path):

@@ -321,6 +321,7 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     assert [json.loads(line)["number"] for line in shown] == list(range(len(first.steps)))
 
 
+@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
 def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None:

