@@ -189,8 +189,8 @@ def _sensitivity(found: Hunt) -> Table:
         for factor, share, rank in sensitivity(found)
     ]
     note = (
-        "Over the points that represent the whole space: the share of the margin's variance that the factor explains "
-        "by itself (first-order Sobol index from given data, corrected for the number of levels), and its "
+        "Over the points that represent the whole space: the share of the margin's variance that the factor "
+        "explains by itself (first-order Sobol index from given data, corrected for the number of levels), and its "
         "rank correlation with the margin (Spearman): below 0, a higher number is worse."
     )
     return Table(
