@@ -15,7 +15,7 @@ from automotive_cosim.safety.findings import as_json, coverage, sensitivity, tab
 from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.page import suite
-from automotive_cosim.safety.samplers import SAMPLERS, make_sampler
+from automotive_cosim.safety.samplers import SAMPLERS, even_points, make_sampler
 from automotive_cosim.safety.space import FactorChoices, FactorRange, SearchPoint, Space, read_space
 
 SPACE = Space(
@@ -189,6 +189,18 @@ def test_a_space_is_read_with_its_nominal_values(tmp_path: Path) -> None:
     assert dict(space.nominal) == {"drive": "grid_january", "latency_s": 0.0, "visibility_m": 5000.0}
     assert space.at([0.9, 0.5, 0.5]) == {"drive": "grid_june", "latency_s": 4.5, "visibility_m": 500.0}
     assert space.rule.drive_value_below == 50
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS)
+def test_the_even_points_are_known_before_anything_is_learnt(sampler: str) -> None:
+    for package in {"cma": ["cma"], "bayes": ["optuna"], "sobol": ["scipy"]}.get(sampler, []):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            pytest.importorskip(package)
+    ahead = list(even_points(make_sampler(sampler, SPACE, 24, 1), 24))
+    even = [each.point for each in searched(sampler, 24).samples if each.even]
+    assert ahead == even
+    assert len(ahead) >= 6
 
 
 def test_sensitivity_is_that_of_the_margin() -> None:
