@@ -178,7 +178,7 @@ def sensitivity(found: Hunt) -> list[tuple[Factor, float, float | None]]:
             from scipy.stats import spearmanr
 
             values = [factor.unit(each.point[factor.name]) for each in even]
-            rank = float(spearmanr(values, margins).statistic) if len(set(values)) > 1 else None
+            rank = float(spearmanr(values, margins)[0]) if len(set(values)) > 1 else None
         shares.append((factor, min(1.0, max(0.0, share)), rank))
     return sorted(shares, key=lambda entry: -entry[1])
 
