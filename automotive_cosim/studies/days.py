@@ -146,7 +146,7 @@ class DaysJob:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Day:
+class StudyDay:
     """One day; times are from the planned departure to the arrival, or to the end of the day."""
 
     mean_s: float
@@ -169,7 +169,7 @@ class DaysRow(JobRow):
     scenario: str
     share: float | None
     seed: int
-    days: tuple[Day, ...] = ()
+    days: tuple[StudyDay, ...] = ()
 
     @property
     def settled(self) -> int | None:
@@ -178,7 +178,7 @@ class DaysRow(JobRow):
         is_over = (has_settled(means_s[: day + 1]) or not self.days[day].changed for day in range(len(means_s)))
         return next((day for day, found in enumerate(is_over) if found), None)
 
-    def last(self, of: Callable[[Day], float | None]) -> float | None:
+    def last(self, of: Callable[[StudyDay], float | None]) -> float | None:
         """The mean of a figure over the last ``WEEK`` days; None if it is not known.
 
         Of the user equilibrium, that of the day with the smallest gap, as the search does not approach it evenly.
@@ -236,7 +236,7 @@ def _planned(job: DaysJob) -> DaysRow:
     return DaysRow(id=job.id, scenario=job.plan.scenario, share=job.share, seed=job.seed)
 
 
-def _days(job: DaysJob) -> Iterator[Day]:
+def _days(job: DaysJob) -> Iterator[StudyDay]:
     """Day by day, until the traffic has settled or the days are over."""
     plan, scenario = job.plan, job.plan.scene()
     configuration = read_configuration(scenario.config)
@@ -305,14 +305,16 @@ def _advice(
     }
 
 
-def _day(planned: Assigned, trips: Sequence[DrivenTrip], first_s: float, end_s: float, advised: set[str]) -> Day:
+def _day(
+    planned: Assigned, trips: Sequence[DrivenTrip], first_s: float, end_s: float, advised: set[str]
+) -> StudyDay:
     """The times of a day; gap, changes and teleports are filled in by the caller."""
     arrived_s = {trip.id: trip.exits_s[-1] for trip in trips if trip.has_arrived}
     counted = [trip for trip in planned.trips if trip.departed_s >= first_s]
     taken_s = {trip.id: arrived_s.get(trip.id, end_s) - trip.departed_s for trip in counted}
     groups = [[taken_s[name] for name in taken_s if (name in advised) is which] for which in (True, False)]
     advised_s, others_s = (fmean(each) if each else None for each in groups)
-    return Day(
+    return StudyDay(
         mean_s=fmean(taken_s.values()) if taken_s else 0.0,
         advised_s=advised_s,
         others_s=others_s,

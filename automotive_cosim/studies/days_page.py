@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
 from automotive_cosim.report.tables import Table, TableRow
-from automotive_cosim.studies.days import NEAR, SETTLED, WEEK, Day, DaysRow, DaysStudy, read_days
+from automotive_cosim.studies.days import NEAR, SETTLED, WEEK, DaysRow, DaysStudy, StudyDay, read_days
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
-from automotive_cosim.studies.shown import Shown, write_shown
+from automotive_cosim.studies.shown import ShownStudy, write_shown
 from automotive_cosim.studies.tables import NONE, told, told_mean
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def write_days(folder: Path) -> Path:
     study = read_days(folder)
     plan = study.plan
     about = f"{counted(len(plan.seeds), 'seed')}, up to {counted(plan.days, 'day')} of {plan.minutes:g} minutes"
-    shown = Shown("Study from day to day", about, answer(study), warnings(study), tables(study), charts(study))
+    shown = ShownStudy("Study from day to day", about, answer(study), warnings(study), tables(study), charts(study))
     return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
 
 
@@ -53,7 +53,7 @@ def mean_s(study: DaysStudy, share: float | None) -> SeedMean | None:
     return over_seeds(study.of(share), lambda day: day.mean_s)
 
 
-def over_seeds(rows: Sequence[DaysRow], of: Callable[[Day], float | None]) -> SeedMean | None:
+def over_seeds(rows: Sequence[DaysRow], of: Callable[[StudyDay], float | None]) -> SeedMean | None:
     """The mean of a figure of the last days over the seeds."""
     found = [(row.seed, row.last(of)) for row in rows]
     return seed_mean((seed, value) for seed, value in found if value is not None)
@@ -221,7 +221,7 @@ def _shares(study: DaysStudy) -> Drawing | None:
     advised = [share for share in shares(study) if share is not None]
     if len(advised) < 2:
         return None
-    lines: dict[str, Callable[[Day], float | None]] = {
+    lines: dict[str, Callable[[StudyDay], float | None]] = {
         "all": lambda day: day.mean_s,
         "advised": lambda day: day.advised_s,
         "others": lambda day: day.others_s,

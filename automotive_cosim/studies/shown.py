@@ -15,7 +15,7 @@ from automotive_cosim.run.store import cannot_write
 
 
 @dataclass(frozen=True, slots=True)
-class Shown:
+class ShownStudy:
     """What a report shows."""
 
     title: str
@@ -30,7 +30,7 @@ class Shown:
     """By name: title, SVG for a wide page, SVG for a narrow one."""
 
 
-def write_shown(folder: Path, shown: Shown, plan: Json, manifest: Json, errors: int) -> Path:
+def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, errors: int) -> Path:
     """Writes ``report.html``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
 
     Args:

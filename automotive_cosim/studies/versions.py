@@ -120,11 +120,11 @@ def compared(found: tuple[Pair, ...]) -> Table:
     return Table("compared", "Two runs of the same study", columns, tuple(rows), note, heads=2)
 
 
-Figures = dict[tuple[str, int], float]
+VersionFigures = dict[tuple[str, int], float]
 """A figure by what it is of and seed."""
 
 
-def _figures(pair: Pair) -> Iterator[tuple[str, Figures, Figures]]:
+def _figures(pair: Pair) -> Iterator[tuple[str, VersionFigures, VersionFigures]]:
     first, second = pair.first, pair.second
     if isinstance(first, CongestionStudy) and isinstance(second, CongestionStudy):
         for measure in first.measures:
@@ -139,7 +139,7 @@ def _figures(pair: Pair) -> Iterator[tuple[str, Figures, Figures]]:
             yield name, figures, after.get(name, {})
 
 
-def _gains(study: Study) -> dict[str, Figures]:
+def _gains(study: Study) -> dict[str, VersionFigures]:
     """What each policy saves, by what it is called in the table."""
     return {
         f"{policy}, {share:.0%} reroute, news {age_s:g} s old": {

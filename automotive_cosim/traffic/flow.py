@@ -47,7 +47,7 @@ class Advice:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Signals:
+class SignalControl:
     """All signals are controlled in another way, with the phases that they have."""
 
     kind: Literal["signals"] = "signals"
@@ -128,7 +128,7 @@ class Advisor:
                 return
 
 
-def control(sumo: LibSumo, signals: Signals) -> int:
+def control(sumo: LibSumo, signals: SignalControl) -> int:
     """Changes the control of all signals; returns how many there are."""
     lights: Any = sumo.lights
     for light in sumo.light_ids():

@@ -35,7 +35,7 @@ from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.chance import Fresh, Trial
 from automotive_cosim.traffic.divert import Edges
 from automotive_cosim.traffic.drive import Call
-from automotive_cosim.traffic.flow import Advice, FlowPulse, Signals
+from automotive_cosim.traffic.flow import Advice, FlowPulse, SignalControl
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
@@ -315,7 +315,7 @@ class RemoteFlow:
         self.outputs = outputs
         """Folder of SUMO's own outputs, complete when this is closed; None without any."""
 
-    def apply(self, measure: Incident | Advice | Signals, seed: int) -> None:
+    def apply(self, measure: Incident | Advice | SignalControl, seed: int) -> None:
         """Takes a measure now; the times of incidents count from the end of the warm-up.
 
         Args:
@@ -328,7 +328,7 @@ class RemoteFlow:
         match measure:
             case Advice():
                 self._process.call("advise", measure, seed)
-            case Signals():
+            case SignalControl():
                 self._process.call("control", measure)
             case Incident():
                 self._process.call("stage", measure)

@@ -31,7 +31,7 @@ from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, Messa
 from automotive_cosim.traffic.confinement import confine
 from automotive_cosim.traffic.divert import Edges, divert
 from automotive_cosim.traffic.drive import Call, EgoDrive
-from automotive_cosim.traffic.flow import Advice, Advisor, FlowPulse, Signals, control
+from automotive_cosim.traffic.flow import Advice, Advisor, FlowPulse, SignalControl, control
 from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.sumo import load_library
@@ -224,7 +224,7 @@ class Server:
         assert self._world is not None
         self._advisor = self._world.advisor(advice, seed)
 
-    def do_control(self, signals: Signals) -> None:
+    def do_control(self, signals: SignalControl) -> None:
         """Controls the signals of this copy in another way.
 
         Raises:

@@ -19,7 +19,7 @@ from automotive_cosim.studies.congestion.page import answer, warnings
 from automotive_cosim.studies.congestion.plan import CongestionPlan, make_congestion
 from automotive_cosim.studies.congestion.results import (
     CongestionStudy,
-    Part,
+    NetworkPart,
     change,
     delay_h,
     indices,
@@ -27,7 +27,7 @@ from automotive_cosim.studies.congestion.results import (
     read_congestion,
     throughput_per_h,
 )
-from automotive_cosim.studies.congestion.rows import CongestionRow, Flow, FlowCell, FlowState, Outcome
+from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, FlowState, FlowSums, MeasureOutcome
 from automotive_cosim.studies.congestion.tables import emissions, whole, worst
 from automotive_cosim.studies.versions import pairs
 
@@ -37,16 +37,16 @@ from .conftest import Draw
 def cell(
     from_s: float, time_s: float, lost_s: float, road_class: str = "primary", queue_m: float = 0.0
 ) -> FlowCell:
-    flow = Flow(time_s=time_s, lost_s=lost_s, distance_m=10 * (time_s - lost_s))
+    flow = FlowSums(time_s=time_s, lost_s=lost_s, distance_m=10 * (time_s - lost_s))
     return FlowCell(from_s=from_s, road_class=road_class, flow=flow, queue_m=queue_m, longest_m=2 * queue_m)
 
 
-def outcome(*found: FlowCell, measure: str = "", backlog: int = 0) -> Outcome:
+def outcome(*found: FlowCell, measure: str = "", backlog: int = 0) -> MeasureOutcome:
     """An hour in which a vehicle arrives every minute."""
     states = [
         FlowState(at_s=60.0 * n, running=9, backlog=backlog, departed=n, arrived=n, teleported=0) for n in range(61)
     ]
-    return Outcome(measure=measure, cells=found, states=tuple(states))
+    return MeasureOutcome(measure=measure, cells=found, states=tuple(states))
 
 
 PLAN = CongestionPlan("grid", measures=("closure edge=c1c2",), demand=(1.0, 2.0), step_s=0.1)
@@ -77,7 +77,7 @@ def test_the_indices_are_those_of_the_books() -> None:
     assert found.travel_time == pytest.approx((19 * 110 + 300) / 2000)
     assert found.planning_time == pytest.approx(1.1), "the worst twentieth begins after 95 % of the driving"
     assert found.buffer == pytest.approx(1.1 / found.travel_time - 1)
-    assert indices(PLAN, [made], Part("motorway")) is None
+    assert indices(PLAN, [made], NetworkPart("motorway")) is None
 
 
 def test_delay_queues_and_throughput_are_by_class_and_period() -> None:
@@ -88,11 +88,13 @@ def test_delay_queues_and_throughput_are_by_class_and_period() -> None:
         backlog=2,
     )
     assert delay_h(PLAN, made) == pytest.approx((180 + 180 + 360) / 3600 + 2), "two wait outside all the time"
-    assert delay_h(PLAN, made, Part("primary", 0)) == pytest.approx(180 / 1800)
-    assert delay_h(PLAN, made, Part("primary", 1)) == pytest.approx(360 / 1800)
-    assert delay_h(PLAN, made, Part(None, 1)) == pytest.approx(360 / 1800 + 2)
-    assert queue_m(PLAN, made, Part("primary", 0)) == (10.0, 120.0), "of six times five minutes one has a queue"
-    assert throughput_per_h(PLAN, made) == throughput_per_h(PLAN, made, Part(None, 1)) == 60
+    assert delay_h(PLAN, made, NetworkPart("primary", 0)) == pytest.approx(180 / 1800)
+    assert delay_h(PLAN, made, NetworkPart("primary", 1)) == pytest.approx(360 / 1800)
+    assert delay_h(PLAN, made, NetworkPart(None, 1)) == pytest.approx(360 / 1800 + 2)
+    assert queue_m(PLAN, made, NetworkPart("primary", 0)) == (10.0, 120.0), (
+        "of six times five minutes one has a queue"
+    )
+    assert throughput_per_h(PLAN, made) == throughput_per_h(PLAN, made, NetworkPart(None, 1)) == 60
 
 
 def test_the_answer_stands_first_and_is_paired_by_seed() -> None:

@@ -12,11 +12,11 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes
 from automotive_cosim.studies.days import (
     WEEK,
-    Day,
     DaysJob,
     DaysPlan,
     DaysRow,
     DaysStudy,
+    StudyDay,
     has_settled,
     make_days,
     run_chain,
@@ -27,8 +27,8 @@ Draw = Callable[..., Path]
 PLAN = DaysPlan("grid", shares=(0.0, 1.0), seeds=(0, 1))
 
 
-def day(mean_s: float, **more: object) -> Day:
-    made = Day(
+def day(mean_s: float, **more: object) -> StudyDay:
+    made = StudyDay(
         mean_s=mean_s, advised_s=None, others_s=mean_s, relative_gap=0.1, changed=5, unfinished=0, teleports=0
     )
     return replace(made, **more)  # type: ignore[arg-type]

@@ -16,7 +16,7 @@ from automotive_cosim.studies.congestion.maps import delay_map
 from automotive_cosim.studies.congestion.outputs import JUNCTIONS, OTHER
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
 from automotive_cosim.studies.congestion.results import HOUR_S, CongestionStudy, strongest
-from automotive_cosim.studies.congestion.rows import Flow
+from automotive_cosim.studies.congestion.rows import FlowSums
 from automotive_cosim.studies.congestion.tables import all_measures, network_of
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.ways import way_through
@@ -105,10 +105,10 @@ def _fundamental(study: CongestionStudy, network: Network) -> Drawing | None:
             density: list[float] = []
             flows: list[float] = []
             for _, outcome in study.outcomes(study.measures[number]):
-                epochs: dict[float, Flow] = {}
+                epochs: dict[float, FlowSums] = {}
                 for cell in outcome.cells:
                     if cell.road_class not in (JUNCTIONS, OTHER):
-                        epochs[cell.from_s] = epochs.get(cell.from_s, Flow()) + cell.flow
+                        epochs[cell.from_s] = epochs.get(cell.from_s, FlowSums()) + cell.flow
                 density += [flow.time_s / EPOCH_S / (lanes_m / 1000) for flow in epochs.values()]
                 flows += [flow.distance_m / lanes_m / EPOCH_S * HOUR_S for flow in epochs.values()]
             densest, most = max([densest, *density]), max([most, *flows])

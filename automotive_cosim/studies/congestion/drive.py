@@ -32,7 +32,7 @@ from automotive_cosim.studies.congestion.plan import (
     CongestionPlan,
     measure_in,
 )
-from automotive_cosim.studies.congestion.rows import CongestionRow, Emitted, FlowCell, FlowState, Outcome
+from automotive_cosim.studies.congestion.rows import CongestionRow, Emitted, FlowCell, FlowState, MeasureOutcome
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.traffic.flow import FlowPulse
 from automotive_cosim.traffic.fork import Forked, RemoteFlow
@@ -84,7 +84,7 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
     of = class_in(read_network(configuration.net))
     begin_s = configuration.begin_s + scenario.sumo.warm_up_s
     names = ("", *plan.measures)
-    outcomes: list[Outcome] = []
+    outcomes: list[MeasureOutcome] = []
     edges: list[Sequence[EdgeFlow]] = []
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-flow-") as scratch, ExitStack() as stack:
         warm = Forked(scenario, job.seed, allow_unprojected=True, outputs=Path(scratch), flow_s=INTERVAL_S)
@@ -109,7 +109,9 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
     return replace(_planned(job), outcomes=tuple(outcomes))
 
 
-def _outcome(name: str, plan: CongestionPlan, found: tuple[FlowCell, ...], pulses: Sequence[FlowPulse]) -> Outcome:
+def _outcome(
+    name: str, plan: CongestionPlan, found: tuple[FlowCell, ...], pulses: Sequence[FlowPulse]
+) -> MeasureOutcome:
     """An outcome from the flows and from the traffic's states, the first of which is that of the copy."""
     first = pulses[0]
     states = tuple(
@@ -124,7 +126,7 @@ def _outcome(name: str, plan: CongestionPlan, found: tuple[FlowCell, ...], pulse
         for number, each in enumerate(pulses)
     )
     jam = gridlock([each.pulse for each in pulses[:: round(EPOCH_S / INTERVAL_S)]])
-    return Outcome(
+    return MeasureOutcome(
         measure=name,
         cells=found,
         states=states,

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
-from automotive_cosim.studies.congestion.rows import EdgeRow, Flow, FlowCell
+from automotive_cosim.studies.congestion.rows import EdgeRow, FlowCell, FlowSums
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.options import EDGE_FLOWS, QUEUE_PERIOD_S, QUEUES
 
@@ -29,7 +29,7 @@ class EdgeFlow:
 
     edge: str
     from_s: float
-    flow: Flow
+    flow: FlowSums
 
 
 def read_flows(folder: Path, begin_s: float, slowed: Sequence[Mapping[str, float]] = ()) -> Iterator[EdgeFlow]:
@@ -51,7 +51,7 @@ def read_flows(folder: Path, begin_s: float, slowed: Sequence[Mapping[str, float
             time_s = float(element.get("sampledSeconds", 0.0))
             number = round(from_s / INTERVAL_S)
             share = slowed[number].get(element.attrib["id"], 1.0) if number < len(slowed) else 1.0
-            flow = Flow(
+            flow = FlowSums(
                 time_s=time_s,
                 lost_s=time_s - share * (time_s - float(element.get("timeLoss", 0.0))),
                 standing_s=float(element.get("waitingTime", 0.0)),
@@ -88,7 +88,7 @@ def cells(
     flows: Sequence[EdgeFlow], queues: Iterator[tuple[str, float, float]], of: Callable[[str], str]
 ) -> tuple[FlowCell, ...]:
     """The flows by class of road and five minutes."""
-    sums: dict[tuple[float, str], Flow] = defaultdict(Flow)
+    sums: dict[tuple[float, str], FlowSums] = defaultdict(FlowSums)
     for each in flows:
         sums[each.from_s // EPOCH_S * EPOCH_S, of(each.edge)] += each.flow
     total_m: dict[tuple[float, str], float] = defaultdict(float)
@@ -110,9 +110,9 @@ def cells(
     )
 
 
-def rounded(flow: Flow) -> Flow:
+def rounded(flow: FlowSums) -> FlowSums:
     """A flow as it is stored."""
-    return Flow(
+    return FlowSums(
         time_s=round(flow.time_s, 2),
         lost_s=round(flow.lost_s, 2),
         standing_s=round(flow.standing_s, 2),

@@ -22,7 +22,7 @@ from automotive_cosim.studies.congestion.results import (
 )
 from automotive_cosim.studies.congestion.tables import mean, tables
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
-from automotive_cosim.studies.shown import Shown, write_shown
+from automotive_cosim.studies.shown import ShownStudy, write_shown
 from automotive_cosim.studies.warnings import steps_told
 
 
@@ -39,7 +39,7 @@ def write_congestion(folder: Path) -> Path:
         f"{counted(len(study.rows), 'seed')}, {plan.minutes:g} minutes each; every measure begins in a copy of "
         "the same traffic"
     )
-    shown = Shown("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
+    shown = ShownStudy("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
     return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
 
 

@@ -19,7 +19,7 @@ from automotive_cosim.scenarios.incidents import AnyIncident, EgoIncident, RushH
 from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.studies.plan import check_edges, driven_at, option
-from automotive_cosim.traffic.flow import Advice, Signals
+from automotive_cosim.traffic.flow import Advice, SignalControl
 
 KIND = "congestion"
 """Kind of study in the manifest."""
@@ -28,8 +28,8 @@ INTERVAL_S, EPOCH_S = 60.0, 300.0
 """Length of the intervals of the flow on every edge, and of those over which travel times vary (five minutes, as in
 FHWA's reports on reliability)."""
 
-Measure = AnyIncident | Advice | Signals
-MEASURES = {**KINDS, "advice": Advice, "signals": Signals}
+Measure = AnyIncident | Advice | SignalControl
+MEASURES = {**KINDS, "advice": Advice, "signals": SignalControl}
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ class CongestionPlan:
             )
         for text, place in (*((each, "--measure") for each in self.measures), *self._incidents):
             found = measure_in(text, place)
-            if not isinstance(found, Advice | Signals):
+            if not isinstance(found, Advice | SignalControl):
                 if isinstance(found, EgoIncident):
                     raise UserError(f"{place} has {found.kind!r}, which needs the ego, but this study has none")
                 check_edges(found, place, self.opened)

@@ -24,7 +24,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.run.store import read_manifest, read_rows
 from automotive_cosim.studies.congestion.outputs import EDGES, read_edges
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S, CongestionPlan, make_congestion
-from automotive_cosim.studies.congestion.rows import CongestionRow, EdgeRow, Flow, FlowCell, Outcome
+from automotive_cosim.studies.congestion.rows import CongestionRow, EdgeRow, FlowCell, FlowSums, MeasureOutcome
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
 
 LATE = 0.95
@@ -53,7 +53,7 @@ class CongestionStudy:
         """No measure, then all of the plan."""
         return ("", *self.plan.measures)
 
-    def outcomes(self, measure: str) -> Iterator[tuple[int, Outcome]]:
+    def outcomes(self, measure: str) -> Iterator[tuple[int, MeasureOutcome]]:
         """Seed and outcome of a measure."""
         for row in self.rows:
             for each in row.outcomes:
@@ -70,18 +70,18 @@ class CongestionStudy:
         return tuple(sorted(driven, key=lambda name: -driven[name]))
 
     @cached_property
-    def edges(self) -> dict[tuple[int, str, float], Flow]:
+    def edges(self) -> dict[tuple[int, str, float], FlowSums]:
         """The flow by number of the measure, edge and minute, summed over the seeds."""
-        sums: dict[tuple[int, str, float], Flow] = {}
+        sums: dict[tuple[int, str, float], FlowSums] = {}
         for row in self.rows:
             for each in read_edges(self.folder / EDGES / f"{row.id}.csv.gz"):
                 key = each.measure, each.edge, each.from_s
-                sums[key] = sums.get(key, Flow()) + _flow(each)
+                sums[key] = sums.get(key, FlowSums()) + _flow(each)
         return sums
 
 
-def _flow(row: EdgeRow) -> Flow:
-    return Flow(time_s=row.time_s, lost_s=row.lost_s, distance_m=row.distance_m)
+def _flow(row: EdgeRow) -> FlowSums:
+    return FlowSums(time_s=row.time_s, lost_s=row.lost_s, distance_m=row.distance_m)
 
 
 def read_congestion(folder: Path) -> CongestionStudy:
@@ -97,13 +97,13 @@ def read_congestion(folder: Path) -> CongestionStudy:
 
 
 @dataclass(frozen=True, slots=True)
-class Part:
+class NetworkPart:
     """The part of a study that a figure is about: a class of road, a period of the demand, or all."""
 
     road_class: str | None = None
     period: int | None = None
 
-    def cells(self, plan: CongestionPlan, outcome: Outcome) -> Iterator[FlowCell]:
+    def cells(self, plan: CongestionPlan, outcome: MeasureOutcome) -> Iterator[FlowCell]:
         """Its cells of an outcome."""
         for cell in outcome.cells:
             if self.road_class in (None, cell.road_class) and self.period in (
@@ -117,33 +117,35 @@ class Part:
         return (plan.duration_s if self.period is None else plan.period_s) / HOUR_S
 
 
-WHOLE = Part()
+WHOLE = NetworkPart()
 
 
-def flow_in(plan: CongestionPlan, outcome: Outcome, part: Part = WHOLE) -> Flow:
+def flow_in(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> FlowSums:
     """The flow of a part."""
-    return sum((cell.flow for cell in part.cells(plan, outcome)), Flow())
+    return sum((cell.flow for cell in part.cells(plan, outcome)), FlowSums())
 
 
-def waited_s(plan: CongestionPlan, outcome: Outcome, part: Part = WHOLE) -> float:
+def waited_s(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
     """Vehicle-seconds outside, waiting for room to enter; only of all classes of road together."""
     states = [s for s in outcome.states[1:] if part.period in (None, int((s.at_s - 1) // plan.period_s))]
     return 0.0 if part.road_class else sum(each.backlog for each in states) * INTERVAL_S
 
 
-def delay_h(plan: CongestionPlan, outcome: Outcome, part: Part = WHOLE) -> float:
+def delay_h(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
     """Vehicle-hours of delay per hour."""
     lost_s = flow_in(plan, outcome, part).lost_s + waited_s(plan, outcome, part)
     return lost_s / HOUR_S / part.hours(plan)
 
 
-def detour_h(plan: CongestionPlan, before: Outcome, after: Outcome, part: Part = WHOLE) -> float:
+def detour_h(
+    plan: CongestionPlan, before: MeasureOutcome, after: MeasureOutcome, part: NetworkPart = WHOLE
+) -> float:
     """Vehicle-hours per hour that what is driven more takes without congestion; negative if less is driven."""
     free_s = flow_in(plan, after, part).free_s - flow_in(plan, before, part).free_s
     return free_s / HOUR_S / part.hours(plan)
 
 
-def throughput_per_h(plan: CongestionPlan, outcome: Outcome, part: Part = WHOLE) -> float:
+def throughput_per_h(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
     """Arrivals per hour."""
     first_s = 0.0 if part.period is None else part.period * plan.period_s
     last_s = first_s + part.hours(plan) * HOUR_S
@@ -151,7 +153,7 @@ def throughput_per_h(plan: CongestionPlan, outcome: Outcome, part: Part = WHOLE)
     return (arrived[last_s] - arrived[first_s]) / part.hours(plan)
 
 
-def queue_m(plan: CongestionPlan, outcome: Outcome, part: Part = WHOLE) -> tuple[float, float]:
+def queue_m(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> tuple[float, float]:
     """Mean total length of the queues, and the longest one of a lane, in m."""
     found = list(part.cells(plan, outcome))
     epochs = part.hours(plan) * HOUR_S / EPOCH_S
@@ -171,13 +173,13 @@ class Indices:
         return self.planning_time / self.travel_time - 1
 
 
-def indices(plan: CongestionPlan, outcomes: Iterable[Outcome], part: Part = WHOLE) -> Indices | None:
+def indices(plan: CongestionPlan, outcomes: Iterable[MeasureOutcome], part: NetworkPart = WHOLE) -> Indices | None:
     """The indices over all seeds and five minutes; None if nobody drove there."""
-    epochs: dict[tuple[int, float], Flow] = {}
+    epochs: dict[tuple[int, float], FlowSums] = {}
     for number, outcome in enumerate(outcomes):
         for cell in part.cells(plan, outcome):
             key = number, cell.from_s
-            epochs[key] = epochs.get(key, Flow()) + cell.flow
+            epochs[key] = epochs.get(key, FlowSums()) + cell.flow
     driven = [flow for flow in epochs.values() if flow.free_s > 0]
     if not driven:
         return None
@@ -196,12 +198,14 @@ def strongest(study: CongestionStudy) -> int:
     return 1 + sizes.index(max(sizes)) if sizes else 0
 
 
-def change(study: CongestionStudy, measure: str, part: Part = WHOLE) -> SeedMean | None:
+def change(study: CongestionStudy, measure: str, part: NetworkPart = WHOLE) -> SeedMean | None:
     """What a measure adds to the delay, in vehicle-hours per hour, seed by seed."""
     return paired(study, measure, lambda one, two: delay_h(study.plan, two, part) - delay_h(study.plan, one, part))
 
 
-def paired(study: CongestionStudy, measure: str, of: Callable[[Outcome, Outcome], float]) -> SeedMean | None:
+def paired(
+    study: CongestionStudy, measure: str, of: Callable[[MeasureOutcome, MeasureOutcome], float]
+) -> SeedMean | None:
     """The mean of a figure of the traffic without and with a measure, seed by seed."""
     before = dict(study.outcomes(""))
     return seed_mean((seed, of(before[seed], outcome)) for seed, outcome in study.outcomes(measure))

@@ -9,7 +9,7 @@ from automotive_cosim.run.row import InColumns, JobRow
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Flow:
+class FlowSums:
     """Sums over all vehicles on some edges in some time; of two, their sum."""
 
     time_s: float = 0.0
@@ -26,8 +26,8 @@ class Flow:
         """What the same distances take without congestion and signals."""
         return max(0.0, self.time_s - self.lost_s)
 
-    def __add__(self, other: Flow) -> Flow:
-        return Flow(
+    def __add__(self, other: FlowSums) -> FlowSums:
+        return FlowSums(
             time_s=self.time_s + other.time_s,
             lost_s=self.lost_s + other.lost_s,
             standing_s=self.standing_s + other.standing_s,
@@ -43,7 +43,7 @@ class FlowCell:
     """Seconds after the end of the warm-up."""
     road_class: str
     """OpenStreetMap's, or ``junctions``, ``other``, ``unknown`` (``outputs``)."""
-    flow: Annotated[Flow, InColumns("")]
+    flow: Annotated[FlowSums, InColumns("")]
     queue_m: float
     """Mean over time of the total length of the queues, by SUMO's queue output."""
     longest_m: float
@@ -80,7 +80,7 @@ class Emitted:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Outcome:
+class MeasureOutcome:
     """The traffic without a measure, or with one."""
 
     measure: str
@@ -99,7 +99,7 @@ class CongestionRow(JobRow):
 
     scenario: str
     seed: int
-    outcomes: tuple[Outcome, ...] = ()
+    outcomes: tuple[MeasureOutcome, ...] = ()
     """Without a measure first, then in the order of the plan."""
 
 

@@ -13,7 +13,7 @@ from automotive_cosim.studies.congestion.results import (
     HOUR_S,
     WHOLE,
     CongestionStudy,
-    Part,
+    NetworkPart,
     change,
     delay_h,
     detour_h,
@@ -25,7 +25,7 @@ from automotive_cosim.studies.congestion.results import (
     throughput_per_h,
     waited_s,
 )
-from automotive_cosim.studies.congestion.rows import Emitted, Flow, Outcome
+from automotive_cosim.studies.congestion.rows import Emitted, FlowSums, MeasureOutcome
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.tables import NONE, told, told_mean
 from automotive_cosim.traffic.network import Network, read_network
@@ -43,7 +43,7 @@ def tables(study: CongestionStudy) -> list[Table]:
     return [table for table in made if table.rows]
 
 
-def mean(study: CongestionStudy, measure: str, of: Callable[[Outcome], float]) -> float:
+def mean(study: CongestionStudy, measure: str, of: Callable[[MeasureOutcome], float]) -> float:
     """The mean of a figure over the seeds."""
     found = [of(outcome) for _, outcome in study.outcomes(measure)]
     return fmean(found) if found else 0.0
@@ -58,7 +58,7 @@ def whole(study: CongestionStudy) -> Table:
         found = indices(plan, outcomes)
         if found is None:
             continue
-        flow = sum((flow_in(plan, outcome) for outcome in outcomes), Flow())
+        flow = sum((flow_in(plan, outcome) for outcome in outcomes), FlowSums())
         before_h = mean(study, "", lambda each: delay_h(plan, each))
         added = change(study, measure) if measure else None
         rows.append(
@@ -116,13 +116,13 @@ def by_class(study: CongestionStudy) -> Table:
     periods = (None, *range(len(plan.demand))) if len(plan.demand) > 1 else (None,)
     for period in periods:
         for road_class in study.classes:
-            part = Part(road_class, period)
+            part = NetworkPart(road_class, period)
             for measure in study.measures:
                 outcomes = [outcome for _, outcome in study.outcomes(measure)]
                 found = indices(plan, outcomes, part)
                 if found is None:
                     continue
-                flow = sum((flow_in(plan, outcome, part) for outcome in outcomes), Flow())
+                flow = sum((flow_in(plan, outcome, part) for outcome in outcomes), FlowSums())
                 queues = [queue_m(plan, outcome, part) for outcome in outcomes]
                 rows.append(
                     (
@@ -170,7 +170,7 @@ def emissions(study: CongestionStudy) -> Table:
     """What all vehicles emit and consume, by emission class."""
     hours = WHOLE.hours(study.plan)
 
-    def per_h(outcome: Outcome, name: str, of: Callable[[Emitted], float]) -> float:
+    def per_h(outcome: MeasureOutcome, name: str, of: Callable[[Emitted], float]) -> float:
         return sum(of(each) for each in outcome.emitted if each.emission_class == name) / hours
 
     kinds: tuple[tuple[Callable[[Emitted], float], str], ...] = (
