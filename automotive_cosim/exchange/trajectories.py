@@ -49,7 +49,7 @@ def write_csv(recording: Recording, target: Path) -> None:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(entry.name for entry in fields(TrajectoryPoint))
-    writer.writerows(map(astuple, points(recording)))
+    writer.writerows(astuple(each) for each in points(recording))
     write_whole(target, text.getvalue())
 
 

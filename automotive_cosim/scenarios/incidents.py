@@ -174,6 +174,35 @@ class Pedestrians(Incident):
     """Number of people who walk together."""
 
 
+@dataclass(frozen=True, slots=True)
+class VehicleAction:
+    """What a scripted vehicle does at a time: another speed, another lane, or both."""
+
+    at_s: Annotated[float, Ge(0)]
+    """Seconds after the ego's departure."""
+    speed_kmh: Annotated[float, Ge(0)] | None = None
+    """The speed that it keeps from then on, as far as traffic allows."""
+    lanes: int = 0
+    """Lanes to the left, or to the right if negative, into which it moves at once."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptedVehicle(Incident):
+    """A vehicle on a route of its own, which acts at given times."""
+
+    kind: Literal["vehicle"] = "vehicle"
+    route: Annotated[tuple[EdgeId, ...], MinLen(1)]
+    """Its edges, in driving order, each leading to the next."""
+    position_m: Annotated[float, Ge(0)] = 0.0
+    """Where its front bumper is at first, from the start of the first edge."""
+    lane: Annotated[int, Ge(0)] = 0
+    """Among the edge's lanes for cars, 0 nearest the kerb."""
+    speed_kmh: Annotated[float, Ge(0)] = 50.0
+    """The speed that it keeps at first, as far as traffic allows."""
+    actions: tuple[VehicleAction, ...] = ()
+    """In the order of the times; until the last, it changes the lane only when told."""
+
+
 # --- around the ego ---------------------------------------------------------------------------------------
 
 
@@ -272,6 +301,7 @@ AnyIncident = Annotated[
     | RushHour
     | Tractor
     | Pedestrians
+    | ScriptedVehicle
     | EmergencyVehicle
     | BrakingLeader
     | CutIn

@@ -237,7 +237,7 @@ def _planned(job: DaysJob) -> DaysRow:
 
 
 def _days(job: DaysJob) -> Iterator[StudyDay]:
-    """StudyDay by day, until the traffic has settled or the days are over."""
+    """Day by day, until the traffic has settled or the days are over."""
     plan, scenario = job.plan, job.plan.scene()
     configuration = read_configuration(scenario.config)
     network = read_network(configuration.net)

@@ -90,7 +90,7 @@ def _delay(study: CongestionStudy) -> Drawing | None:
 
 
 def _fundamental(study: CongestionStudy, network: Network) -> Drawing | None:
-    """FlowSums against density of the whole network in five minutes (Geroliminis and Daganzo 2008).
+    """Flow against density of the whole network in five minutes (Geroliminis and Daganzo 2008).
 
     Both by Edie's definitions (1963): total distance, and total time, by the length of all lanes and the time.
     """
