@@ -59,6 +59,7 @@ EXTRAS = {
     "import": Extra("osmium", "scenarios import and download"),
     "inspect": Extra("inspect_ai", "inspect eval automotive_cosim/cockpit"),
     "llm": Extra("openai", "--model openai/NAME"),
+    "local": Extra("xllamacpp", "--model local"),
     "mcp": Extra("mcp", "mcp"),
     "openenv": Extra("openenv", "doors.openenv"),
     "parquet": Extra("pyarrow", "studies and trajectories as Parquet"),
