@@ -34,11 +34,11 @@ def report(
     from automotive_cosim.report.evaluation import write_report
     from automotive_cosim.report.results import read_results
     from automotive_cosim.run.store import read_manifest
-    from automotive_cosim.studies.page import write_study
+    from automotive_cosim.studies.pages import write_page
 
     plan = read_manifest(folder)["plan"]
     if "study" in plan:
-        page = write_study(folder)
+        page = write_page(folder)
     else:
         page = write_report(folder)
         typer.echo(str(read_results(folder).coverage))

@@ -23,7 +23,7 @@ from shapely import LineString, Point, STRtree
 from automotive_cosim.contracts import KMH_PER_MPS, Weather
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.openscenario import KELVIN
-from automotive_cosim.exchange.tree import Element, read_tree
+from automotive_cosim.exchange.tree import XmlElement, read_tree
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
 from automotive_cosim.traffic.sumo_programs import first_error, run
@@ -48,9 +48,9 @@ class _Vehicle:
     name: str
     front_m: float
     """From the reference point to the front bumper."""
-    place: Element | None = None
+    place: XmlElement | None = None
     speed_mps: float = 0.0
-    goals: list[Element] = field(default_factory=list)
+    goals: list[XmlElement] = field(default_factory=list)
     """Positions of the route, the last is where it ends."""
     actions: list[dict[str, Any]] = field(default_factory=list)
 
@@ -107,7 +107,7 @@ def import_openscenario(
 # --- reading -----------------------------------------------------------------------------------------------------
 
 
-def _read(root: Element, file: Path) -> _Read:
+def _read(root: XmlElement, file: Path) -> _Read:
     if root.tag != "OpenSCENARIO":
         raise root.refused("is not OpenSCENARIO XML")
     known = "FileHeader", "CatalogLocations", "ParameterDeclarations", "RoadNetwork", "Entities", "Storyboard"
@@ -133,20 +133,20 @@ def _read(root: Element, file: Path) -> _Read:
     return read
 
 
-def _front_m(vehicle: Element) -> float:
+def _front_m(vehicle: XmlElement) -> float:
     box = vehicle.find("BoundingBox")
     centre, size = (None, None) if box is None else (box.find("Center"), box.find("Dimensions"))
     return 0.0 if centre is None or size is None else centre.number("x") + size.number("length") / 2
 
 
-def _entity(read: _Read, element: Element) -> _Vehicle:
+def _entity(read: _Read, element: XmlElement) -> _Vehicle:
     name = element.text("entityRef")
     if name not in read.vehicles:
         raise element.refused(f"names no entity {name!r}")
     return read.vehicles[name]
 
 
-def _init(actions: Element, read: _Read) -> None:
+def _init(actions: XmlElement, read: _Read) -> None:
     for part in actions.only("GlobalAction", "Private"):
         if part.tag == "GlobalAction":
             _environment(part.one("EnvironmentAction"), 0.0, read)
@@ -162,11 +162,11 @@ def _init(actions: Element, read: _Read) -> None:
                 vehicle.goals = list(_route(what))
 
 
-def _position(position: Element) -> Element:
+def _position(position: XmlElement) -> XmlElement:
     return position.one("WorldPosition", "LanePosition")
 
 
-def _speed(action: Element) -> float:
+def _speed(action: XmlElement) -> float:
     speed = action.one("SpeedAction")
     speed.only("SpeedActionDynamics", "SpeedActionTarget")
     target = speed.find("SpeedActionTarget")
@@ -175,7 +175,7 @@ def _speed(action: Element) -> float:
     return target.one("AbsoluteTargetSpeed").number("value")
 
 
-def _route(routing: Element) -> Iterator[Element]:
+def _route(routing: XmlElement) -> Iterator[XmlElement]:
     action = routing.one("AssignRouteAction", "AcquirePositionAction")
     if action.tag == "AcquirePositionAction":
         yield _position(action.one("Position"))
@@ -184,7 +184,7 @@ def _route(routing: Element) -> Iterator[Element]:
         yield _position(waypoint.one("Position"))
 
 
-def _act(act: Element, read: _Read) -> None:
+def _act(act: XmlElement, read: _Read) -> None:
     act.only("ManeuverGroup", "StartTrigger", "StopTrigger")
     begins_s = _time(act)
     for group in act.all("ManeuverGroup"):
@@ -199,7 +199,7 @@ def _act(act: Element, read: _Read) -> None:
                     _story_action(action, at_s, named, read)
 
 
-def _time(element: Element) -> float:
+def _time(element: XmlElement) -> float:
     """When its trigger lets it begin."""
     trigger = element.find("StartTrigger")
     if trigger is None or not trigger.parts:
@@ -211,7 +211,7 @@ def _time(element: Element) -> float:
     return max(0.0, time.number("value") + condition.number("delay", 0.0))
 
 
-def _story_action(action: Element, at_s: float, actors: Sequence[_Vehicle], read: _Read) -> None:
+def _story_action(action: XmlElement, at_s: float, actors: Sequence[_Vehicle], read: _Read) -> None:
     what = action.one("GlobalAction", "PrivateAction")
     if what.tag == "GlobalAction":
         _environment(what.one("EnvironmentAction"), at_s, read)
@@ -230,7 +230,7 @@ def _story_action(action: Element, at_s: float, actors: Sequence[_Vehicle], read
             vehicle.actions.append({"at_s": at_s, "lanes": lanes, "of": done})
 
 
-def _environment(action: Element, at_s: float, read: _Read) -> None:
+def _environment(action: XmlElement, at_s: float, read: _Read) -> None:
     made = action.one("Environment")
     made.only("TimeOfDay", "Weather", "RoadCondition", "ParameterDeclarations")
     clock, weather = made.find("TimeOfDay"), made.find("Weather")
@@ -245,7 +245,7 @@ def _environment(action: Element, at_s: float, read: _Read) -> None:
         read.skies.append((at_s, _sky(weather, read.skies[-1][1] if read.skies else WEATHER)))
 
 
-def _sky(weather: Element, before: Weather) -> Weather:
+def _sky(weather: XmlElement, before: Weather) -> Weather:
     weather.only("Sun", "Fog", "Precipitation", "Wind")
     sky = before
     kelvin = weather.number("temperature", before.temperature_2m + KELVIN)
@@ -304,7 +304,7 @@ class _Roads:
             for name in lane.getParam("origId", "").split():
                 self._pieces.setdefault(name, []).append(lane)
 
-    def lane_at(self, place: Element, ahead_m: float) -> tuple[Any, float]:
+    def lane_at(self, place: XmlElement, ahead_m: float) -> tuple[Any, float]:
         """A lane for cars and how far along it a place is, and ``ahead_m`` further on.
 
         Raises:
@@ -323,7 +323,7 @@ class _Roads:
         along_m = float(self._lines[number[0]].project(here))
         return lane, min(along_m + ahead_m, lane.getLength())
 
-    def _on(self, place: Element, ahead_m: float) -> tuple[Any, float]:
+    def _on(self, place: XmlElement, ahead_m: float) -> tuple[Any, float]:
         name = f"{place.text('roadId')}_{place.text('laneId')}"
         pieces = self._pieces.get(name, [])
         if not pieces:

@@ -45,14 +45,14 @@ SNOW = frozenset({71, 73, 75, 77, 85, 86})
 GAP_S = 1.5
 """A vehicle that was not seen for longer had left."""
 
-Sighting = tuple[float, SeenVehicle]
+SeenEntity = tuple[float, SeenVehicle]
 
 
 @dataclass(frozen=True, slots=True)
 class _Stay:
     """A vehicle in the recorded surroundings, without a break."""
 
-    sightings: tuple[Sighting, ...]
+    sightings: tuple[SeenEntity, ...]
     """Seconds of the recording, and the vehicle then."""
     leaves: bool
     """Whether it has gone before the end."""
@@ -141,14 +141,14 @@ def _add(parent: ET.Element, tag: str, **attributes: object) -> ET.Element:
 
 def _stays(recording: Recording) -> dict[str, list[_Stay]]:
     """The stays of each vehicle, the ego first."""
-    seen: dict[str, list[Sighting]] = {"ego": []}
+    seen: dict[str, list[SeenEntity]] = {"ego": []}
     for second in recording.road.seconds:
         for vehicle in second.vehicles:
             seen.setdefault(vehicle.vehicle_id, []).append((round(second.at_s - recording.begin_s, 2), vehicle))
     end_s = round(recording.road.seconds[-1].at_s - recording.begin_s, 2)
     found: dict[str, list[_Stay]] = {}
     for vehicle_id, sightings in seen.items():
-        parts: list[list[Sighting]] = [sightings[:1]]
+        parts: list[list[SeenEntity]] = [sightings[:1]]
         for before, now in pairwise(sightings):
             if now[0] - before[0] > GAP_S:
                 parts.append([])

@@ -11,20 +11,20 @@ from automotive_cosim.formats.xml import scan
 
 
 @dataclass(slots=True)
-class Element:
+class XmlElement:
     """An element."""
 
     tag: str
     attributes: Mapping[str, str]
     line: int
     path: Path
-    parts: list[Element] = field(default_factory=list)
+    parts: list[XmlElement] = field(default_factory=list)
 
     def refused(self, why: str) -> ScenarioError:
         """The error that names it and its line."""
         return ScenarioError(f"{self.path} line {self.line}: <{self.tag}> {why}")
 
-    def only(self, *tags: str) -> list[Element]:
+    def only(self, *tags: str) -> list[XmlElement]:
         """Its parts, all of which have one of these tags.
 
         Raises:
@@ -35,15 +35,15 @@ class Element:
                 raise part.refused(f"in <{self.tag}> is outside the subset that is imported; remove it")
         return self.parts
 
-    def all(self, tag: str) -> list[Element]:
+    def all(self, tag: str) -> list[XmlElement]:
         """Its parts with that tag."""
         return [part for part in self.parts if part.tag == tag]
 
-    def find(self, tag: str) -> Element | None:
+    def find(self, tag: str) -> XmlElement | None:
         """Its first part with that tag."""
         return next((part for part in self.parts if part.tag == tag), None)
 
-    def one(self, *tags: str) -> Element:
+    def one(self, *tags: str) -> XmlElement:
         """Its only part, with one of these tags.
 
         Raises:
@@ -81,17 +81,17 @@ class Element:
             raise self.refused(f"has {name} = {self.attributes[name]!r}, which is no number") from error
 
 
-def read_tree(path: Path) -> Element:
+def read_tree(path: Path) -> XmlElement:
     """The root of an XML file.
 
     Raises:
         ScenarioError: it is missing or no XML.
     """
-    open_elements: list[Element] = []
-    roots: list[Element] = []
+    open_elements: list[XmlElement] = []
+    roots: list[XmlElement] = []
 
     def start(tag: str, attributes: dict[str, str], line: int) -> None:
-        made = Element(tag, attributes, line, path)
+        made = XmlElement(tag, attributes, line, path)
         (open_elements[-1].parts if open_elements else roots).append(made)
         open_elements.append(made)
 

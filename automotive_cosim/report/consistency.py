@@ -20,7 +20,7 @@ LONGEST = 40
 """Characters of an action in the table of what parts."""
 
 Repeats = Mapping[Hashable, Sequence[EpisodeRow]]
-Share = Callable[[Sequence[bool], int], float | None]
+PassShare = Callable[[Sequence[bool], int], float | None]
 
 
 def consistency(results: Results) -> Table:
@@ -79,7 +79,7 @@ def _instances(rows: Iterable[EpisodeRow]) -> Repeats:
     return found
 
 
-def _share(repeats: Repeats, share: Share, k: int) -> str:
+def _share(repeats: Repeats, share: PassShare, k: int) -> str:
     values = [
         (rows[0].task, value)
         for rows in repeats.values()

@@ -112,6 +112,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"eval .*--executor ray", HELP, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
+    (r"study (congestion|days|compare)", HELP, "takes minutes; tests/studies run them"),
     (r"study suite", HELP, "needs a network of the reader's; tests/studies run one"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
     (r"run .*--model '?replay/", ("--force", "--out", "runs/last"), ""),
