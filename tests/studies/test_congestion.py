@@ -104,13 +104,14 @@ def test_the_answer_stands_first_and_is_paired_by_seed() -> None:
     assert added.interval is not None
     assert added.value == pytest.approx(1.045)
     assert answer(found).startswith(
-        "“closure edge=c1c2” costs 1.0 (1.0 to 1.1) vehicle-hours of delay an hour, 104% of it"
+        "“closure edge=c1c2” costs 1.0 (1.0 to 1.1) vehicle-hours an hour: 1.0 more are lost in congestion "
+        "(+104%) and detours take 0.0 more; "
     )
     assert "the travel time index goes from 2.00 to 3.04" in answer(found)
     unsure = study(*(3600.0 if seed % 2 else -1800.0 for seed in range(10)))
     assert "cannot be told from 0" in answer(unsure)
     saved = study(*[-1800.0] * 10)
-    assert "saves 0.5 (0.5 to 0.5) vehicle-hours of delay an hour, 50% of it" in answer(saved)
+    assert "saves 0.5 (0.5 to 0.5) vehicle-hours an hour: 0.5 fewer are lost in congestion (−50%)" in answer(saved)
     assert [str(row[0]) for row in whole(found).rows] == ["none", "closure edge=c1c2"]
 
 

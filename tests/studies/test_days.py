@@ -48,7 +48,7 @@ def study() -> DaysStudy:
         for each in (
             replace(row(0.0, seed), days=(day(200.0, changed=0),)),
             row(1.0, seed, *down),
-            row(None, seed, *[145.6] * 2 * WEEK),
+            replace(row(None, seed), days=(day(190.0), day(145.6, relative_gap=0.01), day(150.0))),
         )
     ]
     return DaysStudy(Path(), {}, PLAN, tuple(rows))
@@ -64,6 +64,7 @@ def test_it_settles_when_a_week_is_as_the_week_before() -> None:
     assert advised.settled == 12, "two even weeks after three days of change"
 
 
+@pytest.mark.slow
 def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
     found = study()
     assert answer(found) == (
@@ -75,6 +76,8 @@ def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
     assert [str(each[6]) for each in table.rows] == ["–", "−50.0", "−54.4"]
     assert set(charts(found)) == {"days", "shares"}
     assert warnings(found) == ["2 seeds: no interval of a mean below 10 seeds."]
+    far = replace(found, rows=(*found.rows[:2], row(None, 0, 150.0), *found.rows[3:5], row(None, 1, 150.0)))
+    assert any("relative gap of 10.0%, more than 2%" in each for each in warnings(far))
     restless = replace(found, rows=(*found.rows[:4], row(1.0, 1, 200.0, 100.0), found.rows[5]))
     assert any("Not settled in every seed: 100% advised" in each for each in warnings(restless))
 

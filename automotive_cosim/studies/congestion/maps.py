@@ -150,7 +150,7 @@ def _name_streets(axes: Axes, network: Network, per_km: dict[str, float]) -> Non
         x, y = (x1 + x2) / 2, (y1 + y2) / 2
         if len(taken) == NAMES:
             break
-        if any(abs(x - a) < 0.16 * (east - west) and abs(y - b) < 0.05 * (north - south) for a, b in taken):
+        if any(abs(x - a) < 0.2 * (east - west) and abs(y - b) < 0.07 * (north - south) for a, b in taken):
             continue
         taken.append((x, y))
         angle = math.degrees(math.atan2(y2 - y1, x2 - x1))

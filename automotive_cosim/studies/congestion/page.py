@@ -13,16 +13,16 @@ from automotive_cosim.studies.congestion.results import (
     WHOLE,
     CongestionStudy,
     change,
+    cost,
     delay_h,
-    detour_h,
     indices,
-    paired,
     read_congestion,
     strongest,
 )
 from automotive_cosim.studies.congestion.tables import mean, tables
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
 from automotive_cosim.studies.shown import ShownStudy, write_shown
+from automotive_cosim.studies.tables import told
 from automotive_cosim.studies.warnings import steps_told
 
 
@@ -58,43 +58,37 @@ def answer(study: CongestionStudy) -> str:
             f"times its time on empty roads, and {found.planning_time:.2f} times in the worst twentieth of the "
             f"time, {over}."
         )
-    added = {measure: change(study, measure) for measure in plan.measures}
-    known = {measure: each for measure, each in added.items() if each is not None}
     best = study.measures[strongest(study)]
+    total, added = cost(study, best), change(study, best)
     after = indices(plan, (outcome for _, outcome in study.outcomes(best)))
     assert after is not None, "somebody drove without the measure too"
-    of = f", of {len(known)} measures the one that changes most," if len(known) > 1 else ""
+    assert total is not None, "so there are seeds"
+    assert added is not None
+    of = f", of {len(plan.measures)} measures the one that changes most," if len(plan.measures) > 1 else ""
+    lost_h = round(added.value, 1)
+    detours_h = round(total.value, 1) - lost_h
+    share = f" ({told(added.value / before_h, '+.0%')})" if before_h else ""
     index = (
         f"the travel time index goes from {found.travel_time:.2f} to {after.travel_time:.2f}"
         if f"{found.travel_time:.2f}" != f"{after.travel_time:.2f}"
         else f"the travel time index stays at {after.travel_time:.2f}"
     )
-    detours = paired(study, best, lambda one, two: detour_h(plan, one, two))
-    detour = ""
-    if detours is not None and detours.value >= 0.05:
-        detour = f" and takes {detours.value:.1f} more for detours"
-    return f"“{name_of(best)}”{of} {_told(known[best], before_h)}{detour}: {index}, {over}."
+    return (
+        f"“{name_of(best)}”{of} {_told(total)}: {abs(lost_h):.1f} {'more' if lost_h >= 0 else 'fewer'} are lost in "
+        f"congestion{share} and detours take {abs(detours_h):.1f} {'more' if detours_h >= 0 else 'fewer'}; "
+        f"{index}, {over}."
+    )
 
 
-def _told(added: SeedMean, before_h: float) -> str:
-    """What a measure does to the delay, if that can be told."""
-    value = added.value
-    if abs(value) < 0.05:
-        return "changes the delay by less than 0.1 vehicle-hours an hour"
-    share = f", {abs(value) / before_h:.0%} of it" if before_h else ""
-    bounds = added.interval
-    low, high = sorted((abs(bounds.low), abs(bounds.high))) if bounds else (0.0, 0.0)
+def _told(total: SeedMean) -> str:
+    """What a measure costs, if that can be told."""
+    value, bounds = total.value, total.interval
     if bounds and bounds.low < 0 < bounds.high:
-        return (
-            (
-                f"changes the delay by {value:+.1f} vehicle-hours an hour, which cannot be told from 0 "
-                f"({bounds.low:+.1f} to {bounds.high:+.1f})"
-            )
-            .replace("-", "−")
-            .replace("vehicle−hours", "vehicle-hours")
-        )
-    sure = f" ({low:.1f} to {high:.1f})" if bounds else ""
-    return f"{'costs' if value >= 0 else 'saves'} {abs(value):.1f}{sure} vehicle-hours of delay an hour{share}"
+        low, high = told(bounds.low, "+.1f"), told(bounds.high, "+.1f")
+        return f"changes {told(value, '+.1f')} vehicle-hours an hour, which cannot be told from 0 ({low} to {high})"
+    low_h, high_h = sorted((abs(bounds.low), abs(bounds.high))) if bounds else (0.0, 0.0)
+    sure = f" ({low_h:.1f} to {high_h:.1f})" if bounds else ""
+    return f"{'costs' if value >= 0 else 'saves'} {abs(value):.1f}{sure} vehicle-hours an hour"
 
 
 def warnings(study: CongestionStudy) -> list[str]:

@@ -192,8 +192,8 @@ def indices(plan: CongestionPlan, outcomes: Iterable[MeasureOutcome], part: Netw
 
 
 def strongest(study: CongestionStudy) -> int:
-    """Number of the measure that changes the delay most; 0 without measures."""
-    changes = [change(study, measure) for measure in study.plan.measures]
+    """Number of the measure that costs or saves most, detours included; 0 without measures."""
+    changes = [cost(study, measure) for measure in study.plan.measures]
     sizes = [0.0 if each is None else abs(each.value) for each in changes]
     return 1 + sizes.index(max(sizes)) if sizes else 0
 
@@ -201,6 +201,14 @@ def strongest(study: CongestionStudy) -> int:
 def change(study: CongestionStudy, measure: str, part: NetworkPart = WHOLE) -> SeedMean | None:
     """What a measure adds to the delay, in vehicle-hours per hour, seed by seed."""
     return paired(study, measure, lambda one, two: delay_h(study.plan, two, part) - delay_h(study.plan, one, part))
+
+
+def cost(study: CongestionStudy, measure: str) -> SeedMean | None:
+    """What a measure costs in delay and detours, in vehicle-hours per hour, seed by seed."""
+    plan = study.plan
+    return paired(
+        study, measure, lambda one, two: delay_h(plan, two) - delay_h(plan, one) + detour_h(plan, one, two)
+    )
 
 
 def paired(

@@ -15,6 +15,7 @@ from automotive_cosim.studies.congestion.results import (
     CongestionStudy,
     NetworkPart,
     change,
+    cost,
     delay_h,
     detour_h,
     flow_in,
@@ -70,6 +71,7 @@ def whole(study: CongestionStudy) -> Table:
                 told_mean(
                     paired(study, measure, lambda one, two: detour_h(plan, one, two)) if measure else None, "+.2f"
                 ),
+                told_mean(cost(study, measure) if measure else None, "+.2f"),
                 f"{found.travel_time:.2f}",
                 f"{found.planning_time:.2f}",
                 f"{found.buffer:.0%}",
@@ -87,6 +89,7 @@ def whole(study: CongestionStudy) -> Table:
         "Change, veh-h/h",
         "Change",
         "Detours, veh-h/h",
+        "Both, veh-h/h",
         "Travel time index",
         "Planning time index",
         "Buffer index",
