@@ -40,9 +40,9 @@ class Told(DriveObserver):
 
 def points(space: Space) -> Iterator[SearchPoint]:
     """Nominal but for place and seed: every place with a seed before the next seed."""
-    places = space.factor("drive")
+    places, seeds = space.factor("drive"), space.factor("seed")
     assert isinstance(places, FactorChoices)
-    for seed, place in product(range(10), places.values):
+    for seed, place in product(seeds.values if isinstance(seeds, FactorChoices) else range(10), places.values):
         yield {**space.nominal, "drive": place, "seed": seed}
 
 
@@ -79,7 +79,7 @@ def main() -> None:
                     where = f"{point['drive']}: {error}"
                     continue
                 if how:
-                    where = f"{point['drive']}, seed {point['seed']:g}"
+                    where = f"{point['drive']}, seed {int(point['seed'])}"
                     break
             missing += [] if how else [name]
             print(f"| {name} | {tried} | {where} | {how or 'not'} | {perf_counter() - began_s:.0f} |", flush=True)

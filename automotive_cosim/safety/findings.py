@@ -175,10 +175,11 @@ def sensitivity(found: Hunt) -> list[tuple[Factor, float, float | None]]:
         share = 1 - (within / freedom) / (total / (len(even) - 1)) if freedom > 0 else 0.0
         rank = None
         if isinstance(factor, FactorRange) and factor.is_ordered:
-            from scipy.stats import spearmanr
+            from scipy.stats import rankdata
 
             values = [factor.unit(each.point[factor.name]) for each in even]
-            rank = float(spearmanr(values, margins)[0]) if len(set(values)) > 1 else None
+            if len(set(values)) > 1:  # Spearman's
+                rank = float(np.corrcoef(rankdata(values), rankdata(margins))[0, 1])
         shares.append((factor, min(1.0, max(0.0, share)), rank))
     return sorted(shares, key=lambda entry: -entry[1])
 

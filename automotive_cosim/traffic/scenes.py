@@ -66,6 +66,9 @@ HEEDLESS, HEEDFUL = 0, 31
 CREEP_MPS = 3.0
 """No vehicle cuts in more slowly than this."""
 
+FOLLOWS_S = 1.4
+"""A car that pulls out is at least so far ahead, or SUMO finds no room for it."""
+
 CUT_OUT_S = 10.0
 """How long a vehicle that has cut out keeps its new lane."""
 
@@ -641,7 +644,7 @@ class _CutOut(_Scene):
 
     def __init__(self, stage: IncidentStage, incident: incidents.CutOut) -> None:
         self._stage, self._incident = stage, incident
-        self._has_called, self._is_over = False, False
+        self._called_s, self._is_over = 0.0, False
         self._car, self._leader, self._beside = "", "", ""
         self._standing: RoadIncident | None = None
         self._kept: _KeptInLane | None = None
@@ -656,19 +659,21 @@ class _CutOut(_Scene):
     def _place(self) -> str:
         """Finds the vehicle ahead, and puts one that stands so far ahead of it that SUMO lets it."""
         stage, incident, sumo = self._stage, self._incident, self._stage.sumo
-        if sumo.speed(stage.ego_id) < incident.from_kmh / KMH_PER_MPS:
+        mps = sumo.speed(stage.ego_id)
+        away_m = max(incident.reveal_m, mps**2 / (2 * USUAL_MPS2) + 3 * mps)
+        found = _beside(stage, incident.ahead_m + 3 * CAR_SPACE_M + away_m)
+        if found is None or mps < incident.from_kmh / KMH_PER_MPS:
             return ""
         leader = sumo.leader(stage.ego_id, incident.within_m)
         if not leader or not leader[0] or leader[1] > incident.within_m:
-            if not self._has_called:
-                self._has_called = True
-                _call(stage, incident.ahead_m)
+            self._called_s -= 1.0
+            if self._called_s < 0:
+                self._called_s = CUT_OUT_S
+                _call(stage, max(incident.ahead_m, FOLLOWS_S * mps))
+            return ""
+        if sumo.lane_of(leader[0]) != found.lane:
             return ""
         mps = sumo.speed(leader[0])
-        away_m = max(incident.reveal_m, mps**2 / (2 * USUAL_MPS2) + 3 * mps)
-        found = _beside(stage, leader[1] + 2 * CAR_SPACE_M + away_m)
-        if found is None or sumo.lane_of(leader[0]) != found.lane:
-            return ""
         place_m = round(_ahead_m(stage, leader[0], found) + found.at_m + away_m, 1)
         if place_m > found.edge.length_m - CAR_SPACE_M:
             return ""
@@ -695,12 +700,16 @@ class _CutOut(_Scene):
             _move_over(self._stage, self._leader, self._beside, CUT_OUT_S)
             sumo.vehicle.setSpeedMode(self._leader, HEEDFUL)
             sumo.vehicle.setSpeed(self._leader, -1.0)
-            self._kept = _KeptInLane(self._stage, SWERVES_AFTER_S) if is_before else None
         except sumo.refusals:  # it has left
-            self._is_over = True
+            is_before = False
+        if not is_before:  # it passed before SUMO had found room for the standing car: once more
+            with suppress(*sumo.refusals):
+                sumo.vehicle.remove(self._car)
+            self._standing = None
             return ""
         self._is_over = True
-        return "the vehicle ahead cuts out before a standing car" if is_before else ""
+        self._kept = _KeptInLane(self._stage, SWERVES_AFTER_S)
+        return "the vehicle ahead cuts out before a standing car"
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
         return self._standing if self._is_over else None
