@@ -320,16 +320,22 @@ def repeats(results: Results) -> Table:
     most = int(results.manifest["plan"]["repeats"])
     rows: list[TableRow] = []
     for each in results.contestants if most > 1 else ():
-        trials: dict[Hashable, list[bool]] = defaultdict(list)
         mine = [row for row in results.of(each) if row.success is not None]
-        for row in mine:
-            trials[row.instance[:-1]].append(row.has_succeeded)
-        shares = [pass_hat_k(trials, k) for k in range(1, most + 1)]
+        shares = pass_hats(mine, most)
         ids = tuple(row.id for row in mine)
         rows.append((each.label, *(Cell(NONE if share is None else f"{share:.0%}", ids) for share in shares)))
     columns = ("Contestant", *(f"pass^{k}" for k in range(1, most + 1)))
     note = "The probability that k runs of one instance all succeed; each seed is a separate instance."
     return Table("repeats", "Reliability over repeats", columns, tuple(rows), note)
+
+
+def pass_hats(rows: Iterable[EpisodeRow], most: int) -> list[float | None]:
+    """pass^k of one contestant for k from 1 to ``most``, over its judged episodes; None without any."""
+    trials: dict[Hashable, list[bool]] = defaultdict(list)
+    for row in rows:
+        if row.success is not None:
+            trials[row.instance[:-1]].append(row.has_succeeded)
+    return [pass_hat_k(trials, k) for k in range(1, most + 1)]
 
 
 def errors(results: Results) -> Table:

@@ -112,6 +112,17 @@ def test_a_task_is_told_as_car_bench_tells_it_and_calls_are_steps(
     assert len(remote.heard) == 2  # another context
 
 
+def test_episodes_side_by_side_have_contexts_of_their_own(serve: Serve, observation: Seen) -> None:
+    remote = serve(answering([calls(FAN)], [calls(DONE)], ["Done."]))
+    seen = observation("x")
+    first, second = play(remote, seen), play(remote, seen)
+    for agent in (first, second):
+        assert agent.act(seen).function == "set_hvac_fan_speed"
+    for agent in (second, first):
+        assert agent.act(seen).action_type is ActionType.STATUS
+    assert [len(messages) for messages in remote.heard.values()] == [3, 3]
+
+
 def test_metrics_that_come_with_the_last_words_are_waited_for(serve: Serve, observation: Seen) -> None:
     def script(agent: RemoteAgent, message: Json, turn: int) -> list[Any]:
         agent.metadata = {"turn_metrics": METRICS} if turn else {}
