@@ -11,7 +11,7 @@ import asyncio
 import json
 import threading
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -67,13 +67,14 @@ class _Stoppable(Processes):
 class Assessor(AgentExecutor):
     """Runs assessments, one after the other."""
 
-    def __init__(self, workers: int = 1) -> None:
+    def __init__(self, workers: int = 1, run: Callable[..., object] = run_plan) -> None:
         """An assessor that has nothing to do yet.
 
         Args:
             workers: how many episodes it runs in parallel.
+            run: runs a plan, as ``run_plan`` does.
         """
-        self._workers = workers
+        self._workers, self._run = workers, run
         self._turn = asyncio.Lock()
         self._stops: dict[str, threading.Event] = {}
 
@@ -123,7 +124,7 @@ class Assessor(AgentExecutor):
                 asyncio.run_coroutine_threadsafe(said, loop).result()
 
             workers = _Stoppable(self._workers, stop)
-            await asyncio.to_thread(run_plan, asked.plan, folder, executor=workers, tell=tell)
+            await asyncio.to_thread(self._run, asked.plan, folder, executor=workers, tell=tell)
         words, data = await asyncio.to_thread(_result, asked, folder)
         await updater.add_artifact([new_text_part(words), new_data_part(data)], name="Result")
         await updater.complete()

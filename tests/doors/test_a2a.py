@@ -4,10 +4,14 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
+import shlex
 import socket
 import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
+import tomllib
+from collections.abc import Callable, Iterator
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,22 +25,31 @@ from a2a.client.card_resolver import parse_agent_card
 from a2a.helpers.proto_helpers import get_data_parts, get_text_parts, new_data_part, new_message, new_text_part
 from a2a.types import Role, SendMessageRequest, TaskState
 
-from automotive_cosim.doors.a2a import Assessor, make_app
+from automotive_cosim.doors.a2a import Assessor, _Stoppable, _StoppedError, make_app
 from automotive_cosim.doors.assessment import CONFIG, read_assessment
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.batch import run_plan
+from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.meter import Budget, Spent
+from automotive_cosim.run.nursery import Nursery
+from automotive_cosim.run.plan import Plan
+from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.worker import run_job
+from automotive_cosim.traffic.fork import Simulations
 from tests.laws import over
 from tests.remote_agent import DONE, FAN, RemoteAgent, served
 
+EXAMPLE = Path(__file__).parents[2] / "docs/examples/agentbeats"
 SMALL = {"tasks": ["hvac_fan_max"], "scenarios": ["grid"], "seeds": [0.0], "repeats": 2.0}
 
 
 @contextmanager
-def assessing() -> Iterator[str]:
+def assessing(run: Callable[..., object] = run_plan) -> Iterator[str]:
     """Serves an assessor; its address."""
     with socket.create_server(("127.0.0.1", 0)) as listening:
         port = listening.getsockname()[1]
         url = f"http://127.0.0.1:{port}/"
-        assessor = Assessor()
+        assessor = Assessor(run=run)
         server = uvicorn.Server(uvicorn.Config(make_app(assessor, "127.0.0.1", port, url), log_level="error"))
         thread = threading.Thread(target=server.run, kwargs={"sockets": [listening]})
         thread.start()
@@ -46,6 +59,41 @@ def assessing() -> Iterator[str]:
             assessor.close()
             server.should_exit = True
             thread.join()
+
+
+@dataclass
+class Here:
+    """Runs trials in this process, on warm traffic that is there already: an executor, and its one worker."""
+
+    simulations: Simulations
+    nursery: Nursery
+    folder: Path = Path()
+    job: Any = None
+    count: int = 1
+    is_ready: bool = True
+
+    @property
+    def handles(self) -> list[Any]:
+        return [0]
+
+    def metered(self, budget: Budget, before: Spent) -> Any:
+        return Processes().metered(budget, before)
+
+    def start(self, opener: Any, folder: Path) -> Any:
+        self.folder = folder
+        return self
+
+    def wait(self, handles: Any, timeout_s: float) -> Any:
+        return handles
+
+    def give(self, job: Any) -> None:
+        self.job = job
+
+    def answer(self) -> Any:
+        return run_job(self.job, self.folder, Pictures.NONE, self.simulations, self.nursery)
+
+    def end(self, *, at_once: bool) -> None:
+        pass
 
 
 async def ask(url: str, part: Any, version: str = "1.0") -> list[Any]:
@@ -69,16 +117,23 @@ def words_of(events: list[Any]) -> list[str]:
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("sumo")
-def test_an_assessment_tells_its_progress_then_its_result(tmp_path: Path, monkeypatch: Any) -> None:
+def test_an_assessment_tells_its_progress_then_its_result(
+    tmp_path: Path, monkeypatch: Any, simulations: Simulations
+) -> None:
     def once(agent: RemoteAgent, message: Any, turn: int) -> list[Any]:
         agent.metadata = {"turn_metrics": {"prompt_tokens": 10, "completion_tokens": 1}}
         return [{"tool_calls": [FAN, DONE] if len(agent.heard) == 1 else [DONE]}]
 
     monkeypatch.chdir(tmp_path)
-    with served(RemoteAgent(once)) as remote, assessing() as url:
-        asked = {"participants": {"mine": remote.address}, "config": SMALL}
-        events = asyncio.run(ask(url, new_text_part(json.dumps(asked))))
+    with closing(Nursery()) as nursery, served(RemoteAgent(once)) as remote:
+        here = Here(simulations, nursery)
+
+        def run(plan: Plan, folder: Path, executor: Any, tell: Any) -> None:
+            run_plan(plan, folder, executor=here, tell=tell)
+
+        with assessing(run) as url:
+            asked = {"participants": {"mine": remote.address}, "config": SMALL}
+            events = asyncio.run(ask(url, new_text_part(json.dumps(asked))))
     assert len(remote.heard) == 2  # a context for each episode
     (artifact,) = (each.artifact_update.artifact for each in events if each.HasField("artifact_update"))
     assert artifact.name == "Result"
@@ -98,6 +153,15 @@ def test_an_assessment_tells_its_progress_then_its_result(tmp_path: Path, monkey
     told = " ".join(map(str, events[1:at])) + json.dumps(remote.messages)  # the first event repeats the request
     for word in ("hvac_fan_max", "succe", "solved", "verdict", "grid"):
         assert word not in told
+
+
+def test_cancelled_workers_end_although_no_episode_has(tmp_path: Path) -> None:
+    stop = threading.Event()
+    workers = _Stoppable(1, stop)
+    assert workers.wait([], 0.0) == []
+    stop.set()
+    with pytest.raises(_StoppedError):
+        workers.wait([], 600.0)
 
 
 REFUSED = [
@@ -131,6 +195,17 @@ def test_what_is_no_assessment_is_refused_in_one_line(text: str) -> None:
     with pytest.raises(UserError) as caught:
         read_assessment(text)
     assert "\n" not in str(caught.value)
+
+
+def test_the_example_is_an_assessment_and_its_image_takes_what_agentbeats_gives(cli: Any) -> None:
+    scenario = tomllib.loads((EXAMPLE / "scenario.toml").read_text(encoding="utf-8"))
+    participants = {each["role"]: each["endpoint"] for each in scenario["participants"]}
+    plan = read_assessment(json.dumps({"participants": participants, "config": scenario["config"]})).plan
+    assert len(plan.jobs()) == 3 * 2 * 3  # one task has two halves
+    entry, default = re.findall(r"^(?:ENTRYPOINT|CMD) (.*)$", (EXAMPLE / "Dockerfile").read_text(), re.MULTILINE)
+    for line in ([*json.loads(entry), *json.loads(default)], shlex.split(scenario["green_agent"]["cmd"])):
+        assert line[0] == "automotive-cosim"
+        assert cli(*line[1:], "--card-url", "http://x:9009/", "--help").code == 0
 
 
 def test_car_benchs_form_is_read_too() -> None:
