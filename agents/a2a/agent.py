@@ -11,8 +11,8 @@ from automotive_cosim.agents.a2a.contract import (
     ENVIRONMENT,
     PREFIX,
     USER,
+    AnswerReader,
     Metrics,
-    Reader,
     RemoteAnswer,
     RemoteCall,
     opening,
@@ -30,7 +30,7 @@ from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import ModelReply
 
 if TYPE_CHECKING:
-    from automotive_cosim.agents.a2a.line import Line
+    from automotive_cosim.agents.a2a.line import AgentLine
 
 MOST_CALLS = 10
 """Most calls of one answer; each is a step."""
@@ -83,9 +83,9 @@ class A2AAgent:
     def reset(self, goal: str) -> None:
         """Begins another context."""
         self._line.begin()
-        self._reader = Reader(self._tools)
+        self._reader = AnswerReader(self._tools)
         self._keeps_watch = goal == STANDING_ORDER
-        self._is_new = True
+        self._is_new, self._heard = True, 0
         self._asked: tuple[RemoteCall, ...] = ()
         self._results: dict[str, str] = {}
         self._left: deque[RemoteCall] = deque()
@@ -127,17 +127,19 @@ class A2AAgent:
 
     def _ask(self, seen: Observation) -> Action | None:
         """Asks for the next answer; returns what its words alone do."""
-        now = prompt.situation(self._profile, seen, pictures=False, on_watch=self._keeps_watch)
+        now = self._situation(seen)
         self._note(StageName.PERCEIVE, seen, now)
         if self._is_new:
-            answer = self._say(seen, opening(self._told(), now, self._tools.values()), USER)
+            system = f"{self._told()}\n\n{self._situation(seen, is_spoken=False)}"
+            answer = self._say(seen, opening(system, prompt.driver_words(seen), self._tools.values()), USER)
         elif self._asked:
             contents = [self._results.get(call.id, NOT_DONE) for call in self._asked]
             contents[-1] += f"\n\n{now}"
             answer = self._say(seen, results(self._asked, contents), ENVIRONMENT)
         else:
-            answer = self._say(seen, [now], USER)
-        self._is_new = False
+            words = "\n".join(seen.said[self._heard :])
+            answer = self._say(seen, [f"{words}\n\n{now}".strip()], USER)
+        self._is_new, self._heard = False, len(seen.said)
         self._asked, self._results = answer.calls, {}
         if len(answer.calls) > MOST_CALLS:
             wrong = f"the answer has {len(answer.calls)} calls; at most {MOST_CALLS} are allowed"
@@ -196,6 +198,11 @@ class A2AAgent:
         except (AgentError, OutOfBudgetError) as error:
             self._note(StageName.REFLECT, seen, str(error))
 
+    def _situation(self, seen: Observation, *, is_spoken: bool = True) -> str:
+        return prompt.situation(
+            self._profile, seen, pictures=False, on_watch=self._keeps_watch, is_spoken=is_spoken
+        )
+
     def _told(self) -> str:
         """What it is to do."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self._profile.channels else ""
@@ -206,16 +213,16 @@ class A2AAgent:
         self.stages.append(Stage(name, text, seen.time_s, reply))
 
 
-def _line(address: str) -> Line:
+def _line(address: str) -> AgentLine:
     try:
-        from automotive_cosim.agents.a2a.line import Line
+        from automotive_cosim.agents.a2a.line import AgentLine
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("a2a", "httpx", "google"):
             raise
         raise SetupError(
             "the a2a-sdk package is missing; install it with `pip install 'automotive-cosim[a2a]'`"
         ) from error
-    return Line(address)
+    return AgentLine(address)
 
 
 def _result(observation: Observation) -> str:

@@ -57,7 +57,13 @@ class RemoteAnswer:
 
 
 def opening(system: str, words: str, tools: Iterable[Function]) -> list[Any]:
-    """The parts of the first message; a string is text, an object data."""
+    """The parts of the first message; a string is text, an object data.
+
+    Args:
+        system: what to do, and the situation.
+        words: what the driver says, and nothing else: some agents go by its words.
+        tools: what the agent can call.
+    """
     return [f"System: {system}\n\nUser: {words}", {"tools": [as_openai(each) for each in tools]}]
 
 
@@ -71,7 +77,7 @@ def results(calls: Sequence[RemoteCall], contents: Sequence[str]) -> list[Any]:
 
 
 @dataclass(slots=True)
-class Reader:
+class AnswerReader:
     """Reads answers; knows the functions, whose schemas say which numbers are whole."""
 
     tools: Mapping[str, Function]

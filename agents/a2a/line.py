@@ -25,11 +25,12 @@ from a2a.helpers.proto_helpers import new_data_part, new_message, new_text_part
 from a2a.types import AgentCard, GetTaskRequest, Message, Part, Role, SendMessageRequest, Task, TaskState
 from google.protobuf.json_format import MessageToDict
 
+from automotive_cosim.agents.a2a.contract import PREFIX
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import AgentError, SetupError, UserError
 
-CARDS = ("/.well-known/agent-card.json", "/.well-known/agent.json")
-"""Paths of the card: the present one, since protocol 0.3, and the former one."""
+CARD, FORMER_CARD = "/.well-known/agent-card.json", "/.well-known/agent.json"
+"""Paths of the card, since protocol 0.3 and before."""
 CARD_S = 10.0
 """Longest wait for the card."""
 MOST_BYTES = 2**20
@@ -55,7 +56,7 @@ class Said:
     metadata: Json
 
 
-class Line:
+class AgentLine:
     """A line to one agent, which has one conversation at a time."""
 
     def __init__(self, address: str) -> None:
@@ -151,10 +152,9 @@ class Line:
 
     async def _fetch_card(self) -> Json:
         async with _http(self._address) as http:
-            for path in CARDS:
-                response = await http.get(self._address + path)
-                if response.status_code != httpx.codes.NOT_FOUND:
-                    break
+            response = await http.get(self._address + CARD)
+            if response.status_code == httpx.codes.NOT_FOUND:
+                response = await http.get(self._address + FORMER_CARD)
             response.raise_for_status()
             told = response.json()
             if not isinstance(told, dict):
@@ -221,13 +221,15 @@ def _check_answers(question: bytes, content: bytes) -> None:
 
 
 def _checked(address: str) -> str:
+    wrong = UserError(f"agent {PREFIX}{address} does not have the form a2a:http://HOST:PORT")
     try:
         parts = urlsplit(address)
-        is_address = parts.scheme in ("http", "https") and bool(parts.hostname) and (parts.port or 1) > 0
-    except ValueError:
-        is_address = False
+        _ = parts.port
+    except ValueError as error:
+        raise wrong from error
+    is_address = parts.scheme in ("http", "https") and bool(parts.hostname)
     if not is_address or parts.username or parts.query or parts.fragment:
-        raise UserError(f"agent a2a:{address} does not have the form a2a:http://HOST:PORT")
+        raise wrong
     return address.rstrip("/")
 
 

@@ -16,7 +16,7 @@ import pytest
 
 from automotive_cosim.agents import AgentSettings, Caller, StageName, make_agent
 from automotive_cosim.agents.a2a.agent import MOST_CALLS
-from automotive_cosim.agents.a2a.contract import PREFIX, Reader
+from automotive_cosim.agents.a2a.contract import PREFIX, AnswerReader
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode, Observation
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.specification import SessionSetup
@@ -90,7 +90,8 @@ def test_a_task_is_told_as_car_bench_tells_it_and_calls_are_steps(
     assert agent.act(replace(seen, feedback=Feedback(FeedbackCode.OK, "done"))).function == "get_signals"
     (opening,) = remote.messages
     assert text(opening).startswith("System: You operate a car")
-    assert "\n\nUser: ## What the driver said\nFan to the maximum" in text(opening)
+    assert text(opening).endswith("\n\nUser: Fan to the maximum")
+    assert "## The car\nspeed_kmh" in text(opening)
     assert opening["metadata"] == {"source": "user"}
     tools = data(opening)["tools"]
     assert tools == [as_openai(each) for each in offered(CALLS.interface, CALLS.geo)]
@@ -153,7 +154,7 @@ def test_words_alone_are_put_to_the_driver_and_the_answer_comes_back(serve: Serv
     asked = agent.act(seen)
     assert asked == Action(ActionType.ASK_DRIVER, text=("Which seat? " + "x" * 200)[:120])
     agent.act(replace(seen, said=("Mine.",)))
-    assert "Mine." in text(remote.messages[1])
+    assert text(remote.messages[1]).startswith("Mine.\n\n## What the driver said")
     assert not data(remote.messages[1])
     assert remote.messages[1]["metadata"] == {"source": "user"}
 
@@ -239,10 +240,12 @@ def test_whatever_else_it_does_is_its_own_failure(serve: Serve, observation: See
 
 
 def test_half_characters_and_senseless_figures_do_no_harm(serve: Serve, observation: Seen) -> None:
-    said = Reader({}).read(["\ud800 hm"], {"turn_metrics": {"prompt_tokens": float("nan"), "cost": -1, "x": {}}})
+    said = AnswerReader({}).read(
+        ["\ud800 hm"], {"turn_metrics": {"prompt_tokens": float("nan"), "cost": -1, "x": {}}}
+    )
     assert (said.say, said.metrics and said.metrics.cost_usd) == ("? hm", 0.0)
     for figure in (10**30, "9", None, True, [], float("inf")):
-        metrics = Reader({}).read([], {"turn_metrics": {"prompt_tokens": figure}}).metrics
+        metrics = AnswerReader({}).read([], {"turn_metrics": {"prompt_tokens": figure}}).metrics
         assert metrics is not None
         assert metrics.tokens_in == 0
 
@@ -311,7 +314,7 @@ def sdk_agent(version: str, as_task: bool) -> Iterator[str]:
 
 def test_whole_numbers_are_whole_again() -> None:
     called = {"tool_name": "wait", "arguments": {"seconds": 3.0}}
-    (call,) = Reader(functions()).read([calls(called)], {}).calls
+    (call,) = AnswerReader(functions()).read([calls(called)], {}).calls
     assert repr(call.arguments) == "{'seconds': 3}"
 
 
@@ -359,7 +362,9 @@ def test_it_sees_what_the_caller_sees_and_nothing_else(serve: Serve, observation
         caller = Caller(model, settings)
         caller.reset(seen.goal)
         caller.act(seen)
-        assert text(remote.messages[-1]).endswith("\n\nUser: " + model.asked[0][-1].text)
+        goal, situation = model.asked[0][-1].text.split("## Last result")
+        assert text(remote.messages[-1]).endswith(f"## Last result{situation}\n\nUser: Warm it")
+        assert goal.split() == ["##", "What", "the", "driver", "said", "Warm", "it"]
 
 
 @pytest.mark.slow
