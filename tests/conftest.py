@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -310,6 +311,7 @@ def cli(
 @pytest.fixture
 def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
     """``automotive-cosim run`` takes the warm simulations that all tests share, instead of its own."""
+    import_module("automotive_cosim.envs.pool")  # has simulations of its own, whichever test imports it first
 
     class Lent:
         held = staticmethod(simulations.held)

@@ -23,6 +23,7 @@ from automotive_cosim.cli import (
     doctor,
     drive,
     evaluate,
+    export,
     mcp,
     measures,
     publish,
@@ -65,6 +66,7 @@ app.command(rich_help_panel=READ)(results.report)
 app.command(rich_help_panel=READ)(compare.compare)
 app.command(rich_help_panel=READ)(results.replay)
 app.command(rich_help_panel=READ)(measures.measures)
+app.command(rich_help_panel=READ)(export.export)
 app.add_typer(publish.app, name="publish", rich_help_panel=READ)
 app.add_typer(tasks.app, name="tasks", rich_help_panel=CONTENTS)
 app.add_typer(scenarios.app, name="scenarios", rich_help_panel=CONTENTS)

@@ -16,20 +16,41 @@ Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_d
 
 
 @reads_results
-def report(folder: Folder, tasks_from: TasksFrom = None) -> None:
+def report(
+    folder: Folder,
+    safety: Annotated[
+        bool,
+        typer.Option("--safety", help="Write a safety report to file: safety/ with a page, a PDF and its data."),
+    ] = False,
+    agent: Annotated[
+        str | None, typer.Option(help="Agent of the safety report, if there are several.", show_default=False)
+    ] = None,
+    tasks_from: TasksFrom = None,
+) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""
+    if safety:
+        _safety(folder, agent or "")
+        return
     from automotive_cosim.report.evaluation import write_report
     from automotive_cosim.report.results import read_results
     from automotive_cosim.run.store import read_manifest
-    from automotive_cosim.studies.page import write_study
+    from automotive_cosim.studies.pages import write_page
 
     plan = read_manifest(folder)["plan"]
     if "study" in plan:
-        page = write_study(folder)
+        page = write_page(folder)
     else:
         page = write_report(folder)
         typer.echo(str(read_results(folder).coverage))
     typer.echo(f"{page} written; tables in {folder / 'tables'}, plots in {folder / 'plots'}")
+
+
+def _safety(folder: Path, agent: str) -> None:
+    from automotive_cosim.safety.dossier.filing import write_dossier
+
+    page, pdf = write_dossier(folder, agent)
+    typer.echo(f"{page} written; its data in {page.parent / 'data'}")
+    typer.echo(f"{pdf} written" if pdf else "no PDF: pip install 'automotive-cosim[pdf]'")
 
 
 @reads_results

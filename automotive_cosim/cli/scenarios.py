@@ -194,7 +194,12 @@ def render(
 
 @app.command("import")
 def import_scenario(
-    file: Annotated[Path, typer.Argument(help="OSM extract: .osm, .osm.gz, .osm.bz2, .osm.pbf or Overpass JSON.")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="OSM extract: .osm, .osm.gz, .osm.bz2, .osm.pbf or Overpass JSON; or OpenSCENARIO XML: .xosc."
+        ),
+    ],
     out: Annotated[Path | None, typer.Option(help="Folder to create; by default, the scenario's name.")] = None,
     name: Annotated[str, typer.Option(help="The scenario's name; by default, the file's.")] = "",
     country: Annotated[
@@ -221,8 +226,15 @@ def import_scenario(
         bool, typer.Option("--quick", help="Use light traffic, and test it for only ten minutes.")
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
+    network: Annotated[
+        Path | None,
+        typer.Option(
+            help="For a .xosc file: a SUMO network instead of the OpenDRIVE file that it names.", show_default=False
+        ),
+    ] = None,
+    ego: Annotated[str, typer.Option(help="For a .xosc file: the entity that is the cockpit's car.")] = "ego",
 ) -> None:
-    """Turn an OpenStreetMap extract into a scenario.
+    """Turn an OpenStreetMap extract, or a scenario in OpenSCENARIO XML, into a scenario.
 
     The traffic is scaled down until it flows for half an hour after its warm-up. Reading the map, building the
     network and testing the traffic take one to three minutes for a city district.
@@ -230,6 +242,14 @@ def import_scenario(
     from automotive_cosim.osm import Area, ImportOptions, import_map
     from automotive_cosim.osm.importer import scenario_name
 
+    if file.suffix == ".xosc":
+        from automotive_cosim.exchange.incoming import import_openscenario
+
+        made = import_openscenario(
+            file, out or Path(name or file.stem), network, ego, country=country, replaces=force
+        )
+        typer.echo(f"{made} written; run it with `automotive-cosim run --scenario {made}`")
+        return
     options = ImportOptions(
         name=name,
         country=country,

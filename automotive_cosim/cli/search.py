@@ -22,8 +22,13 @@ SETTINGS = "search.json"
 
 
 def search(
-    space_file: Annotated[
-        Path, typer.Option("--space", help="TOML file with the factors and their values.", show_default=False)
+    space_name: Annotated[
+        str,
+        typer.Option(
+            "--space",
+            help="TOML file with the factors and their values, or a space of the library, such as cut-in.",
+            show_default=False,
+        ),
     ],
     agent: AgentName,
     budget: Annotated[
@@ -54,6 +59,15 @@ def search(
     failures: Annotated[
         int, typer.Option(help="How many failures are made small.", metavar="N", parser=whole_number(0, 1000))
     ] = 5,
+    workers: Annotated[
+        int,
+        typer.Option(
+            help="How many of the points that are spread evenly run in parallel; what is learnt from them runs one "
+            "by one.",
+            metavar="N",
+            parser=whole_number(1, 4096),
+        ),
+    ] = 1,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder; an existing one is resumed.", show_default="runs/search-<space>-<agent>"),
@@ -71,23 +85,27 @@ def search(
     """Search a space of situations and conditions for failures of an agent. Rerun the command to resume."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.plan import make_plan
+    from automotive_cosim.run.processes import Processes
     from automotive_cosim.run.record import write_whole
     from automotive_cosim.safety.findings import as_json as findings_json
     from automotive_cosim.safety.findings import sentence
     from automotive_cosim.safety.hunt import hunt
     from automotive_cosim.safety.page import suite, write_findings
-    from automotive_cosim.safety.samplers import make_sampler
-    from automotive_cosim.safety.space import read_space
+    from automotive_cosim.safety.samplers import even_points, make_sampler
+    from automotive_cosim.safety.space import read_space, space_file
     from automotive_cosim.safety.trying import check_space, trial_of, trying
 
-    space = read_space(space_file)
+    file = space_file(space_name)
+    if workers > 1 and hours is not None:
+        raise UserError("--hours ends a search between two points, which run one by one; omit it, or --workers")
+    space = read_space(file)
     plan = make_plan({"agents": [agent], "models": [model], "trials": [_plain(trial_of(space.nominal))]})
     plan.check()
     check_space(space, plan)
-    folder = out or Path("runs") / f"search-{space_file.stem}-{agent.replace(':', '.')}"
+    folder = out or Path("runs") / f"search-{file.stem}-{agent.replace(':', '.')}"
     console = Console(stderr=as_json, highlight=False)
     about: Json = {
-        "space": space_file.read_text(encoding="utf-8"),
+        "space": file.read_text(encoding="utf-8"),
         "agent": agent,
         "model": model,
         "sampler": sampler,
@@ -110,6 +128,8 @@ def search(
 
     with trying(space, plan, folder) as run:
         write_whole(folder / SETTINGS, json.dumps(about | {"budget": laid}, indent=1))
+        if workers > 1 and run(space.nominal, 0).passed:
+            run.ahead(even_points(make_sampler(sampler, space, laid, seed), budget), Processes(workers))
         found = hunt(
             space,
             run,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -21,18 +22,25 @@ from automotive_cosim.cli.batches import (
     time_left,
     words,
 )
-from automotive_cosim.cli.options import AsJson, whole_number
+from automotive_cosim.cli.options import AsJson, print_json, reads_results, whole_number
+from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
+    from automotive_cosim.report.tables import Table
     from automotive_cosim.run.batch import Progress
+    from automotive_cosim.run.row import JobRow
+    from automotive_cosim.studies.congestion.plan import CongestionPlan
+    from automotive_cosim.studies.days import DaysPlan
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import Study
     from automotive_cosim.studies.rows import DriveRow
 
-app = typer.Typer(help="Measure how much time rerouting saves in identical traffic.", no_args_is_help=True)
+VIA = "What a trip's via edges are: stops, which every route passes, or route, which other routes may leave."
+
+app = typer.Typer(help="Measure what rerouting saves and what a measure does to congestion.", no_args_is_help=True)
 
 
 @app.command()
@@ -116,6 +124,15 @@ def reroute(
             show_default="none",
         ),
     ] = "",
+    via: Annotated[str, typer.Option(help=VIA)] = "stops",
+    incident: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="An incident in every future, with the fields of scenario.toml, as in 'breakdown edge=c1c2 "
+            "position_m=120'; may be given several times.",
+            show_default="none",
+        ),
+    ] = None,
     emissions: Annotated[
         bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
     ] = False,
@@ -184,6 +201,7 @@ def reroute(
     from automotive_cosim.studies.rows import DriveRow
 
     values: dict[str, Any] = {
+        "via": via,
         "seeds": tuple(seeds_in(seeds)),
         "ages_s": tuple(_numbers("ages", ages)),
         "compliance": tuple(_numbers("compliance", compliance)),
@@ -206,6 +224,7 @@ def reroute(
         arrived=arrived,
         whole_drives=whole_drives,
         close=close,
+        incidents=tuple(incident or ()),
         redraw=redraw,
         emissions=emissions,
         trajectories=trajectories,
@@ -248,7 +267,10 @@ def reroute(
 def suite(
     scenarios: Annotated[
         str,
-        typer.Option(help="Names or folders of scenarios, .sumocfg or .net.xml, separated by commas."),
+        typer.Option(
+            help="Names or folders of scenarios, .sumocfg or .net.xml, separated by commas; shipped stands for all "
+            "shipped ones."
+        ),
     ] = "grid,paris_centre",
     departures: Annotated[str, typer.Option(help="When the ego departs, in seconds after the warm-up.")] = "0,300",
     seeds: Annotated[str, typer.Option(help="Seeds of the traffic.")] = "0-9",
@@ -260,6 +282,7 @@ def suite(
         int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
     ] = 2,
     replicates: Annotated[str, typer.Option(help="How many times each future is driven, or auto.")] = "2",
+    via: Annotated[str, typer.Option(help=VIA)] = "stops",
     warm_ups: Annotated[
         str | None,
         typer.Option(
@@ -290,10 +313,11 @@ def suite(
         "seeds": tuple(seeds_in(seeds)),
         "policies": tuple(words("policies", policies)),
         "replicates": _replicates(replicates),
+        "via": via,
     }
     plans = [
         StudyPlan(name, least_delay_s=delay, per_drive=per_drive, warm_up_s=warm_up_s, **values)
-        for name in words("scenarios", scenarios)
+        for name in _scenarios(scenarios)
         for warm_up_s in (_numbers("warm-ups", warm_ups) if warm_ups is not None else (None,))
     ]
     for plan in plans:
@@ -321,22 +345,255 @@ def suite(
         raise InfrastructureError(f"{counted(errors, 'drive')} ended in an error; rerun the command to retry them")
 
 
+@app.command()
+def congestion(
+    scenario: Annotated[
+        str, typer.Option(help="A scenario's name or folder, or any .sumocfg or .net.xml.")
+    ] = "paris_centre",
+    measure: Annotated[
+        list[str] | None,
+        typer.Option(
+            help="A measure to compare with none: an incident with the fields of scenario.toml (as 'closure "
+            "edge=c2c3'), 'advice share=0.5 compliance=0.8 age_s=300' or 'signals control=static'; may be given "
+            "several times.",
+            show_default="none",
+        ),
+    ] = None,
+    seeds: Annotated[
+        str, typer.Option(help="Seeds of the traffic, as in 0-9; at least 10 for an interval, 30 to publish.")
+    ] = "0-9",
+    minutes: Annotated[float, typer.Option(help="How long to measure after the warm-up.")] = 60.0,
+    demand: Annotated[
+        str,
+        typer.Option(help="Factors on the demand in periods of equal length, as in 0.6,1,0.6 for a peak."),
+    ] = "1",
+    incident: Annotated[
+        list[str] | None,
+        typer.Option(help="An incident with and without the measures; may be repeated.", show_default="none"),
+    ] = None,
+    share: Annotated[
+        float | None,
+        typer.Option(help="Share of the cars with SUMO's rerouting device.", show_default="scenario's"),
+    ] = None,
+    corridor: Annotated[
+        str, typer.Option(help="Trip along which the time-space diagrams go.", show_default="the first")
+    ] = "",
+    emissions: Annotated[
+        bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
+    ] = False,
+    redraw: Annotated[
+        bool, typer.Option("--redraw", help="Redraw the trips of the demand for every seed, as on another day.")
+    ] = False,
+    scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
+    warm_up: Annotated[
+        float | None, typer.Option(help="Seconds of traffic before the measure.", show_default="scenario's")
+    ] = None,
+    step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
+    workers: Workers = None,
+    executor: ExecutorName = "processes",
+    ray_address: RayAddress = None,
+    ray_send: RaySend = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
+        ),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Measure the delay of a whole network before and after a measure, in copies of the same traffic.
+
+    Rerun the command to resume a stopped study.
+    """
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.studies.congestion.drive import run_congestion
+    from automotive_cosim.studies.congestion.page import answer, warnings, write_congestion
+    from automotive_cosim.studies.congestion.plan import CongestionPlan
+    from automotive_cosim.studies.congestion.results import read_congestion
+    from automotive_cosim.studies.congestion.rows import CongestionRow
+    from automotive_cosim.studies.congestion.tables import whole
+
+    plan = CongestionPlan(
+        scenario,
+        measures=tuple(measure or ()),
+        seeds=tuple(seeds_in(seeds)),
+        minutes=minutes,
+        demand=tuple(_numbers("demand", demand)),
+        incidents=tuple(incident or ()),
+        share=share,
+        corridor=corridor,
+        step_s=step,
+        scale=scale,
+        warm_up_s=warm_up,
+        redraw=redraw,
+        emissions=emissions,
+    )
+    plan.check()
+    tell_notes([plan.opened])
+    folder = out or _folder(plan)
+    where = executor_of(executor, workers, ray_address, ray_send)
+    console = Console(stderr=as_json, highlight=False)
+
+    def said(progress: Progress[CongestionRow]) -> str:
+        errors = f"{counted(progress.errors, 'error')}" if progress.errors else ""
+        return f"{errors}{time_left(progress)}"
+
+    with where, ProgressView(console, "seeds", said) as view:
+        try:
+            run_congestion(plan, folder, executor=where, tell=view.tell)
+        except KeyboardInterrupt:
+            typer.echo(f"finished seeds are in {folder}; rerun the command to resume", err=True)
+            raise
+    study = read_congestion(folder)
+    if len(study.errors) < len(study.rows):
+        _show(console, write_congestion(folder), answer(study), warnings(study), [whole(study)], as_json=as_json)
+    _raise_errors(study.errors, len(study.rows))
+
+
+@app.command()
+def days(
+    scenario: Annotated[
+        str, typer.Option(help="A scenario's name or folder, or any .sumocfg with its demand in route files.")
+    ] = "paris_centre",
+    shares: Annotated[str, typer.Option(help="Shares of the drivers who are advised.")] = "0,0.25,0.5,0.75,1",
+    compliance: Annotated[float, typer.Option(help="Probability that a driver follows a day's advice.")] = 0.5,
+    memory: Annotated[float, typer.Option(help="Weight of all earlier days in what is remembered.")] = 0.7,
+    lag: Annotated[int, typer.Option(help="Age of the news in days.", metavar="N", parser=whole_number(0, 30))] = 0,
+    most: Annotated[
+        int, typer.Option("--days", help="Most days to drive.", metavar="N", parser=whole_number(2, 365))
+    ] = 30,
+    minutes: Annotated[float, typer.Option(help="How long after the warm-up departures count.")] = 60.0,
+    seeds: Annotated[str, typer.Option(help="Seeds of the traffic; at least 10 for an interval.")] = "0-2",
+    scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
+    warm_up: Annotated[
+        float | None, typer.Option(help="Seconds of traffic before it counts.", show_default="scenario's")
+    ] = None,
+    workers: Workers = None,
+    executor: ExecutorName = "processes",
+    ray_address: RayAddress = None,
+    ray_send: RaySend = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
+        ),
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Advise a share of the drivers day after day until traffic settles, beside the user equilibrium.
+
+    Rerun the command to resume a stopped study.
+    """
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.studies.days import DaysPlan, DaysRow, read_days, run_days
+    from automotive_cosim.studies.days_page import answer, tables, warnings, write_days
+
+    plan = DaysPlan(
+        scenario,
+        shares=tuple(_numbers("shares", shares)),
+        compliance=compliance,
+        memory=memory,
+        lag=lag,
+        days=most,
+        minutes=minutes,
+        seeds=tuple(seeds_in(seeds)),
+        scale=scale,
+        warm_up_s=warm_up,
+    )
+    plan.check()
+    folder = out or _folder(plan)
+    where = executor_of(executor, workers, ray_address, ray_send)
+    console = Console(stderr=as_json, highlight=False)
+
+    def said(progress: Progress[DaysRow]) -> str:
+        errors = counted(progress.errors, "error") if progress.errors else ""
+        return f"{errors}{time_left(progress)}"
+
+    with where, ProgressView(console, "shares and seeds", said) as view:
+        run_days(plan, folder, executor=where, tell=view.tell)
+    study = read_days(folder)
+    if len(study.errors) < len(study.rows):
+        _show(console, write_days(folder), answer(study), warnings(study), tables(study)[:1], as_json=as_json)
+    _raise_errors(study.errors, len(study.rows))
+
+
+@app.command()
+@reads_results
+def compare(
+    first: Annotated[Path, typer.Argument(help="Results folder of a study, or of a suite.", show_default=False)],
+    second: Annotated[Path, typer.Argument(help="The same of another run.", show_default=False)],
+    as_json: AsJson = False,
+) -> None:
+    """Compare two runs of one study or suite, as of two versions; exit code 1 if their rows differ."""
+    from automotive_cosim.cli.console import Console
+    from automotive_cosim.studies.versions import answer, compared, pairs
+
+    found = pairs(first, second)
+    table = compared(found)
+    changed = {pair.name: list(pair.changed) for pair in found if pair.changed}
+    if as_json:
+        rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
+        print_json({"same": all(pair.is_same for pair in found), "changed": changed, "figures": rows})
+    else:
+        console = Console(highlight=False)
+        console.print(answer(found), soft_wrap=True)
+        for name, what in changed.items():
+            console.print(f"{name} was run with another {'; '.join(what)}", soft_wrap=True)
+        console.print(table.markdown(), soft_wrap=True)
+    raise typer.Exit(not all(pair.is_same for pair in found))
+
+
+def _show(
+    console: Console,
+    page: Path,
+    answer: str,
+    warnings: Sequence[str],
+    tables: Sequence[Table],
+    *,
+    as_json: bool,
+) -> None:
+    """Prints the result of a study of a whole network."""
+    if as_json:
+        told: Json = {"answer": answer, "warnings": list(warnings), "out": str(page.parent)}
+        for table in tables:
+            told[table.name] = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
+        print_json(told)
+        return
+    for table in tables:
+        console.print(table.markdown(), soft_wrap=True)
+    for text in (*warnings, answer, f"report written to {page}"):
+        console.print(text, soft_wrap=True)
+
+
+def _raise_errors(errors: Sequence[JobRow], count: int) -> None:
+    if errors:
+        first = errors[0]
+        raise InfrastructureError(
+            f"{len(errors)} of {counted(count, 'run')} ended in an error, the first one {first.id}: "
+            f"{first.error_kind}: {first.error}; rerun the command to retry them"
+        )
+
+
 def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
     """Prints the result; raises if there is none."""
-    from automotive_cosim.studies.page import cost_s, warnings
-    from automotive_cosim.studies.tables import excluded, policies
+    from automotive_cosim.studies.page import answer, cost_s
+    from automotive_cosim.studies.tables import excluded, parts, policies
+    from automotive_cosim.studies.warnings import warnings
 
     count, errors = len(study.decisions), study.errors
     kept_out = {f"{what}: {reason}": number for (what, reason), number in sorted(study.excluded.items())}
     if as_json:
-        told = {"drives": len(study.rows), "decisions": count, "excluded": kept_out, "errors": len(errors)}
-        typer.echo(json.dumps(told | {"seconds_a_decision": cost_s(study), "out": str(study.folder)}))
+        told: Json = {"answer": answer(study), "warnings": warnings(study)}
+        told |= {"drives": len(study.rows), "decisions": count, "excluded": kept_out, "errors": len(errors)}
+        told |= {"seconds_a_decision": cost_s(study), "out": str(study.folder)}
+        typer.echo(json.dumps(told, ensure_ascii=False))
     else:
-        for table in (policies(study), excluded(study)):
+        for table in (policies(study), parts(study), excluded(study)):
             if table.rows:
                 console.print(table.markdown(), soft_wrap=True)
         for warning in warnings(study):
             console.print(warning, soft_wrap=True)
+        console.print(answer(study), soft_wrap=True)
         console.print(f"{counted(count, 'decision')} counted; report written to {page}", soft_wrap=True)
     if errors:
         first = errors[0]
@@ -388,6 +645,13 @@ def _departures(scenario: str, text: str) -> tuple[float, ...]:
     return tuple(found)
 
 
+def _scenarios(text: str) -> list[str]:
+    """Names of scenarios, with all shipped ones in the place of ``shipped``."""
+    from automotive_cosim.scenarios import shipped
+
+    return [name for word in words("scenarios", text) for name in (shipped() if word == "shipped" else (word,))]
+
+
 def _replicates(text: str) -> int | str:
     """A number, or a word that the plan checks."""
     return int(text) if text.isdecimal() else text
@@ -403,7 +667,7 @@ def _numbers(name: str, text: str) -> list[float]:
     return found
 
 
-def _folder(plan: StudyPlan) -> Path:
+def _folder(plan: StudyPlan | CongestionPlan | DaysPlan) -> Path:
     from automotive_cosim.interface.trace import canonical
 
     return Path("runs") / f"study-{hashlib.sha256(canonical(plan.as_json())).hexdigest()[:8]}"

@@ -17,9 +17,10 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.report.answer import answer
+from automotive_cosim.report.consistency import pass_hats
 from automotive_cosim.report.results import Contestant, Results, pairs, read_results
 from automotive_cosim.report.stats import Rate
-from automotive_cosim.report.summary import pass_hats, rate_of
+from automotive_cosim.report.summary import rate_of
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json

@@ -96,7 +96,7 @@ class Family:
             trips=self.trips[turned:] + self.trips[:turned],
             duration_s=end_s,
             start=start,
-            weather=_timeline(weather, [span for each in causes for span in each.weather]),
+            weather=timeline(weather, [span for each in causes for span in each.weather]),
             origin=self.origin,
             driver=self.driver,
             aboard=company,
@@ -163,7 +163,7 @@ def _arrivals(rng: np.random.Generator, end_s: float) -> tuple[Arrival, ...]:
     return tuple(Arrival("message" if rng.random() < 0.7 else "call", at_s) for at_s in times_s)
 
 
-def _timeline(usual: Weather, weather: Sequence[WeatherSpan]) -> tuple[WeatherAt, ...]:
+def timeline(usual: Weather, weather: Sequence[WeatherSpan]) -> tuple[WeatherAt, ...]:
     """The usual weather and the weather in it; where two overlap, the one that began later counts."""
     edges_s = sorted({0.0, *(span.from_s for span in weather), *(span.to_s for span in weather)})
 

@@ -10,12 +10,21 @@ from typing import Annotated
 
 from annotated_types import Ge, Gt, Le, Lt
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.script import DriveScript
+from automotive_cosim.drives.family import timeline
+from automotive_cosim.drives.script import DriveScript, Staged
 from automotive_cosim.drives.sky import fog
+from automotive_cosim.drives.staging import ON_REQUEST, Causes, Setting
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.geo.weather import FOG_BELOW_M, HEAVY_RAIN_FROM_MM_PER_H
+from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.traffic.profiles import PROFILES
+
+NOTHING, NOBODY = "nothing", "nobody"
+"""Words for no staging, and for an empty car."""
+STAGE_S = 60.0
+"""When something is staged unless said otherwise: the car is on its way, as in ``family.FIRST_S``."""
 
 
 @dataclass(frozen=True, slots=True, order=True)
@@ -40,6 +49,17 @@ class DriveSettings:
     """When it is over and judged, if the script ends later: to try a model that costs money or time. Its score is
     not that of a whole drive, which has more events."""
 
+    stage: Annotated[str, OneOf((NOTHING, *ON_REQUEST), "staging")] | None = None
+    """What is staged, once and as an event, instead of all that the script stages; ``nothing`` stages nothing.
+    Calls and messages stay."""
+    stage_s: Annotated[float, Ge(0), Le(1800)] | None = None
+    """When that is staged, in seconds after departure; a minute without it."""
+    ahead_m: Annotated[float, Gt(0), Le(5000)] | None = None
+    """How far ahead of the car what is staged stands, drives or moves over, or how far behind an ambulance
+    appears."""
+    aboard: Annotated[str, OneOf((NOBODY, *Kind), "occupant")] | None = None
+    """Who rides on the rear seat, behind the passenger's, besides the driver and nobody else."""
+
     @property
     def tags(self) -> tuple[str, ...]:
         """Whatever is set, for ids."""
@@ -56,14 +76,48 @@ class DriveSettings:
         if self.hour is not None:
             day = datetime.fromisoformat(script.start).replace(hour=0, minute=0, second=0)
             made = replace(made, start=(day + timedelta(minutes=round(self.hour * 60))).isoformat()[:19])
-        weather = tuple(replace(each, weather=self._weather(each.weather)) for each in script.weather)
+        if self.aboard is not None:
+            made = replace(made, aboard=self._aboard())
+        if self.stage is not None:
+            made = self._staged(made)
+        weather = tuple(replace(each, weather=self._weather(each.weather)) for each in made.weather)
         return replace(
             made,
             weather=weather,
             driver=script.driver if self.driver is None else self.driver,
-            driven_s=script.driven_s if self.driven_min is None else self.driven_min * 60,
+            driven_s=made.driven_s if self.driven_min is None else self.driven_min * 60,
             density=script.density if self.density is None else self.density,
             duration_s=min(script.duration_s, inf if self.minutes is None else self.minutes * 60),
+        )
+
+    def _aboard(self) -> tuple[Occupant, ...]:
+        if self.aboard == NOBODY:
+            return ()
+        kind = Kind(str(self.aboard))
+        return (Occupant(Seat.REAR_RIGHT, kind, belted=kind is not Kind.OBJECT),)
+
+    def _staged(self, script: DriveScript) -> DriveScript:
+        """The script with one staging instead of its own."""
+        at_s = STAGE_S if self.stage_s is None else self.stage_s
+        usual = script.weather[0].weather
+        causes = Causes()
+        staged: tuple[Staged, ...] = ()
+        if self.stage != NOTHING:
+            rng = Draws(script.family, script.seed).rng(Purpose.DRIVE)
+            driver = script.driver if self.driver is None else self.driver
+            kind = str(self.stage)
+            causes = ON_REQUEST[kind](Setting(at_s, False, driver, usual, rng, script.aboard, self.ahead_m))
+            staged = (Staged(kind, at_s, False),)
+        return replace(
+            script,
+            weather=timeline(usual, causes.weather),
+            moods=causes.moods,
+            halts=causes.halts,
+            changes=causes.changes,
+            incidents=causes.incidents,
+            driven_s=causes.driven_s,
+            staged=staged,
+            quiet_s=(0.0, at_s),
         )
 
     def _weather(self, before: Weather) -> Weather:

@@ -18,7 +18,14 @@ from automotive_cosim.cockpit.reach import RADAR_M
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, TYRE, Signal
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.sky import DENSE_FROM_S, DENSE_UNTIL_S, FOG_S, drizzle, fog_bank, rain, sleet
-from automotive_cosim.scenarios.incidents import AheadIncident, AnyIncident, BrakingLeader, EmergencyVehicle
+from automotive_cosim.scenarios.incidents import (
+    AheadIncident,
+    AnyIncident,
+    BrakingLeader,
+    CutIn,
+    CutOut,
+    EmergencyVehicle,
+)
 from automotive_cosim.traffic.base import DriverAt, HaltAt
 
 
@@ -65,6 +72,12 @@ class Setting:
     rng: np.random.Generator
     aboard: tuple[Occupant, ...] = ()
     """Who is in the car besides the driver."""
+    ahead_m: float | None = None
+    """How far ahead of the car, or behind it, other vehicles and incidents are; None for what is usual."""
+
+    def metres(self, usual_m: float) -> float:
+        """That distance."""
+        return usual_m if self.ahead_m is None else self.ahead_m
 
 
 Staging = Callable[[Setting], Causes]
@@ -81,6 +94,8 @@ PHONE_S = 40.0
 """How long a driver uses the phone."""
 AHEAD_S = 420.0
 """How long an incident on the road lasts."""
+BEHIND_M = 250.0
+"""How far behind an ambulance appears, out of sight."""
 AHEAD_M = 1400.0
 """How far ahead it is staged: news that is a minute old is heard in time at 80 km/h."""
 ALIGHT_S, AWAY_S = 10.0, 120.0
@@ -104,7 +119,12 @@ def _leader_close(setting: Setting) -> Causes:
     """The driver presses, behind somebody who eases off; as a look-alike, keeps two seconds."""
     until_s = setting.at_s + MOOD_S
     eases = BrakingLeader(
-        from_s=setting.at_s, to_s=until_s, ahead_m=40.0, deceleration_mps2=0.2, to_kmh=40.0, keeps_lane=True
+        from_s=setting.at_s,
+        to_s=until_s,
+        ahead_m=setting.metres(40.0),
+        deceleration_mps2=0.2,
+        to_kmh=40.0,
+        keeps_lane=True,
     )
     return replace(_mood("pressing", "calm")(setting), incidents=(eases,))
 
@@ -258,7 +278,10 @@ def _slippery(setting: Setting) -> Causes:
 
 def _blue_light(setting: Setting) -> Causes:
     """An ambulance comes up from behind; as a look-alike, a van as fast."""
-    return Causes(incidents=(EmergencyVehicle(from_s=setting.at_s, blue_light=not setting.is_lookalike),))
+    comes = EmergencyVehicle(
+        from_s=setting.at_s, blue_light=not setting.is_lookalike, behind_m=setting.metres(BEHIND_M)
+    )
+    return Causes(incidents=(comes,))
 
 
 def _leader_brakes(setting: Setting) -> Causes:
@@ -268,7 +291,9 @@ def _leader_brakes(setting: Setting) -> Causes:
     """
     until_s = setting.at_s + LEADER_WITHIN_S
     if setting.is_lookalike:
-        slows = BrakingLeader(from_s=setting.at_s, to_s=until_s, ahead_m=50.0, deceleration_mps2=0.8, to_kmh=25.0)
+        slows = BrakingLeader(
+            from_s=setting.at_s, to_s=until_s, ahead_m=setting.metres(50.0), deceleration_mps2=0.8, to_kmh=25.0
+        )
         return Causes(incidents=(slows,))
     brakes = BrakingLeader(
         from_s=setting.at_s,
@@ -290,11 +315,45 @@ def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Staging
     def stage(setting: Setting) -> Causes:
         until_s = setting.at_s + AHEAD_S
         incident = AheadIncident(
-            what=what, from_s=setting.at_s, to_s=until_s, ahead_m=AHEAD_M, other_way=setting.is_lookalike
+            what=what,
+            from_s=setting.at_s,
+            to_s=until_s,
+            ahead_m=setting.metres(AHEAD_M),
+            other_way=setting.is_lookalike,
         )
         return Causes(incidents=(incident,))
 
     return stage
+
+
+def _cut_in(setting: Setting) -> Causes:
+    """A slower vehicle moves over close in front; as a look-alike, far ahead and as fast as the car."""
+    usual_m, slower_kmh = (60.0, 0.0) if setting.is_lookalike else (15.0, 20.0)
+    cuts = CutIn(
+        from_s=setting.at_s, to_s=setting.at_s + AHEAD_S, gap_m=setting.metres(usual_m), slower_kmh=slower_kmh
+    )
+    return Causes(incidents=(cuts,))
+
+
+def _cut_out(setting: Setting) -> Causes:
+    """The vehicle ahead moves over before one that stands."""
+    cuts = CutOut(from_s=setting.at_s, to_s=setting.at_s + AHEAD_S, reveal_m=setting.metres(40.0))
+    return Causes(incidents=() if setting.is_lookalike else (cuts,))
+
+
+def _leader_stops(setting: Setting) -> Causes:
+    """The vehicle ahead, if none is near a car that pulls out, brakes to a halt as hard as a car can."""
+    hard = BrakingLeader(
+        from_s=setting.at_s,
+        to_s=setting.at_s + AHEAD_S,
+        within_m=60.0,
+        from_kmh=30.0,
+        ahead_m=setting.metres(20.0),
+        deceleration_mps2=1.0 if setting.is_lookalike else 6.0,
+        to_kmh=30.0 if setting.is_lookalike else 0.0,
+        keeps_lane=True,
+    )
+    return Causes(incidents=(hard,))
 
 
 STAGINGS: Mapping[str, Staging] = {
@@ -322,6 +381,13 @@ STAGINGS: Mapping[str, Staging] = {
     "tractor": _ahead("tractor"),
 }
 """The stagings by the kind of event that they stage at a time."""
+ON_REQUEST: Mapping[str, Staging] = {
+    **STAGINGS,
+    "cut_in": _cut_in,
+    "cut_out": _cut_out,
+    "leader_stops": _leader_stops,
+}
+"""What the settings of a drive can stage; families draw from ``STAGINGS`` alone."""
 SCHOOL_ZONE = "school_zone"
 """The kind that is staged by place: where a school zone begins at its hours."""
 AT_SCHOOLS = ("hurried", "brisk")

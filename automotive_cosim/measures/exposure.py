@@ -58,7 +58,12 @@ def summed(cells: Iterable[ExposureCell]) -> tuple[ExposureCell, ...]:
 
 
 def _band(kmh: float) -> str:
-    index = max(number for number, least in enumerate(BANDS_KMH) if kmh >= least or number == 0)
+    return band_named(max(least for number, least in enumerate(BANDS_KMH) if kmh >= least or number == 0))
+
+
+def band_named(least_kmh: int) -> str:
+    """The name of the band that begins there: ``30 to 50``."""
+    index = BANDS_KMH.index(least_kmh)
     if index + 1 == len(BANDS_KMH):
-        return f"from {BANDS_KMH[index]}"
-    return f"{BANDS_KMH[index]} to {BANDS_KMH[index + 1]}"
+        return f"from {least_kmh}"
+    return f"{least_kmh} to {BANDS_KMH[index + 1]}"

@@ -136,11 +136,12 @@ def write_scenario(
         if isinstance(block, str):
             text += f"\n{block}\n"
         else:
-            text += "".join(f"{key} = {_toml(value)}\n" for key, value in block.items() if value is not None)
+            text += "".join(f"{key} = {toml_value(value)}\n" for key, value in block.items() if value is not None)
     target.write_text(text, encoding="utf-8")
 
 
-def _toml(value: object) -> str:
+def toml_value(value: object) -> str:
+    """A value as TOML writes it."""
     if isinstance(value, datetime):
         return value.isoformat()
     return json.dumps(value, ensure_ascii=False)

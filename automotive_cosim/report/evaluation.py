@@ -13,6 +13,7 @@ from automotive_cosim.report import drives, findings
 from automotive_cosim.report.answer import answer
 from automotive_cosim.report.case import contrast
 from automotive_cosim.report.charts import INK, charts
+from automotive_cosim.report.consistency import consistency, varied
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.results import Results, contestant, read_results
@@ -75,7 +76,9 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
     shared = results.shared()
     made = [
         progress(results),
+        consistency(shared),
         *tables(shared),
+        varied(shared),
         findings.failures(shared, found),
         findings.harm(shared),
         findings.place_effect(shared),

@@ -1,4 +1,4 @@
-"""Rates with intervals, comparisons of pairs, and pass^k.
+"""Rates with intervals, comparisons of pairs, and the shares of pass^k and pass@k.
 
 Episodes of one task are not independent of each other, so tasks are the clusters here: intervals of a rate shrink
 the sample by the design effect, and comparisons resample whole tasks.
@@ -100,6 +100,20 @@ def upper_bound(count: int, total: int, confidence: float = CONFIDENCE) -> float
     return 1.0 if count == total else float(beta.ppf(confidence, count + 1, total - count))
 
 
+def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE) -> float:
+    """The one-sided upper bound of a rate of independent events, as per hour (Garwood 1936,
+    Biometrika 28); 3 / exposure if none was seen.
+
+    Raises:
+        ValueError: exposure is not above 0, or count is below 0.
+    """
+    if exposure <= 0 or count < 0:
+        raise ValueError(f"{count} in {exposure}")
+    from scipy.stats import chi2
+
+    return float(chi2.ppf(confidence, 2 * count + 2)) / 2 / exposure
+
+
 def rate(
     outcomes: Iterable[tuple[Hashable, bool | None]],
     not_run: Iterable[Hashable] = (),
@@ -145,16 +159,21 @@ def effective_size(clusters: Sequence[Sequence[bool]]) -> float:
     return float(min(count, max(groups, count * simple / clustered))) if clustered else float(count)
 
 
-def pass_hat_k(trials: Mapping[Hashable, Sequence[bool]], k: int) -> float | None:
-    """pass^k: the probability that k trials of one instance all succeed, over the instances (Yao et al. 2024,
-    tau-bench).
+def all_pass(trials: Sequence[bool], k: int) -> float | None:
+    """The probability that k of an instance's trials, drawn without replacement, all succeed: its share of pass^k
+    (Yao et al. 2024, tau-bench).
 
     Args:
-        trials: outcomes of each instance's repeats; an instance with fewer than k does not count.
-        k: 1 or more.
+        trials: outcomes of the instance's repeats.
+        k: 1 or more; None is returned for more than there are.
     """
-    shares = [comb(sum(each), k) / comb(len(each), k) for each in trials.values() if len(each) >= k]
-    return sum(shares) / len(shares) if shares else None
+    return comb(sum(trials), k) / comb(len(trials), k) if len(trials) >= k else None
+
+
+def any_passes(trials: Sequence[bool], k: int) -> float | None:
+    """The probability that at least one of them succeeds: its share of pass@k (Chen et al. 2021, HumanEval); see
+    ``all_pass``."""
+    return 1 - comb(len(trials) - sum(trials), k) / comb(len(trials), k) if len(trials) >= k else None
 
 
 def compare(

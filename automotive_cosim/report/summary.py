@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from collections.abc import Callable, Hashable, Iterable, Sequence
 from itertools import combinations
 from operator import itemgetter
@@ -13,7 +12,7 @@ from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import EDITION_2026, EDITION_2026_ROWS, PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, not_judged, pairs
-from automotive_cosim.report.stats import Rate, compare, mean, pass_hat_k, rate
+from automotive_cosim.report.stats import Rate, compare, mean, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.trial_row import TrialRow
@@ -59,7 +58,6 @@ def tables(results: Results) -> list[Table]:
         by(results, "Scenario", lambda row: row.scenario),
         by(results, "Country", lambda row: row.country),
         parts(results),
-        repeats(results),
     ]
     return [table for table in made if table.rows]
 
@@ -313,29 +311,6 @@ def parts(results: Results) -> Table:
         rows.append((each.label, Cell(str(len(lost)), tuple(row.id for row in lost)), *cells))
     columns = ("Contestant", "Not solved", "Goal", "Clean", "Safe", "In time", "Declared")
     return Table("parts", "Failed parts of the verdict", columns, tuple(rows), "An episode may miss several parts.")
-
-
-def repeats(results: Results) -> Table:
-    """pass^k over the repeats of each if there are any."""
-    most = int(results.manifest["plan"]["repeats"])
-    rows: list[TableRow] = []
-    for each in results.contestants if most > 1 else ():
-        mine = [row for row in results.of(each) if row.success is not None]
-        shares = pass_hats(mine, most)
-        ids = tuple(row.id for row in mine)
-        rows.append((each.label, *(Cell(NONE if share is None else f"{share:.0%}", ids) for share in shares)))
-    columns = ("Contestant", *(f"pass^{k}" for k in range(1, most + 1)))
-    note = "The probability that k runs of one instance all succeed; each seed is a separate instance."
-    return Table("repeats", "Reliability over repeats", columns, tuple(rows), note)
-
-
-def pass_hats(rows: Iterable[EpisodeRow], most: int) -> list[float | None]:
-    """pass^k of one contestant for k from 1 to ``most``, over its judged episodes; None without any."""
-    trials: dict[Hashable, list[bool]] = defaultdict(list)
-    for row in rows:
-        if row.success is not None:
-            trials[row.instance[:-1]].append(row.has_succeeded)
-    return [pass_hat_k(trials, k) for k in range(1, most + 1)]
 
 
 def errors(results: Results) -> Table:

@@ -14,6 +14,7 @@ line says ``format`` and what is run; every other line has one of these keys:
                lights     {light: state} of those that have changed; a lane's ``place`` is that of its letter
                speed_kmh, limit_kmh, speed_unit (of the signs), road, local_time, sun_deg (elevation; null without a
                place), weather_code (WMO)
+               weather    {field of ``contracts.Weather``: value, …}, if it has changed
                incidents  [[kind, x, y], …]
                events     [text, …]
     baseline   [[at_s, x, y, heading, speed], …]                          the car in the baseline run, once judged
@@ -27,7 +28,7 @@ import gzip
 import zlib
 from bisect import bisect_right
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
@@ -38,6 +39,7 @@ from automotive_cosim.contracts import (
     LaneShape,
     RoadShapes,
     SeenVehicle,
+    Weather,
     in_drawing_order,
 )
 from automotive_cosim.errors import UserError
@@ -61,6 +63,10 @@ class Second:
     sun_deg: float | None
     incidents: tuple[tuple[str, float, float], ...]
     """Kind, x and y."""
+    local_time: str = ""
+    """ISO 8601, with the zone's offset."""
+    weather: Weather | None = None
+    """Unknown in records from before it was written."""
 
 
 @dataclass(frozen=True)
@@ -69,6 +75,8 @@ class RoadRecord:
 
     shapes: RoadShapes
     seconds: tuple[Second, ...]
+    about: Json = field(default_factory=dict)
+    """What was run, by name: the first line."""
 
     def at(self, at_s: float) -> Second | None:
         """The last second up to that time, else the first; None if there is none."""
@@ -103,7 +111,10 @@ def _record(path: Path) -> RoadRecord:
     names: dict[int, tuple[str, str, float, float]] = {}
     lights: dict[str, str] = {}
     seconds: list[Second] = []
+    weather: Weather | None = None
+    about: Json = {}
     for entry in read_road(path):
+        about = about or entry
         for kind, width_m, line, links in entry.get("lanes", ()):
             lanes.append(LaneShape("", kind, width_m, _points(line), tuple((light, at) for light, at in links)))
         junctions += map(_points, entry.get("junctions", ()))
@@ -113,9 +124,12 @@ def _record(path: Path) -> RoadRecord:
             lights = lights | entry["lights"]
             seen = tuple(SeenVehicle(*names[number], *rest) for number, *rest in entry["seen"])
             incidents = tuple((kind, x_m, y_m) for kind, x_m, y_m in entry["incidents"])
-            seconds.append(Second(entry["at_s"], seen, lights, entry["sun_deg"], incidents))
+            weather = Weather(**entry["weather"]) if "weather" in entry else weather
+            seconds.append(
+                Second(entry["at_s"], seen, lights, entry["sun_deg"], incidents, entry["local_time"], weather)
+            )
     shapes = RoadShapes(tuple(lanes), tuple(junctions), in_drawing_order(ground))
-    return RoadRecord(shapes, tuple(seconds))
+    return RoadRecord(shapes, tuple(seconds), about)
 
 
 def read_road(path: Path) -> Iterator[Json]:

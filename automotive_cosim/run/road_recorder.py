@@ -8,7 +8,7 @@ import math
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import datetime
 from itertools import pairwise
 from pathlib import Path
@@ -25,6 +25,7 @@ from automotive_cosim.contracts import (
     LaneShape,
     RoadShapes,
     RoadSnapshot,
+    Weather,
 )
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
@@ -125,7 +126,7 @@ class RoadFacts:
     limit_kmh: float | None
     local_time: datetime
     speed_unit: str = "km/h"
-    weather_code: int | None = None
+    weather: Weather | None = None
     events: tuple[str, ...] = ()
 
     @classmethod
@@ -135,7 +136,7 @@ class RoadFacts:
             limit_kmh(limit_at(moment.context)),
             moment.local_time,
             moment.context.speed_unit,
-            moment.weather.weather_code,
+            moment.weather,
             tuple(event.text for event in moment.events),
         )
 
@@ -165,6 +166,7 @@ class RoadWriter:
         self._in_sight: set[str] = set()
         """Lights at the end of the lanes so far."""
         self._lights: dict[str, str] = {}
+        self._weather: Json | None = None
         self._numbers: dict[str, int] = {}
         self._line(
             {
@@ -198,6 +200,10 @@ class RoadWriter:
         }
         self._lights |= lights
         lat_deg, lon_deg = driving.lat_deg, driving.lon_deg
+        sky = around.weather
+        weather = None if sky is None else {name: round(value, 1) for name, value in asdict(sky).items()}
+        changed = {} if weather in (None, self._weather) else {"weather": weather}
+        self._weather = weather
         self._line(
             {
                 "at_s": round(snapshot.time_s - self._begin_s, 2),
@@ -221,7 +227,8 @@ class RoadWriter:
                 "sun_deg": None
                 if lat_deg is None or lon_deg is None
                 else round(elevation_deg(lat_deg, lon_deg, around.local_time), 1),
-                "weather_code": around.weather_code,
+                "weather_code": None if sky is None else sky.weather_code,
+                **changed,
                 "incidents": [
                     [incident.kind, *(round(part, 1) for part in along(shape, incident.position_m))]
                     for incident in driving.ahead.incidents

@@ -6,14 +6,18 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 
+import numpy as np
+
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
-from automotive_cosim.safety.space import Factor, SearchPoint, told
+from automotive_cosim.safety.space import Factor, FactorRange, SearchPoint, told
 
 CONFIDENCE_WORDS = f"{100 * CONFIDENCE:.0f} %"
+LEAST_EVEN = 12
+"""Fewer points say nothing about a factor's share."""
 MOST_PAIRS = 30
 """Rows of the table of two factors."""
 
@@ -73,7 +77,15 @@ def coverage(found: Hunt) -> tuple[int, int]:
 
 def tables(found: Hunt) -> list[Table]:
     """Every table of the report, the most important first."""
-    every = _failures(found), _unseen(found), _rates(found), _pairs(found), _unsteady(found), _errors(found)
+    every = (
+        _failures(found),
+        _unseen(found),
+        _rates(found),
+        _sensitivity(found),
+        _pairs(found),
+        _unsteady(found),
+        _errors(found),
+    )
     return [table for table in every if table.rows]
 
 
@@ -140,6 +152,51 @@ def _rates(found: Hunt) -> Table:
     heads = "Factor", "Value", "Samples", "Pass % (interval)", "Of the whole space", "Pass % (interval)"
     note = "Intervals: Wilson, 95 %. Points beyond those of the whole space are drawn to failures by their margins."
     return Table("rates", "Passed by factor", heads, tuple(lines), note, heads=2)
+
+
+def sensitivity(found: Hunt) -> list[tuple[Factor, float, float | None]]:
+    """How much of the margin's variance each factor explains by itself, the most first, over the points that
+    represent the whole space; and its rank correlation with the margin if it is an ordered number.
+
+    The share is the correlation ratio of the margin's means by level, corrected for the number of levels (epsilon
+    squared, Kelley 1935): a first-order Sobol index from given data. Empty with fewer than ``LEAST_EVEN`` points.
+    """
+    even = [each for each in judged(found.samples) if each.even]
+    margins = np.array([each.outcome.margin for each in even], dtype=float)
+    total = float(((margins - margins.mean()) ** 2).sum()) if len(even) else 0.0
+    if len(even) < LEAST_EVEN or total == 0:
+        return []
+    shares = []
+    for factor in _varied(found):
+        levels = np.array([factor.level(each.point[factor.name]) for each in even])
+        groups = [margins[levels == level] for level in dict.fromkeys(levels.tolist())]
+        within = sum(float(((group - group.mean()) ** 2).sum()) for group in groups)
+        freedom = len(even) - len(groups)
+        share = 1 - (within / freedom) / (total / (len(even) - 1)) if freedom > 0 else 0.0
+        rank = None
+        if isinstance(factor, FactorRange) and factor.is_ordered:
+            from scipy.stats import rankdata
+
+            values = [factor.unit(each.point[factor.name]) for each in even]
+            if len(set(values)) > 1:  # Spearman's
+                rank = float(np.corrcoef(rankdata(values), rankdata(margins))[0, 1])
+        shares.append((factor, min(1.0, max(0.0, share)), rank))
+    return sorted(shares, key=lambda entry: -entry[1])
+
+
+def _sensitivity(found: Hunt) -> Table:
+    lines = [
+        (factor.name, f"{100 * share:.0f}", "–" if rank is None else f"{rank:+.2f}".replace("-", "−"))
+        for factor, share, rank in sensitivity(found)
+    ]
+    note = (
+        "Over the points that represent the whole space: the share of the margin's variance that the factor "
+        "explains by itself (first-order Sobol index from given data, corrected for the number of levels), and its "
+        "rank correlation with the margin (Spearman): below 0, a higher number is worse."
+    )
+    return Table(
+        "sensitivity", "Sensitivity", ("Factor", "Share of variance %", "Rank correlation"), tuple(lines), note
+    )
 
 
 def _varied(found: Hunt) -> list[Factor]:

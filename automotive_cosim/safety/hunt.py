@@ -142,7 +142,7 @@ def hunt(
     found = Hunt(space)
     run = _Runner(found, evaluate)
     nominal = run(Phase.NOMINAL, space.nominal).outcome
-    if nominal.failed or nominal.margin is None:
+    if not nominal.passed:
         why = f"fails ({nominal.why})" if nominal.failed else f"is not judged ({nominal.error})"
         raise UserError(
             f"the nominal point {why}; give nominal values, the first of each list, under which the agent passes"

@@ -33,6 +33,11 @@ class TriedOutcome:
     """Wall time."""
 
     @property
+    def passed(self) -> bool:
+        """Whether it was judged and did not fail."""
+        return self.margin is not None and not self.failed
+
+    @property
     def is_unrunnable(self) -> bool:
         """Whether there is no such trial: a task without phrasings in a language, or not in a scenario."""
         return self.margin is None and not self.trial

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from math import ceil, log2
 from typing import Any, Protocol
 
@@ -31,6 +31,16 @@ class Sampler(Protocol):
     def tell(self, point: SearchPoint, margin: float) -> None:
         """By how much a point passed (above 0) or failed."""
         ...
+
+
+def even_points(sampler: Sampler, most: int) -> Iterator[SearchPoint]:
+    """The points, at most so many, that a sampler proposes before it has learnt anything."""
+    for _ in range(most):
+        point, even = sampler.ask()
+        if not even:
+            return
+        yield point
+        sampler.tell(point, 1.0)
 
 
 class RandomSampler:

@@ -26,6 +26,8 @@ SETTINGS = tuple(entry.name for entry in fields(DriveSettings))
 TRIAL = ("task", "half", "drive", "scenario", "seed", "held_out")
 FACTORS = (*TRIAL, *CONDITIONS, *SETTINGS)
 """Every factor that a space may have."""
+LIBRARY = {file.stem: file for file in sorted((Path(__file__).parent / "spaces").glob("*.toml"))}
+"""The named logical scenarios that are shipped, by name."""
 BINS = 4
 """Parts of a range in tables and in the coverage."""
 DIGITS = 4
@@ -143,6 +145,12 @@ class Space:
 
     factors: tuple[Factor, ...]
     rule: FailureRule = field(default_factory=FailureRule)
+    about: str = ""
+    """What happens, for human readers."""
+    occurs: str = ""
+    """The kind of event, or words of what the road tells, that shows that it has happened."""
+    sources: tuple[str, ...] = ()
+    """Where the situation and its figures come from; the rest of the ranges is our choice."""
 
     @property
     def nominal(self) -> SearchPoint:
@@ -188,6 +196,24 @@ class _SpaceTable:
 
     factors: dict[str, Any]
     failure: FailureRule = field(default_factory=FailureRule)
+    about: str = ""
+    occurs: str = ""
+    sources: tuple[str, ...] = ()
+
+
+def space_file(name: str) -> Path:
+    """The file of a space: a path, or the name of one of the library.
+
+    Raises:
+        UserError: there is neither such a file nor such a name.
+    """
+    if Path(name).is_file():
+        return Path(name)
+    if name in LIBRARY:
+        return LIBRARY[name]
+    if name.endswith(".toml"):
+        raise UserError(f"there is no file {name}")
+    raise UnknownNameError("space", name, LIBRARY)
 
 
 def read_space(path: Path) -> Space:
@@ -208,7 +234,7 @@ def read_space(path: Path) -> Space:
     if misplaced:
         of = "drives" if "task" in names else "tasks"
         raise UserError(f"{path}: {', '.join(misplaced)} can be varied for {of} alone; remove it")
-    return Space(made, table.failure)
+    return Space(made, table.failure, table.about, table.occurs, table.sources)
 
 
 def _factor(document: Document, name: str, given: Any) -> Factor:

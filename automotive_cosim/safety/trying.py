@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,10 +13,10 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.run import worker
-from automotive_cosim.run.batch import FINAL_KINDS
+from automotive_cosim.run.batch import FINAL_KINDS, run_jobs
 from automotive_cosim.run.collect import Pictures
-from automotive_cosim.run.executor import Runner
-from automotive_cosim.run.jobs import TrialJob
+from automotive_cosim.run.executor import Executor, Runner
+from automotive_cosim.run.jobs import TrialJob, failed
 from automotive_cosim.run.plan import Plan, PlannedTrial
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.store import Store, opened, replan
@@ -100,6 +101,29 @@ class Trying:
         elif trial not in self.plan.trials:
             self._add(trial)
         return outcome_of(row, self.space.rule)
+
+    def ahead(self, points: Iterable[SearchPoint], executor: Executor) -> None:
+        """Runs points at the same time that will be asked for one by one; those that cannot be run are left out.
+
+        Raises:
+            as ``run.batch.run_jobs``.
+        """
+        jobs = {}
+        for point in points:
+            with suppress(UserError):
+                trial = trial_of(point)
+                job = job_of(self.plan, trial)
+                jobs[job.id] = job
+                self._add(trial)
+        with executor:
+            run_jobs(
+                list(jobs.values()),
+                self.store,
+                partial(worker.trials, Pictures.NONE),
+                failed,
+                executor=executor,
+                tell=lambda progress: None if progress.ended is None else self.tell(progress.ended),
+            )
 
     def _add(self, trial: PlannedTrial) -> None:
         if trial not in self.plan.trials:

@@ -174,6 +174,35 @@ class Pedestrians(Incident):
     """Number of people who walk together."""
 
 
+@dataclass(frozen=True, slots=True)
+class VehicleAction:
+    """What a scripted vehicle does at a time: another speed, another lane, or both."""
+
+    at_s: Annotated[float, Ge(0)]
+    """Seconds after the ego's departure."""
+    speed_kmh: Annotated[float, Ge(0)] | None = None
+    """The speed that it keeps from then on, as far as traffic allows."""
+    lanes: int = 0
+    """Lanes to the left, or to the right if negative, into which it moves at once."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ScriptedVehicle(Incident):
+    """A vehicle on a route of its own, which acts at given times."""
+
+    kind: Literal["vehicle"] = "vehicle"
+    route: Annotated[tuple[EdgeId, ...], MinLen(1)]
+    """Its edges, in driving order, each leading to the next."""
+    position_m: Annotated[float, Ge(0)] = 0.0
+    """Where its front bumper is at first, from the start of the first edge."""
+    lane: Annotated[int, Ge(0)] = 0
+    """Among the edge's lanes for cars, 0 nearest the kerb."""
+    speed_kmh: Annotated[float, Ge(0)] = 50.0
+    """The speed that it keeps at first, as far as traffic allows."""
+    actions: tuple[VehicleAction, ...] = ()
+    """In the order of the times; until the last, it changes the lane only when told."""
+
+
 # --- around the ego ---------------------------------------------------------------------------------------
 
 
@@ -217,6 +246,37 @@ class BrakingLeader(EgoIncident):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class CutIn(EgoIncident):
+    """A vehicle beside the ego's lane moves into it, close in front, whether there is room or not."""
+
+    kind: Literal["cut_in"] = "cut_in"
+    gap_m: Annotated[float, Gt(0)] = 20.0
+    """Gap to it when it moves over."""
+    slower_kmh: Annotated[float, Ge(0)] = 15.0
+    """By how much it is slower than the ego."""
+    from_kmh: Annotated[float, Ge(0)] = 20.0
+    """How fast the ego must be; until then, and for a road with two lanes, it is waited for."""
+    hold_s: Annotated[float, Gt(0)] = 8.0
+    """How long it keeps its speed and the lane before it drives on."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CutOut(EgoIncident):
+    """The vehicle ahead of the ego leaves the lane and lets the ego see a car that stands in it. If there is none
+    ahead, a car first pulls out in front of the ego."""
+
+    kind: Literal["cut_out"] = "cut_out"
+    within_m: Annotated[float, Gt(0)] = 60.0
+    """How near a vehicle must be to count as the one ahead."""
+    reveal_m: Annotated[float, Gt(0)] = 40.0
+    """How far ahead of that vehicle the other one stands."""
+    from_kmh: Annotated[float, Ge(0)] = 20.0
+    """How fast the ego must be; until then, and for a road with two lanes, it is waited for."""
+    ahead_m: Annotated[float, Gt(0)] = 25.0
+    """Gap to a car that pulls out."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class AheadIncident(EgoIncident):
     """An incident on the ego's route some way ahead, wherever that is by then, as far as a road there has room."""
 
@@ -241,8 +301,11 @@ AnyIncident = Annotated[
     | RushHour
     | Tractor
     | Pedestrians
+    | ScriptedVehicle
     | EmergencyVehicle
     | BrakingLeader
+    | CutIn
+    | CutOut
     | AheadIncident,
     TaggedBy("kind"),
 ]

@@ -155,6 +155,14 @@ class EdgeTimes:
         }
         return raised
 
+    def blended(self, newer: EdgeTimes, weight: float) -> EdgeTimes:
+        """What is remembered of these times after newer ones: ``weight`` of these, the rest of the newer."""
+        made = EdgeTimes(self._free_s, ())
+        made._means_s = dict(self._means_s)
+        for key, mean_s in newer._means_s.items():
+            made._means_s[key] = weight * self._means_s.get(key, mean_s) + (1 - weight) * mean_s
+        return made
+
     def write(self, path: Path) -> None:
         """Writes them as SUMO's edge data, every edge that was driven in every interval."""
         intervals = sorted({interval for _, interval in self._means_s})

@@ -21,4 +21,8 @@ data       every future as a row, as files
 tracks     where the ego was in every future
 decisions  every decision on a page
 tables, effects, context, charts, page    the report
+warnings   what to read before its figures
+congestion the delay of a network before and after a measure
+pages      the report of either
+versions   compares two runs of one study
 """

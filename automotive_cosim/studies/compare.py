@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 from automotive_cosim.contracts import DrivingState, EgoEnd
 from automotive_cosim.studies.rows import FleetClass, OthersTotals, Totals
@@ -37,14 +37,13 @@ class Future:
             co2_g=round(ego.co2_g, 3),
             fuel_g=round(ego.fuel_g, 3),
             energy_wh=round(ego.energy_wh, 3),
+            lost_s=round(ego.lost_s, 3),
         )
 
 
 def gains(stay: Future, other: Future) -> Totals:
     """The ego's savings in the other future."""
-    before, after = stay.totals(), other.totals()
-    names = (each.name for each in fields(Totals))
-    return Totals(**{name: round(getattr(before, name) - getattr(after, name), 3) for name in names})
+    return stay.totals().saved(other.totals())
 
 
 def others(stay: Future, other: Future, group: Sequence[str]) -> OthersTotals:

@@ -41,6 +41,9 @@ NO_CONGESTION = "no congestion met"
 NO_ALTERNATIVE = "no alternative"
 """Reasons to exclude a drive from the averages."""
 
+LEAVES_OUT = "leaves out a stop"
+"""Reason to exclude a decision. Only an agent's route can; all others are searched through the trip's ``via``."""
+
 AT_ONCE = os.cpu_count() or 1
 """Decisions whose branches may run while the drive continues; each takes some 50 MB per branch."""
 
@@ -119,6 +122,7 @@ def depart(job: StudyJob, simulation: Forked) -> RemoteTraffic:
         scenario.weather,
         scenario.start,
         emission_class=job.plan.ego_class,
+        keeps_stops=job.plan.via == "stops",
     )
     traffic = simulation.depart(plan)
     if plan.weather:
@@ -223,7 +227,12 @@ class _Drive:
             for other in begun:
                 futures.begin(other, group)
             stack.pop_all()  # they are driven while the drive continues
+        stops = (*(self.job.trip.via if plan.via == "stops" else ()), self.job.trip.to_edge)
+        missed = [stop for way in taken[1:] for stop in left_out(taken[0], way, stops)]
         decision = Decision(
+            excluded=LEAVES_OUT if missed else "",
+            why=f"a route does not pass {missed[0]}" if missed else "",
+            lost_s=round(traffic.account().lost_s, 3),
             at_s=now.time_s,
             edge=now.road.edge_id,
             delay_s=round(now.ahead.delay_s, 1),
@@ -262,6 +271,12 @@ class _Drive:
         """Drawn randomly, so that it does not depend on the results of other drives."""
         every = self.job.plan.placebo_every
         return every > 0 and self._draws.random() < 1 / every
+
+
+def left_out(route: Sequence[str], way: Sequence[str], stops: Sequence[str]) -> list[str]:
+    """The stops still ahead on a route that another one, which may begin later on it, does not pass."""
+    driven = route[: route.index(way[0])] if way and way[0] in route else ()
+    return [stop for stop in stops if stop in route and stop not in driven and stop not in way]
 
 
 def _offered(news: dict[float, tuple[RouteOption, ...]]) -> tuple[str, ...]:

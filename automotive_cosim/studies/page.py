@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
+from statistics import fmean
 
-from automotive_cosim.agents import PROFILES
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.charts import INK
@@ -17,11 +18,11 @@ from automotive_cosim.studies.data import write_data
 from automotive_cosim.studies.decisions import write_decisions
 from automotive_cosim.studies.demand import demand_table, read_demand
 from automotive_cosim.studies.effects import effects
-from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean, seed_mean
-from automotive_cosim.studies.plan import named
+from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.results import Study, read_study
+from automotive_cosim.studies.rows import PolicyChoice
 from automotive_cosim.studies.tables import STAYING, groups, tables, time_saved_s
-from automotive_cosim.traffic.chance import Fresh
+from automotive_cosim.studies.warnings import warnings
 
 
 def write_study(folder: Path) -> Path:
@@ -71,48 +72,34 @@ def write_study(folder: Path) -> Path:
 
 def answer(study: Study) -> str:
     """What the study found, in a sentence: which policy saves the ego how much for each decision."""
-    best: tuple[str, SeedMean] | None = None
+    best: tuple[str, SeedMean, list[PolicyChoice]] | None = None
     for _, policy, _, chosen in groups(study):
         found = seed_mean((each.seed, time_saved_s(each)) for each in chosen)
         if policy not in STAYING and found is not None and (best is None or found.value > best[1].value):
-            best = policy, found
+            best = policy, found, chosen
     if best is None:
         return "No decision to reroute was compared."
-    policy, found = best
+    policy, found, chosen = best
     bounds = found.interval
     sure = "" if bounds is None else f" ({bounds.low:.0f} to {bounds.high:.0f})".replace("-", "−")
     verb = "saves" if found.value >= 0 else "costs"
-    told = f"Rerouting by “{policy}” {verb} {abs(found.value):.0f} s{sure} a decision"
+    told = f"Rerouting by “{policy}” {verb} {abs(found.value):.0f} s{sure} a decision{_parts(chosen)}"
     over = f"{counted(found.count, 'decision')} of {counted(found.seeds, 'seed')}"
     return f"{told}, over {over}" + ("." if bounds else f"; {LEAST_SEEDS} seeds give an interval.")
 
 
-def warnings(study: Study) -> list[str]:
-    """Warnings to read before using the study's figures."""
-    found = []
-    seeds = {point.drive.seed for point in study.decisions}
-    if not study.decisions:
-        told = "; ".join(f"{count} × {reason}" for (_, reason), count in sorted(study.excluded.items()))
-        found.append(f"No decision counted, so there is nothing to average: {told or 'every drive failed'}.")
-    elif len(seeds) < LEAST_SEEDS:
-        found.append(
-            f"{len(seeds)} seeds with a decision: means have no interval below {LEAST_SEEDS} seeds, since "
-            "decisions of one seed are not independent."
-        )
-    elif len(seeds) < PUBLISHED_SEEDS:
-        found.append(f"{len(seeds)} seeds with a decision: run {PUBLISHED_SEEDS} before publishing.")
-    if study.decisions and not study.noise().placebos:
-        found.append("There is no placebo, so the noise floor is unknown and any difference counts.")
-    if any(row.fresh is Fresh.JITTER for row in study.rows):
-        found.append(
-            "SUMO could not be reseeded here: the futures differ by a small change of every other car's speed, "
-            "which understates chance."
-        )
-    if any(name in PROFILES and model == "rules" for name, model in map(named, study.plan.agents)):
-        found.append(
-            "“rules” is a deterministic stand-in: its rows say nothing about how well a language model performs."
-        )
-    return found
+def _parts(chosen: Sequence[PolicyChoice]) -> str:
+    """What the mean gain consists of, in words that add up; empty if it is nothing or was not measured."""
+    parts = [(each.gain.lost_s, each.gain.way_s) for each in chosen]
+    known = [(lost_s, way_s) for lost_s, way_s in parts if lost_s is not None and way_s is not None]
+    if len(known) < len(parts) or not any(map(any, known)):
+        return ""
+    avoided_s = round(fmean(lost_s for lost_s, _ in known))
+    way_s = round(fmean(map(sum, known))) - avoided_s
+    return (
+        f", as {abs(avoided_s)} s {'less' if avoided_s >= 0 else 'more'} are lost in congestion and the way itself "
+        f"takes {abs(way_s)} s {'less' if way_s >= 0 else 'more'}"
+    )
 
 
 def cost_s(study: Study) -> float | None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
@@ -17,6 +17,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.scenarios import Scenario, Trip
+from automotive_cosim.scenarios.incidents import AnyIncident, Incident
+from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.studies.policies import AGENT, parse_policy
@@ -94,6 +96,11 @@ class StudyPlan:
     close: str = ""
     """An edge that is closed at the first decision of a drive, whichever route the ego takes; ``ahead`` is one
     on its route where the two routes differ. Empty closes none."""
+    incidents: tuple[str, ...] = ()
+    """Incidents staged in every future besides the scenario's own, as ``scenarios.wording`` reads them; their times
+    count from the end of the warm-up."""
+    via: Literal["stops", "route"] = "stops"
+    """What the edges in a trip's ``via`` are: stops that every route passes, or the way that it sets out on."""
     redraw: bool = False
     """Whether every seed is a different day of the demand; see ``redraws_trips`` of a scenario."""
     emissions: bool = False
@@ -120,7 +127,7 @@ class StudyPlan:
         for name in ("departures_s", "seeds", "shares", "ages_s", "compliance", "policies", "trips", "together"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
-                raise UserError(f"{_option(name)} lists a value twice: {', '.join(map(str, values))}")
+                raise UserError(f"{option(name)} lists a value twice: {', '.join(map(str, values))}")
         if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
             raise UserError(
                 f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium below "
@@ -143,6 +150,8 @@ class StudyPlan:
             edges = network_of(scenario).edges
             if self.close not in edges:
                 raise UnknownNameError("edge for cars", self.close, edges)
+        for text in self.incidents:
+            check_edges(read_line(text, KINDS, "--incident"), "--incident", scenario)
         for name in self.trips:
             scenario.trip(name)
 
@@ -152,13 +161,15 @@ class StudyPlan:
         Raises:
             ScenarioError: it cannot be read.
         """
-        scenario = self.opened
-        sumo = replace(scenario.sumo, step_length_s=self.step_s, background_rerouting=share)
-        sumo = replace(sumo, action_step_length_s=max(self.step_s, sumo.action_step_length_s))
-        sumo = replace(sumo, redraws_trips=self.redraw or sumo.redraws_trips)
-        sumo = replace(sumo, scale=sumo.scale if self.scale is None else self.scale)
-        sumo = replace(sumo, warm_up_s=sumo.warm_up_s if self.warm_up_s is None else self.warm_up_s)
-        return replace(scenario, sumo=sumo)
+        return driven_at(
+            self.opened,
+            step_s=self.step_s,
+            share=share,
+            scale=self.scale,
+            warm_up_s=self.warm_up_s,
+            redraw=self.redraw,
+            incidents=[read_line(text, KINDS, "--incident") for text in self.incidents],
+        )
 
     @property
     def agents(self) -> tuple[str, ...]:
@@ -253,6 +264,44 @@ def _opened(name: str, from_place: str, to_place: str) -> Scenario:
     return open_scenario(name, from_place=from_place, to_place=to_place)
 
 
+def driven_at(
+    scenario: Scenario,
+    *,
+    step_s: float,
+    share: float | None,
+    scale: float | None,
+    warm_up_s: float | None,
+    redraw: bool,
+    incidents: Sequence[AnyIncident],
+) -> Scenario:
+    """A scenario as a study drives it; what is None stays the scenario's own, and incidents come on top."""
+    sumo = scenario.sumo
+    sumo = replace(
+        sumo,
+        step_length_s=step_s,
+        action_step_length_s=max(step_s, sumo.action_step_length_s),
+        background_rerouting=sumo.background_rerouting if share is None else share,
+        scale=sumo.scale if scale is None else scale,
+        warm_up_s=sumo.warm_up_s if warm_up_s is None else warm_up_s,
+        redraws_trips=redraw or sumo.redraws_trips,
+    )
+    return replace(scenario, sumo=sumo, incidents=(*scenario.incidents, *incidents))
+
+
+def check_edges(incident: Incident, place: str, scenario: Scenario) -> None:
+    """Checks that an incident is on edges that the network has.
+
+    Raises:
+        UserError: one is missing.
+    """
+    edges = network_of(scenario).edges
+    for name in ("edge", "edges", "from_edge", "to_edge"):
+        value = getattr(incident, name, ())
+        for edge in (value,) if isinstance(value, str) else value:
+            if edge not in edges:
+                raise UnknownNameError(f"edge for cars in {place}", edge, edges)
+
+
 def named(agent: str) -> tuple[str, str]:
     """An agent's name and its model's, from ``NAME`` or ``NAME/MODEL``."""
     name, _, model = agent.partition("/")
@@ -274,8 +323,9 @@ def make_study(values: Mapping[str, Any]) -> StudyPlan:
 
 def _check(values: Mapping[str, Any]) -> StudyPlan:
     """Errors name the option."""
-    return checked(StudyPlan, values, lambda steps: ("the study", _option(str(steps[0])) if steps else ""))
+    return checked(StudyPlan, values, lambda steps: ("the study", option(str(steps[0])) if steps else ""))
 
 
-def _option(name: str) -> str:
+def option(name: str) -> str:
+    """The option of a field of a plan."""
     return "--" + name.removesuffix("_s").replace("_", "-")

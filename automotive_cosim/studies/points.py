@@ -92,8 +92,8 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
     excluded, why = exclusion(pairs, pulses)
     return replace(
         point.decision,
-        excluded=excluded,
-        why=why,
+        excluded=point.decision.excluded or excluded,
+        why=point.decision.why or why,
         branches=tuple(branched(stay, branch, point.group) for branch in branches),
         placebo=None if point.placebo is None else branched(stay, point.placebo, point.group),
         replicates=tuple(

@@ -88,6 +88,11 @@ class Noise:
     others_s: float
     """The same for the sum over the others."""
 
+    @property
+    def is_known(self) -> bool:
+        """Whether any placebo moved anything; if none did, nothing tells a gain from chance."""
+        return self.placebos > 0 and (self.time_s > 0 or self.others_s > 0)
+
 
 def read_study(folder: Path) -> Study:
     """Reads a study's folder, even of a running study.
@@ -162,6 +167,7 @@ def _choice(point: DecisionPoint, policy: Policy, news: News, compliance: float)
         delay_s=decision.delay_s,
         eta_s=decision.eta_s,
         time_index=round(decision.time_index, 3),
+        lost_ahead_s=_lost_ahead_s(point),
         age_s=news.age_s,
         policy=policy.text,
         compliance=compliance,
@@ -184,6 +190,14 @@ def _choice(point: DecisionPoint, policy: Policy, news: News, compliance: float)
         lost=signs.count(-1) / len(signs) if signs else None,
         chose_best=_mean(hits) if signs else None,
     )
+
+
+def _lost_ahead_s(point: DecisionPoint) -> float | None:
+    """The mean over the scored draws; None in rows of earlier versions."""
+    drive, decision = point.drive, point.decision
+    kept = [decision.replicates[draw - 1].stay.totals if draw else drive.stay for draw in decision.scored]
+    lost_s = [each.lost_s for each in kept if each is not None and each.lost_s is not None]
+    return round(fmean(lost_s) - decision.lost_s, 3) if lost_s and decision.lost_s is not None else None
 
 
 def _sign(decision: Decision, draw: int, number: int | None) -> int:

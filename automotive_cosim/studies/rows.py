@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from statistics import fmean
-from typing import Annotated
+from typing import Annotated, Any
 
 from automotive_cosim.run.row import InColumns, JobRow
 from automotive_cosim.traffic.accounts import Pulse
@@ -24,18 +24,42 @@ class Totals:
     fuel_g: float
     energy_wh: float = 0.0
     """Taken from the battery of an electric ego."""
+    lost_s: float | None = None
+    """Time lost to traffic and signals, SUMO's ``timeLoss``; None in rows of earlier versions."""
+
+    @property
+    def way_s(self) -> float | None:
+        """The rest of the time: what the way itself takes, driven as fast as limits and driver allow.
+
+        So a gain of time is the sum of two savings: time not lost (congestion avoided), and a quicker way. The
+        way's own time is what Jahn, Möhring, Schulz and Stier-Moses call its normal length (System-Optimal
+        Routing of Traffic Flows with User Constraints in Networks with Congestion, Operations Research 53, 2005):
+        its time on empty roads, which the traffic does not change.
+        """
+        return None if self.lost_s is None else round(self.time_s - self.lost_s, 3)
 
     @classmethod
     def mean(cls, drives: Sequence[Totals]) -> Totals:
         """The mean over the drives; that of a single one is itself."""
         if len(drives) == 1:
             return drives[0]
-        return cls(
-            **{each.name: round(fmean(getattr(drive, each.name) for drive in drives), 3) for each in fields(cls)}
-        )
+        return cls._made(fmean, drives)
+
+    def saved(self, other: Totals) -> Totals:
+        """What another drive saves over this one."""
+        return Totals._made(lambda values: values[0] - values[1], (self, other))
+
+    @classmethod
+    def _made(cls, of: Callable[[Sequence[float]], float], drives: Sequence[Totals]) -> Totals:
+        """Every figure of the drives in one; None where one lacks it."""
+        made: dict[str, Any] = {}
+        for each in fields(cls):
+            values = [getattr(drive, each.name) for drive in drives]
+            made[each.name] = None if None in values else round(of(values), 3)
+        return cls(**made)
 
 
-NOTHING = Totals(time_s=0.0, distance_m=0.0, stops=0, standing_s=0.0, co2_g=0.0, fuel_g=0.0)
+NOTHING = Totals(time_s=0.0, distance_m=0.0, stops=0, standing_s=0.0, co2_g=0.0, fuel_g=0.0, lost_s=0.0)
 """The savings of keeping the route: none."""
 
 
@@ -219,6 +243,8 @@ class Decision:
     """Distance to the destination."""
     relative_speed: float
     """Mean speed ahead as a share of the free speed."""
+    lost_s: float | None = None
+    """Time that the ego had lost until then; None in rows of earlier versions."""
     complies_above: float = 0.0
     """The driver follows the advice at any compliance above this number, which was drawn from 0 to 1."""
     news: tuple[News, ...]
@@ -360,6 +386,8 @@ class PolicyChoice:
     eta_s: float
     time_index: float
     """Expected travel time divided by that at free flow."""
+    lost_ahead_s: float | None
+    """Time that the kept route lost from there on: the most congestion that another one can avoid."""
     age_s: float
     policy: str
     compliance: float

@@ -45,6 +45,9 @@ class Account:
     """Both from SUMO's emission model for the vehicle's class."""
     energy_wh: float = 0.0
     """From the battery, of an electric one."""
+    lost_s: float = 0.0
+    """SUMO's ``timeLoss``: the time by which it was slower than the limit of each lane and its driver allow, at
+    signals too; the rest of its time is what its way takes on an empty road."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -81,6 +81,8 @@ class EgoPlan:
     """Staged on this drive besides the scenario's own; their times count from its departure."""
     advice_s: float = math.inf
     """For how long the driver keeps to what was asked or advised, and stops when asked to; by default for good."""
+    keeps_stops: bool = False
+    """Whether every other route that the car or SUMO finds passes the rest of the trip's ``via``, as its stops."""
     brakes_early: bool = False
     """Whether the driver brakes early and gently for what stands ahead, as attentive people do. SUMO's model brakes
     as late as it can: from 50 km/h at 21 m."""

@@ -29,11 +29,13 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic.accounts import Pulse, Settled
+from automotive_cosim.scenarios.incidents import Closure, Incident
+from automotive_cosim.traffic.accounts import Account, Pulse, Settled
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.chance import Fresh, Trial
 from automotive_cosim.traffic.divert import Edges
 from automotive_cosim.traffic.drive import Call
+from automotive_cosim.traffic.flow import Advice, FlowPulse, SignalControl
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
@@ -57,6 +59,7 @@ class Forked:
         timeout_s: float = TIMEOUT_S,
         by_replay: bool = not CAN_FORK,
         outputs: Path | None = None,
+        flow_s: float | None = None,
     ) -> None:
         """Loads the scenario and warms up its traffic.
 
@@ -69,13 +72,14 @@ class Forked:
             by_replay: make copies by replaying everything instead of forking.
             outputs: an empty folder for SUMO's own outputs; the warm traffic writes to ``warm`` in it, each drive
                 and branch to its ``drive-N``, from the start of the simulation, complete when it is closed.
+            flow_s: write the flow on every edge in intervals of this length instead, from the end of the warm-up.
 
         Raises:
             ScenarioError: the scenario cannot be loaded.
             SetupError: libsumo is missing or unsuitable.
             TrafficError: the process died or hung.
         """
-        setup = Setup(scenario, seed, allow_unprojected, outputs)
+        setup = Setup(scenario, seed, allow_unprojected, outputs, flow_s)
         self._source = _Source(setup, timeout_s, by_replay=by_replay, progress=progress)
         self._is_closed = False
         self._fresh: Fresh | None = None
@@ -125,6 +129,14 @@ class Forked:
             except (SetupError, TrafficError):  # the copy may have died of it
                 self._fresh = Fresh.JITTER
         return self._fresh
+
+    def copy(self) -> RemoteFlow:
+        """A copy of the watched traffic, without an ego.
+
+        Raises:
+            TrafficError: the simulation died or hung.
+        """
+        return self._source.flowing()
 
     @property
     def memory_bytes(self) -> int:
@@ -219,6 +231,11 @@ class RemoteTraffic:
         seen: tuple[tuple[str, ...], Pulse] = self._process.call("others")
         return seen
 
+    def account(self) -> Account:
+        """Figures of the ego's drive so far, in a watched simulation."""
+        account: Account = self._process.call("account")
+        return account
+
     def renew(self, fresh: Fresh, seed: int) -> None:
         """Gives everything from here on other random numbers; the same seed gives the same ones."""
         self._process.call("renew", fresh, seed)
@@ -234,7 +251,7 @@ class RemoteTraffic:
         Raises:
             ScenarioError: there is no such edge for cars.
         """
-        self._process.call("shut", edge)
+        self._process.call("stage", Closure(edge=edge))
 
     def begin_settling(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> None:
         """Lets a watched simulation run until the ego's drive has ended and a share of each group has arrived.
@@ -290,6 +307,54 @@ class RemoteTraffic:
             self._calls.append(call)
 
 
+class RemoteFlow:
+    """A copy of the warm traffic in a process of its own, without an ego, from that instant on."""
+
+    def __init__(self, process: RemoteProcess, outputs: Path | None) -> None:
+        self._process = process
+        self.outputs = outputs
+        """Folder of SUMO's own outputs, complete when this is closed; None without any."""
+
+    def apply(self, measure: Incident | Advice | SignalControl, seed: int) -> None:
+        """Takes a measure now; the times of incidents count from the end of the warm-up.
+
+        Args:
+            measure: what to do.
+            seed: who is advised.
+
+        Raises:
+            ScenarioError: it does not fit the network.
+        """
+        match measure:
+            case Advice():
+                self._process.call("advise", measure, seed)
+            case SignalControl():
+                self._process.call("control", measure)
+            case Incident():
+                self._process.call("stage", measure)
+
+    def begin(self, duration_s: float, every_s: float) -> None:
+        """Lets it run; both times are multiples of the step, and the first is one of the second.
+
+        Raises:
+            TrafficError: it died.
+        """
+        self._process.send("flow", duration_s, every_s)
+
+    def ended(self) -> tuple[FlowPulse, ...]:
+        """Waits for the end; returns the traffic at the beginning and at the end of every period.
+
+        Raises:
+            TrafficError: SUMO stopped at an error, died or hung.
+        """
+        pulses: tuple[FlowPulse, ...] = self._process.receive()
+        return pulses
+
+    def close(self) -> None:
+        """Ends the process."""
+        self._process.close()
+
+
 class _Source:
     """The source of copies of a warm simulation."""
 
@@ -321,6 +386,12 @@ class _Source:
             process.close()
             raise
         return RemoteTraffic(self, process, plan, calls, state)
+
+    def flowing(self) -> RemoteFlow:
+        """A copy without an ego."""
+        with self._lock:
+            process = self._copied()
+            return RemoteFlow(process, self._outputs_of(self._drives))
 
     def branched(self, process: RemoteProcess, plan: EgoPlan, state: DrivingState) -> RemoteTraffic:
         """A drive that continues from where another one is."""
@@ -387,7 +458,10 @@ class _Source:
 
     def _next_outputs(self) -> Path | None:
         self._drives += 1
-        return self._writing(f"drive-{self._drives}").outputs
+        return self._outputs_of(self._drives)
+
+    def _outputs_of(self, drive: int) -> Path | None:
+        return self._writing(f"drive-{drive}").outputs
 
     def _taken(self) -> RemoteProcess:
         """A warm process of its own."""

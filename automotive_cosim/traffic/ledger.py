@@ -92,6 +92,16 @@ class Ledger:
                 )
         return found
 
+    def consumed_by_class(self) -> dict[str, tuple[int, float, float, float, float, float]]:
+        """What all vehicles so far have emitted and consumed, see ``flow.FlowPulse``; empty if not recorded."""
+        found: dict[str, tuple[int, float, float, float, float, float]] = {}
+        for each in self.consumptions(self._consumed or ()).values():
+            count, *sums = found.get(each.emission_class, (0, 0.0, 0.0, 0.0, 0.0, 0.0))
+            more = each.co2_g, each.nox_g, each.fuel_g, each.energy_wh, each.noise_s
+            co2_g, nox_g, fuel_g, energy_wh, noise_s = (one + two for one, two in zip(sums, more, strict=True))
+            found[each.emission_class] = count + 1, co2_g, nox_g, fuel_g, energy_wh, noise_s
+        return found
+
     def _note_ego(self) -> None:
         vehicle, before, step_s = self._sumo.vehicle, self._ego, self._step_s
         halted = self._sumo.speed(EGO) <= HALTED_MPS
@@ -102,6 +112,7 @@ class Ledger:
             before.co2_g + vehicle.getCO2Emission(EGO) * step_s / 1000,
             before.fuel_g + vehicle.getFuelConsumption(EGO) * step_s / 1000,
             before.energy_wh + vehicle.getElectricityConsumption(EGO) * step_s,
+            vehicle.getTimeLoss(EGO),
         )
         self._ego_is_halted = halted
         if self._track is not None:

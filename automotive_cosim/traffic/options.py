@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file
@@ -56,8 +57,15 @@ FIXED = {"collision.action": "remove"}
 SCRATCH = "automotive-cosim-"
 """Beginning of the name of a simulation's scratch folder."""
 
-OUTPUTS = ("fcd.xml", "tripinfo.xml")
+EDGE_FLOWS, QUEUES = "edges.xml", "queues.xml"
+OUTPUTS = ("fcd.xml", "tripinfo.xml", EDGE_FLOWS, QUEUES)
 """SUMO's own outputs that a run may write."""
+
+QUEUE_PERIOD_S = 10.0
+"""Simulated time between two measurements of the queues."""
+
+FLOW_ATTRIBUTES = "sampledSeconds timeLoss waitingTime speed entered left"
+"""What is written of the flow on an edge."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,6 +80,9 @@ class Setup:
     outputs: Path | None = None
     """Folder for SUMO's own outputs: the ego's positions (``fcd.xml``) and everybody's trips (``tripinfo.xml``),
     the ego's with its emissions."""
+    flow_s: float | None = None
+    """Length of the intervals in which the flow on every edge (``edges.xml``) and the queues (``queues.xml``) are
+    written instead, from the end of the warm-up; None for the ego's outputs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,6 +275,16 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
         roads = network or read_network(configuration.net)
         random_traffic.write(configuration.folder / drawn, roads, sumo.random_traffic_per_km_h, setup.seed)
         inputs.setdefault("additional-files", []).append(drawn)
+    if setup.outputs is not None and setup.flow_s is not None:
+        wanted = "flow.add.xml"
+        begin_s = configuration.begin_s + sumo.warm_up_s
+        path = quoteattr(str(setup.outputs / EDGE_FLOWS))
+        (configuration.folder / wanted).write_text(
+            f'<additional><edgeData id="flow" file={path} begin="{begin_s:g}" period="{setup.flow_s:g}" '
+            f'excludeEmpty="true" withInternal="true" writeAttributes="{FLOW_ATTRIBUTES}"/></additional>',
+            encoding="utf-8",
+        )
+        inputs.setdefault("additional-files", []).append(wanted)
     options |= {name: ",".join(names) for name, names in inputs.items() if names}
     options |= {
         "step-length": f"{step_s:g}",
@@ -274,7 +295,14 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
     }
     if sumo.lateral_resolution_m is not None:
         options["lateral-resolution"] = f"{sumo.lateral_resolution_m:g}"
-    if setup.outputs is not None:
+    if setup.outputs is not None and setup.flow_s is not None:
+        options |= {
+            "queue-output": str(setup.outputs / QUEUES),
+            "queue-output.period": f"{QUEUE_PERIOD_S:g}",
+            "queue-output.skip-empty": "true",
+            "precision": "4",
+        }
+    elif setup.outputs is not None:
         options |= {
             "fcd-output": str(setup.outputs / "fcd.xml"),
             "fcd-output.skip-empty": "true",

@@ -22,14 +22,16 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
-from automotive_cosim.errors import CosimError, TrafficError
-from automotive_cosim.traffic.accounts import Pulse, Settled
+from automotive_cosim.errors import CosimError, ScenarioError, TrafficError
+from automotive_cosim.scenarios.incidents import Incident
+from automotive_cosim.traffic.accounts import Account, Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
 from automotive_cosim.traffic.divert import Edges, divert
 from automotive_cosim.traffic.drive import Call, EgoDrive
+from automotive_cosim.traffic.flow import Advice, Advisor, FlowPulse, SignalControl, control
 from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.sumo import load_library
@@ -63,6 +65,7 @@ class Server:
         self._world: World | None = None
         self._drive: EgoDrive | None = None
         self._ledger: Ledger | None = None
+        self._advisor: Advisor | None = None
         self._last_beat_s = 0.0
         self._beat_s = BEAT_S
 
@@ -185,6 +188,11 @@ class Server:
         assert self._ledger is not None
         return self._ledger.others(), self._ledger.pulse()
 
+    def do_account(self) -> Account:
+        """Figures of the ego's drive so far."""
+        assert self._ledger is not None
+        return self._ledger.account()
+
     def do_settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> tuple[Packed, Settled]:
         """Runs until everything has ended; returns the ego's last state and the outcome."""
         assert self._world is not None
@@ -206,10 +214,38 @@ class Server:
         """Sends a share of the other cars another way; returns who took it, and how many could have."""
         return divert(load_library(), old, new, share, seed)
 
-    def do_shut(self, edge: str) -> None:
-        """Closes a road in this copy."""
+    def do_stage(self, incident: Incident) -> None:
+        """Stages an incident in this copy."""
         assert self._world is not None
-        self._world.shut(edge)
+        self._world.stage(incident)
+
+    def do_advise(self, advice: Advice, seed: int) -> None:
+        """Advises other cars in this copy."""
+        assert self._world is not None
+        self._advisor = self._world.advisor(advice, seed)
+
+    def do_control(self, signals: SignalControl) -> None:
+        """Controls the signals of this copy in another way.
+
+        Raises:
+            ScenarioError: there are none.
+        """
+        if not control(load_library(), signals):
+            raise ScenarioError("the network has no signals to control in another way")
+
+    def do_flow(self, duration_s: float, every_s: float) -> tuple[FlowPulse, ...]:
+        """Lets the traffic run without an ego; returns its state now and at the end of every period."""
+        pulses = [self._flow_pulse()]
+        for _ in range(round(duration_s / every_s)):
+            self.do_run_on(every_s)
+            pulses.append(self._flow_pulse())
+        return tuple(pulses)
+
+    def _flow_pulse(self) -> FlowPulse:
+        assert self._ledger is not None
+        assert self._world is not None
+        ledger = self._ledger
+        return FlowPulse(ledger.pulse(), len(ledger.arrivals_s), self._world.slowed(), ledger.consumed_by_class())
 
     def do_bare_steps(self, count: int) -> None:
         """Steps of SUMO only."""
@@ -232,6 +268,8 @@ class Server:
     def _after_step(self) -> None:
         if self._ledger is not None:
             self._ledger.note()
+        if self._advisor is not None:
+            self._advisor.after_step()
         self._beat()
 
     # --- signs of life ------------------------------------------------------------------------------------

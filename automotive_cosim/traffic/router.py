@@ -13,7 +13,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from itertools import pairwise
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from automotive_cosim.contracts import RouteOption
 from automotive_cosim.traffic.congestion import NOTHING, SEEN_AT_LEAST, Congestion, Tally
@@ -75,16 +75,32 @@ class Router:
             edge.edge_id: edge.length_m / edge.speed_mps + (SIGNAL_WAIT_S if edge.edge_id in signalled else 0.0)
             for edge in network.edges.values()
         }
+        self._heard_s: Mapping[str, float] = {}
+        """Travel times of the news that was listened to last."""
         self._changed: tuple[str, ...] = ()
         """Edges whose weight differs from free roads."""
         self._write(self._free_s)
 
-    def quickest(self, start: str, goals: Iterable[str]) -> tuple[str, ...]:
-        """The quickest route now from an edge to the destination that is reached first; empty if none can be."""
+    def quickest(self, start: str, goals: Iterable[str], via: Sequence[str] = ()) -> tuple[str, ...]:
+        """The quickest route now from an edge, through others, to the destination that is reached first; empty if
+        none can be."""
         self._put(self._traffic(0.0).edges_s)
-        routes = [self._route(start, goal) for goal in goals]
-        found = min((route for route in routes if route.edges), key=lambda route: route.travelTime, default=None)
-        return () if found is None else tuple(found.edges)
+        routes = [self._route(start, goal, via) for goal in goals]
+        _, found = min((route for route in routes if route[1]), key=lambda route: route[0], default=(0.0, ()))
+        return found
+
+    def listen(self, age_s: float) -> None:
+        """Takes in news of that age, for the offers that follow."""
+        self._heard_s = self._traffic(age_s).edges_s
+        self._put(self._heard_s)
+
+    def offer(self, route: Sequence[str]) -> tuple[float, tuple[str, ...]]:
+        """What the quickest way to the end of a route saves, in seconds, and that way, by the news listened to."""
+        _, way = self._route(route[0], route[-1], ())
+        own_s, other_s = (
+            sum(self._heard_s.get(edge, self._free_s.get(edge, 0.0)) for edge in each) for each in (route, way)
+        )
+        return own_s - other_s, way
 
     def is_quicker(self, way: Sequence[str], other: Sequence[str], driven_m: float) -> bool:
         """Whether one route is quicker now than another from the same edge, of which ``driven_m`` are driven."""
@@ -92,7 +108,7 @@ class Router:
         return self._option(way, traffic, driven_m).eta_s < self._option(other, traffic, driven_m).eta_s
 
     def alternatives(
-        self, route: Sequence[str], fixed: int, driven_m: float, age_s: float = 0.0
+        self, route: Sequence[str], fixed: int, driven_m: float, age_s: float = 0.0, via: Sequence[str] = ()
     ) -> tuple[RouteOption, ...]:
         """The present route and up to ``MOST`` others, the quickest first.
 
@@ -101,6 +117,7 @@ class Router:
             fixed: how many of them can no longer be changed.
             driven_m: distance driven on the first edge.
             age_s: age of the news, at most ``congestion.OLDEST_NEWS_S``.
+            via: edges that every other route passes too, in their order.
         """
         traffic = self._traffic(age_s)
         network, weights = self._network, dict(traffic.edges_s)
@@ -110,7 +127,7 @@ class Router:
             for edge_id in found:
                 weights[edge_id] = PENALTY * weights.get(edge_id, self._free_s[edge_id])
             self._put(weights)
-            way = self._route(route[fixed - 1], route[-1]).edges
+            _, way = self._route(route[fixed - 1], route[-1], via)
             if not way or len(taken) > MOST:
                 break
             found = (*route[: fixed - 1], *way)
@@ -183,8 +200,15 @@ class Router:
         for edge_id, seconds in edges_s.items():
             self._sumo.adapt_travel_time(edge_id, seconds, NEVER_S, 2 * NEVER_S)
 
-    def _route(self, start: str, goal: str) -> Any:
-        return self._sumo.find_route(start, goal, self._type, NEVER_S)
+    def _route(self, start: str, goal: str, via: Sequence[str]) -> tuple[float, tuple[str, ...]]:
+        """Travel time and edges of the quickest route by the weights; no edges if there is none."""
+        time_s, edges = 0.0, (start,)
+        for here, there in pairwise((start, *via, goal)):
+            found = self._sumo.find_route(here, there, self._type, NEVER_S)
+            if not found.edges:
+                return 0.0, ()
+            time_s, edges = time_s + found.travelTime, (*edges, *found.edges[1:])
+        return time_s, edges
 
 
 def _sum(seen: Iterable[Tally]) -> Tally:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from itertools import pairwise
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, lon_lat
@@ -49,12 +50,22 @@ KEEPS_ROUTE = say("this is the quickest route")
 class SumoPedals:
     """Implements ``ego.Pedals``."""
 
-    def __init__(self, sumo: LibSumo, ego_id: str, network: Network, sensor: Sensor, router: Router) -> None:
+    def __init__(
+        self,
+        sumo: LibSumo,
+        ego_id: str,
+        network: Network,
+        sensor: Sensor,
+        router: Router,
+        stops: Sequence[str] = (),
+    ) -> None:
+        """Takes the ego over; ``stops`` are edges that every route to the present destination passes."""
         self._sumo = sumo
         self._ego = ego_id
         self._network = network
         self._sensor = sensor
         self._router = router
+        self._stops = tuple(stops)
         self._service_mps2: float = sumo.vehicle.getDecel(ego_id)
         self._expected_mps2 = self._service_mps2
         """How hard those behind expect the driver to brake: as hard as he can, however gently he means to."""
@@ -214,7 +225,7 @@ class SumoPedals:
         """The quickest route now to the destination, or to an edge within a short walk of it."""
         _, planned = self._fixed()
         for goals in (self._goals(destination, state), self._beside(destination)):
-            if way := self._router.quickest(planned[-1], goals):
+            if way := self._router.quickest(planned[-1], goals, () if destination else self._stops_left()):
                 found, rest = (*planned[:-1], *way), self._rest()
                 is_better = bool(destination) or self._router.is_quicker(found, rest, self._driven_m())
                 return found if is_better else rest
@@ -237,7 +248,13 @@ class SumoPedals:
         """See ``drive.Road``; empty inside a junction."""
         if self._sumo.edge_of(self._ego).startswith(":"):
             return ()
-        return self._router.alternatives(self._rest(), len(self._fixed()[1]), self._driven_m(), age_s)
+        fixed = len(self._fixed()[1])
+        return self._router.alternatives(self._rest(), fixed, self._driven_m(), age_s, self._stops_left())
+
+    def _stops_left(self) -> tuple[str, ...]:
+        """The stops on the rest of the route, after what can no longer be changed."""
+        rest = self._rest()[len(self._fixed()[1]) :]
+        return tuple(stop for stop in self._stops if stop in rest)
 
     def _rest(self) -> tuple[str, ...]:
         """The route from the present edge."""

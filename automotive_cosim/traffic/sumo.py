@@ -93,6 +93,7 @@ class LibSumo:
         self.junction: Any = library.junction
         self.person: Any = library.person
         self.simulation: Any = simulation
+        self.lights: Any = library.trafficlight
         self.light_ids: Callable[[], Sequence[str]] = library.trafficlight.getIDList
         self.controlled_links: Callable[[str], Sequence[Sequence[tuple[str, str, str]]]] = (
             library.trafficlight.getControlledLinks

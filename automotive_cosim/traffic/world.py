@@ -12,12 +12,13 @@ from pathlib import Path
 from automotive_cosim.contracts import EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.scenarios import Trip
-from automotive_cosim.scenarios.incidents import Closure
+from automotive_cosim.scenarios.incidents import Incident
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
+from automotive_cosim.traffic.flow import Advice, Advisor
 from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
@@ -87,6 +88,7 @@ class World:
         """The incidents of the last step."""
         self.arrived: Sequence[str] = ()
         """Vehicles that left in the last step."""
+        self._limits_mps = self._read_limits() if setup.flow_s is not None else {}
         self._sample_steps = max(1, round(SAMPLE_PERIOD_S / self.step_s))
         self._sensor: Sensor | None = None
         self._is_watched = True
@@ -177,7 +179,10 @@ class World:
         self._has_incidents = self._has_incidents or bool(plan.incidents)
         if self._situations.take_changes():
             sensor.refresh()
-        pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router)
+        stops = plan.trip.via if plan.keeps_stops else ()
+        if stops:
+            self._sumo.vehicle.setVia(EGO, stops)
+        pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router, stops)
         road = EgoRoad(self, self._sumo, sensor, pedals, round_)
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
 
@@ -203,14 +208,27 @@ class World:
         """One step of SUMO only."""
         self._sumo.step()
 
-    def shut(self, edge: str) -> None:
-        """Closes a road for good from the next whole second on, see ``incidents.Closure``.
+    def stage(self, incident: Incident) -> None:
+        """Stages one more incident, whose times count like those of the others.
 
         Raises:
-            ScenarioError: there is no such edge for cars.
+            ScenarioError: it does not fit the network, such as an edge that is not for cars.
         """
-        self._situations.add(Closure(edge=edge))
+        self._situations.add(incident)
         self._has_incidents = True
+
+    def slowed(self) -> dict[str, float]:
+        """Edges whose limit has changed since the beginning, and their limit now as a share of it."""
+        now = self._read_limits() if self._limits_mps else {}
+        return {edge: now[edge] / limit for edge, limit in self._limits_mps.items() if now[edge] != limit}
+
+    def _read_limits(self) -> dict[str, float]:
+        """Speed of the first lane for cars of every edge."""
+        return {name: self._sumo.lane_speed(edge.lane_ids[0]) for name, edge in self.network.edges.items()}
+
+    def advisor(self, advice: Advice, seed: int) -> Advisor:
+        """Begins to advise other cars, with a search of its own."""
+        return Advisor(self._sumo, Router(self._sumo, self.network, self.congestion, SEARCHING_TYPE), advice, seed)
 
     def close(self) -> None:
         """Ends the simulation."""

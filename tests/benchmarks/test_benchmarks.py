@@ -39,6 +39,7 @@ CASES = {
     "decisions": Smallest(("--decisions", "40", "--envs", "1", "--only", "flat")),
     "default_limits": Smallest(("limits.json",)),
     "drives": Smallest(("--minutes", "0")),
+    "exchange": Smallest(("--scenarios", "grid"), program="qc_opendrive"),
     "eta": Smallest(("grid", "--seeds", "1", "--at", "5", "--step", "1")),
     "faults": Smallest(("--parts", "resets", "--resets", "1")),
     "futures": Smallest(
@@ -59,6 +60,7 @@ CASES = {
     ),
     "geo_context": Smallest(("2",)),
     "large_imports": Smallest(("--edges", "60")),
+    "logical_scenarios": Smallest(("--only", "speeding", "--tries", "1", "--minutes", "1")),
     "looking": Smallest(("grid", "2")),
     "pages": Smallest(("1",), needs=("playwright",), program="chromium"),
     "peers": Smallest(("grid", "--seconds", "5", "--repeats", "1")),

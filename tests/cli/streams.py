@@ -11,6 +11,7 @@ import os
 import signal
 import sys
 import tempfile
+import traceback
 from collections.abc import Callable
 from typing import IO
 
@@ -71,7 +72,7 @@ def _child(words: list[str], output: str, told: IO[bytes]) -> None:
     except SystemExit as end:
         code = int(end.code or 0)
     except BaseException:
-        sys.excepthook(*sys.exc_info())
+        traceback.print_exc()
     try:
         if sys.stdout is not None:
             sys.stdout.flush()

@@ -108,6 +108,7 @@ OTHERS = {
     ("a2a",), ("mcp",), ("serve",), ("measures",), ("report",), ("show", "screens"), ("show", "schema"),
     ("tasks", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
     ("scenarios", "download"), ("publish", "bundle"), ("publish", "leaderboard"),
+    ("export",),
 }  # fmt: skip
 """Commands whose result is a file, or a server."""
 

@@ -19,7 +19,9 @@ def record(folder: Path) -> Path:
     ]
     for second in range(5):
         seen = [[0, 0.0, 20.0 * second, 0.0, 20.0, 0], [1, 0.0, 77.0 + 10.0 * second, 0.0, 10.0, 0]]
-        lines.append({"at_s": float(second), "seen": seen, "lights": {}, "sun_deg": None, "incidents": []})
+        lines.append(
+            {"at_s": float(second), "seen": seen, "lights": {}, "local_time": "", "sun_deg": None, "incidents": []}
+        )
     with gzip.open(folder / "road.jsonl.gz", "wt") as file:
         file.writelines(json.dumps(line) + "\n" for line in lines)
     return folder

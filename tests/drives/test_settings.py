@@ -7,6 +7,7 @@ import pytest
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.script import read_script, script_json
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
+from automotive_cosim.drives.staging import ON_REQUEST
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.jobs import DriveJob
@@ -33,6 +34,25 @@ def test_rain_only_adds() -> None:
     made = DriveSettings(rain_mm_h=10.0).applied(drawn)
     assert all(each.weather.precipitation >= 10.0 for each in made.weather)
     assert all(51 <= each.weather.weather_code <= 99 for each in made.weather)
+
+
+def test_one_thing_is_staged_instead_of_all_others() -> None:
+    for number, kind in enumerate(("nothing", *ON_REQUEST)):
+        drawn = family_named("autobahn_july").draw(number)
+        made = DriveSettings(stage=kind, stage_s=90.0, ahead_m=700.0, aboard="child").applied(drawn)
+        assert [(one.kind, one.at_s) for one in made.staged] == ([] if kind == "nothing" else [(kind, 90.0)])
+        assert [(one.seat, one.kind) for one in made.aboard] == [("rear_right", "child")]
+        assert all(each.from_s == 90.0 for each in made.incidents)
+        assert made.weather[0].at_s == 0
+        assert made.weather[0].weather == drawn.weather[0].weather
+        assert (made.start, made.trips, made.arrivals) == (drawn.start, drawn.trips, drawn.arrivals)
+        assert read_script(script_json(made)) == made
+        causes = (*made.moods, *made.halts, *made.changes, *made.incidents, *made.weather[1:])
+        assert bool(causes or made.driven_s) == (kind != "nothing")
+    (ahead,) = DriveSettings(stage="breakdown", ahead_m=700.0).applied(drawn).incidents
+    assert ahead.ahead_m == 700.0
+    assert DriveSettings(aboard="nobody").applied(drawn).aboard == ()
+    assert DriveSettings(aboard="nobody").applied(drawn).staged == drawn.staged
 
 
 def test_settings_name_another_drive() -> None:

@@ -263,7 +263,7 @@ def test_however_often_it_is_terminated_an_import_leaves_nothing(
     while importing.poll() is None:
         importing.send_signal(signal.SIGTERM)
         time.sleep(0.001)
-    assert importing.returncode == 143
+    assert importing.returncode in (143, -signal.SIGTERM)  # the same to a shell; the latter as the interpreter ends
     assert list(tmp_path.iterdir()) == []
 
 

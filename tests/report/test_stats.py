@@ -119,14 +119,11 @@ def test_only_shared_instances_are_compared():
 
 
 @given(st.lists(st.booleans(), min_size=1, max_size=8), st.integers(1, 8))
-def test_pass_hat_k_is_the_share_of_draws_without_a_failure(trials, k):
+def test_shares_of_pass_k_are_those_of_all_draws(trials, k):
     draws = list(itertools.combinations(trials, k))
-    wanted = sum(map(all, draws)) / len(draws) if draws else None
-    assert stats.pass_hat_k({"x": trials}, k) == (None if wanted is None else pytest.approx(wanted))
-
-
-def test_pass_hat_k_is_taken_over_instances():
-    assert stats.pass_hat_k({1: [True, True], 2: [True, False], 3: [True]}, 2) == pytest.approx(0.5)
+    for share, holds in ((stats.all_pass, all), (stats.any_passes, any)):
+        wanted = sum(map(holds, draws)) / len(draws) if draws else None
+        assert share(trials, k) == (None if wanted is None else pytest.approx(wanted))
 
 
 @pytest.mark.parametrize(

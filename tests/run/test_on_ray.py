@@ -92,7 +92,7 @@ def marked(mark):
     return {pid: words for pid, words in found.items() if words}
 
 
-def until(true, within_s=60.0):
+def until(true, within_s=150.0):
     end_s = time.monotonic() + within_s
     while not true():
         assert time.monotonic() < end_s, "did not come about"

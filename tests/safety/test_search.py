@@ -11,11 +11,11 @@ import pytest
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.stats import upper_bound
 from automotive_cosim.run.plan import make_plan, read_plan
-from automotive_cosim.safety.findings import as_json, coverage, tables, unseen
+from automotive_cosim.safety.findings import as_json, coverage, sensitivity, tables, unseen
 from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.page import suite
-from automotive_cosim.safety.samplers import SAMPLERS, make_sampler
+from automotive_cosim.safety.samplers import SAMPLERS, even_points, make_sampler
 from automotive_cosim.safety.space import FactorChoices, FactorRange, SearchPoint, Space, read_space
 
 SPACE = Space(
@@ -189,3 +189,31 @@ def test_a_space_is_read_with_its_nominal_values(tmp_path: Path) -> None:
     assert dict(space.nominal) == {"drive": "grid_january", "latency_s": 0.0, "visibility_m": 5000.0}
     assert space.at([0.9, 0.5, 0.5]) == {"drive": "grid_june", "latency_s": 4.5, "visibility_m": 500.0}
     assert space.rule.drive_value_below == 50
+
+
+@pytest.mark.parametrize("sampler", SAMPLERS)
+def test_the_even_points_are_known_before_anything_is_learnt(sampler: str) -> None:
+    for package in {"cma": ["cma"], "bayes": ["optuna"], "sobol": ["scipy"]}.get(sampler, []):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            pytest.importorskip(package)
+    ahead = list(even_points(make_sampler(sampler, SPACE, 24, 1), 24))
+    even = [each.point for each in searched(sampler, 24).samples if each.even]
+    assert ahead == even
+    assert len(ahead) >= 6
+
+
+def test_sensitivity_is_that_of_the_margin() -> None:
+    def additive(point: SearchPoint) -> float:
+        return 0.5 + (0.3 if point["driver"] == "hurried" else 0.0) - (float(point["hour"]) - 14) / 100
+
+    found = searched("sobol", 128, additive)
+    shares = {factor.name: (share, rank) for factor, share, rank in sensitivity(found)}
+    assert next(iter(shares)) == "driver"
+    assert shares["driver"][0] == pytest.approx(0.9, abs=0.06)
+    assert shares["hour"][0] == pytest.approx(0.1, abs=0.06)
+    assert shares["hour"][1] is not None
+    assert shares["hour"][1] < -0.2
+    assert shares["visibility_m"][0] < 0.05
+    assert "Sensitivity" in [table.title for table in tables(found)]
+    assert sensitivity(searched("sobol", 8, additive)) == []

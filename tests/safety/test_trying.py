@@ -18,6 +18,7 @@ from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import run_with
+from automotive_cosim.safety.dossier.filing import write_dossier
 from automotive_cosim.safety.hunt import Hunt, hunt
 from automotive_cosim.safety.page import FINDINGS, PAGE, PLANS, write_findings
 from automotive_cosim.safety.samplers import make_sampler
@@ -65,6 +66,9 @@ def test_a_search_finds_what_is_planted_and_goes_on(tmp_path: Path, simulations:
     assert "latency_s at least" in page.read_text()
     assert (folder / FINDINGS).is_file()
     assert make_plan({**_read(folder / PLANS / "01.toml")}).jobs()
+    dossier, _ = write_dossier(folder)
+    assert minimal.words(SPACE) in dossier.read_text("utf-8")
+    assert (dossier.parent / "data" / PLANS / "01.toml").is_file()
     results = read_results(folder)
     assert results.coverage.problem == ""
     assert not results.coverage.not_run

@@ -70,6 +70,8 @@ def test_the_gain_is_the_one_reckoned_by_hand(driven: tuple[DriveRow, Path]) -> 
     assert branch.gains.time_s == pytest.approx(stay_s - other_s, abs=1.0)
     assert branch.gains.distance_m == pytest.approx(length_m("main") - length_m("out", "back"), abs=1e-6)
     assert branch.gains.stops == 0
+    assert (stay.way_s, branch.totals.way_s) == pytest.approx((2000.0 / SPEED_MPS, 2500.0 / SPEED_MPS), abs=2.0)
+    assert branch.gains.lost_s == pytest.approx(stay_s - other_s + 50.0, abs=3.0), "all of it, and the detour's"
     assert branch.others.gain_s == 0, "the lorries never have the ego before them"
 
 
@@ -85,6 +87,7 @@ def test_sumos_own_outputs_say_the_same(driven: tuple[DriveRow, Path]) -> None:
         assert totals.standing_s == pytest.approx(trip.standing_s, abs=1e-6)
         assert totals.co2_g == pytest.approx(trip.co2_g, rel=0.005), "to the step in which it arrives"
         assert totals.fuel_g == pytest.approx(trip.fuel_g, rel=0.005)
+        assert totals.lost_s == pytest.approx(trip.lost_s, abs=1.0), "to the step in which it arrives"
 
 
 def test_they_say_the_same_where_cars_stop_and_waver(tmp_path: Path) -> None:
@@ -97,8 +100,8 @@ def test_they_say_the_same_where_cars_stop_and_waver(tmp_path: Path) -> None:
     told = futures(row)
     assert any(totals.stops for totals in told)
     for totals, trip in paired(told, trips(tmp_path)):
-        for name in ("time_s", "distance_m", "stops", "standing_s"):
-            assert getattr(totals, name) == pytest.approx(getattr(trip, name), abs=0.5), name
+        for name in ("time_s", "distance_m", "stops", "standing_s", "lost_s"):
+            assert getattr(totals, name) == pytest.approx(getattr(trip, name), abs=1.0), name
         assert totals.co2_g == pytest.approx(trip.co2_g, rel=0.02)
 
 
@@ -129,6 +132,7 @@ def trips(outputs: Path) -> Iterator[Totals]:
                     standing_s=float(trip.attrib["waitingTime"]),
                     co2_g=float(emissions.attrib["CO2_abs"]) / 1000,
                     fuel_g=float(emissions.attrib["fuel_abs"]) / 1000,
+                    lost_s=float(trip.attrib["timeLoss"]),
                 )
 
 

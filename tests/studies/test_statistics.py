@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import product
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -13,19 +15,23 @@ from automotive_cosim.contracts import EgoEnd, Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.studies import compare, policies
 from automotive_cosim.studies.compare import Future
+from automotive_cosim.studies.drive import left_out
 from automotive_cosim.studies.everyone import gini, spread
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
+from automotive_cosim.studies.page import answer
 from automotive_cosim.studies.plan import StudyPlan, make_study
 from automotive_cosim.studies.points import Diverted, Drawn, Point, compared, shows_signs
 from automotive_cosim.studies.policies import best, chosen, parse_policy
-from automotive_cosim.studies.results import Noise, choices, noise
-from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals, Replicate
-from automotive_cosim.studies.tables import outcomes
+from automotive_cosim.studies.results import Noise, Study, choices, noise
+from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, Decision, DriveRow, News, OthersTotals, Replicate
+from automotive_cosim.studies.tables import outcomes, parts
 from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.studies.warnings import warnings
 from automotive_cosim.traffic.accounts import Account, Pulse, Settled
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.scripted import Scripted, Stretch
 
+STAY_LOST_S = 120.0
 OTHERS = OthersTotals(count=3, gain_s=4.0, changed=1, unfinished_stay=0, unfinished=0)
 
 
@@ -60,7 +66,7 @@ def drive(*decisions: Decision, seed: int = 0) -> DriveRow:
         seed=seed,
         departure_s=0.0,
         trip="avenue",
-        stay=replace(NOTHING, time_s=200.0),
+        stay=replace(NOTHING, time_s=200.0, lost_s=STAY_LOST_S),
         decisions=decisions,
     )
 
@@ -219,6 +225,84 @@ def test_gains_up_to_what_the_placebos_change_are_ties() -> None:
     assert noise([decision(1.0)]).time_s == 0
 
 
+def parted(gain_s: float, avoided_s: float, lost_s: float) -> Decision:
+    """One whose kept route loses that time, and whose branch avoids some of it."""
+    gains = replace(NOTHING, time_s=gain_s, lost_s=avoided_s)
+    return replace(
+        decision(0.0),
+        branches=(replace(branch(0.0), gains=gains),),
+        lost_s=STAY_LOST_S - lost_s,
+        placebo=branch(3.0),
+    )
+
+
+def study(rows: Sequence[DriveRow], **more: Any) -> Study:
+    """Of the grid at its own steps."""
+    return Study(Path(), {}, StudyPlan("grid", step_s=0.1, policies=("never", "always"), **more), tuple(rows))
+
+
+def seeds(count: int, made: Decision, **more: Any) -> list[DriveRow]:
+    return [replace(drive(made, seed=seed), trip=f"t{seed % 2}", **more) for seed in range(count)]
+
+
+def test_a_gain_is_congestion_avoided_and_way_saved() -> None:
+    rows = seeds(30, parted(50.0, 80.0, 90.0))
+    for each in choices(rows, ("always",)):
+        assert (each.gain.lost_s, each.gain.way_s, each.lost_ahead_s) == (80.0, -30.0, 90.0)
+    table = parts(study(rows))
+    assert [cell.split(" ")[0] for cell in map(str, table.rows[0][3:6])] == ["+50.0", "+80.0", "−30.0"]
+    assert answer(study(rows)).startswith(
+        "Rerouting by “always” saves 50 s (50 to 50) a decision, as 80 s less are lost in congestion and the way "
+        "itself takes 30 s more, over"
+    )
+    old = replace(drive(decision(50.0)), stay=replace(NOTHING, lost_s=None))
+    assert not parts(study([old])).rows, "rows of earlier versions do not say"
+
+
+def test_a_route_leaves_out_what_is_ahead_and_not_what_is_behind() -> None:
+    route = ("a", "b", "c", "d", "goal")
+    assert left_out(route, ("a", "x", "d", "goal"), ("c", "d", "goal")) == ["c"]
+    assert left_out(route, ("d", "goal"), ("c", "d", "goal")) == [], "it has driven past it"
+    assert left_out(route, ("b", "elsewhere"), ("b", "goal")) == ["goal"]
+    assert left_out(route, ("x", "goal"), ("behind", "goal")) == []
+
+
+FINE = parted(50.0, 60.0, 90.0)
+
+
+@pytest.mark.parametrize(
+    ("found", "told"),
+    [
+        (study(seeds(30, FINE)), None),
+        (study([]), "No decision counted"),
+        (study(seeds(12, FINE)), "12 seeds have a decision: run 30"),
+        (study(seeds(9, FINE)), "9 seeds have a decision: no interval"),
+        (
+            study([*seeds(30, FINE), *seeds(9, FINE, share=0.0), replace(drive(seed=9), share=0.0)]),
+            "9 of 10 seeds, where 0% of the others reroute, have a decision: no interval",
+        ),
+        (study(seeds(30, parted(142.0, 20.0, 36.0))), "more than the 36 s that the kept route lost"),
+        (
+            study([replace(row, trip="round") for row in seeds(30, FINE)]),
+            "All 30 decisions come from one trip, “round”",
+        ),
+        (study(seeds(30, replace(FINE, placebo=None))), "There is no placebo"),
+        (
+            study(seeds(30, replace(FINE, placebo=Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)))),
+            "30 placebos with fresh random numbers moved nothing",
+        ),
+        (
+            replace(study(seeds(30, FINE)), plan=StudyPlan("grid")),
+            "Driven at steps of 1 s, while the scenario's own",
+        ),
+    ],
+)
+def test_a_study_warns_of_what_its_figures_hide(found: Study, told: str | None) -> None:
+    said = warnings(found)
+    assert [each for each in said if told and told in each] if told else not said
+    assert len(said) <= 2, "of nothing else, but for the shape of the case"
+
+
 @pytest.mark.slow
 def test_intervals_take_the_seeds_as_what_is_independent() -> None:
     """Repeating every decision of a seed adds nothing; and the true mean lies within about as often as it says."""
@@ -357,6 +441,8 @@ def ends(made: Future, at_s: float) -> Future:
     [
         ({"scenario": "pari_centre"}, "paris_centre"),
         ({"trips": ("jamm",)}, "jam"),
+        ({"via": "stop"}, "no via named"),
+        ({"incidents": ("closure edge=pont_neuff.1",)}, "edge for cars in --incident"),
         ({"policies": ("sometimes",)}, "policy"),
         ({"policies": ()}, "--policies is empty"),
         ({"shares": (1.5,)}, "--shares is 1.5"),

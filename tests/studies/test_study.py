@@ -194,7 +194,7 @@ def test_every_future_of_a_decision_says_its_way(folder: Path) -> None:
 
 def test_the_report_is_whole(folder: Path) -> None:
     page = write_study(folder).read_text(encoding="utf-8")
-    assert "2 seeds with a decision" in page
+    assert "2 seeds have a decision" in page
     assert "no alternative" in page
     assert "one-shot" in page
     frame = load_study(folder)

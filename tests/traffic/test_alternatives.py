@@ -51,6 +51,22 @@ def test_what_is_offered(grid: Scenario, forked: Forked, average: EgoPlan) -> No
         assert option.edges != now.edges
 
 
+def test_stops_are_passed_by_every_way_if_they_are_to_be_kept(grid: Scenario, forked: Forked) -> None:
+    """By the other ways, by the quickest way now, and by what SUMO's own device would take."""
+    trip = grid.trip("round")
+    found = {}
+    for keeps in (False, True):
+        with closing(forked.depart(EgoPlan(trip, seed=3, keeps_stops=keeps))) as traffic:
+            traffic.advance(5.0)
+            ways = [each.edges for each in traffic.alternatives()[1:]] + [traffic.own_choice()]
+            traffic.request(Reroute())
+            ways.append(traffic.state.ahead.route_edges)
+        found[keeps] = [[edge for edge in way if edge in trip.via] == list(trip.via) for way in ways]
+    assert all(found[True])
+    assert len(found[True]) > 2
+    assert not any(found[False][:-1]), "they need not, so the test can fail"
+
+
 def test_asking_leaves_nothing_behind(grid: Scenario, forked: Forked, average: EgoPlan) -> None:
     """Neither a weight nor a random number: the traffic goes on as if nobody had asked, here and in a copy."""
     with closing(forked.depart(average)) as asking, closing(forked.depart(average)) as silent:

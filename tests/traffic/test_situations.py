@@ -269,6 +269,31 @@ def test_the_leader_brakes(staged: Staged, average: EgoPlan) -> None:
 
 
 @pytest.mark.sumo
+def test_a_vehicle_cuts_in_and_the_driver_brakes(staged: Staged, average: EgoPlan) -> None:
+    cutting = staged('kind = "cut_in"\nat_m = 100.0\ngap_m = 12.0\nslower_kmh = 15.0', empty=True)
+    drive = driven(cutting, average)
+    (cut_s,) = [event.time_s for event in drive.events if event.text == "a vehicle cuts in ahead"]
+    before = [state for state in drive.states if cut_s - 2 <= state.time_s < cut_s]
+    after = [state for state in drive.states if cut_s + 0.5 <= state.time_s <= cut_s + 1.5]
+    assert not any(state.around.leader and state.around.leader.gap_m < 40 for state in before)
+    assert all(state.around.leader and state.around.leader.gap_m < 25 for state in after)
+    assert min(state.acceleration_mps2 for state in drive.states if state.time_s > cut_s) < -1.0
+
+
+@pytest.mark.sumo
+def test_the_leader_cuts_out_before_a_standing_car(staged: Staged, average: EgoPlan) -> None:
+    revealing = staged('kind = "cut_out"\nfrom_s = 30.0\nreveal_m = 30.0')
+    drive = driven(revealing, average)
+    assert told(drive) == ["the vehicle ahead cuts out before a standing car"]
+    (cut_s,) = [event.time_s for event in drive.events if event.kind == "incident"]
+    before = next(state for state in drive.states if state.time_s >= cut_s - 1)
+    assert before.around.leader
+    assert before.around.leader.gap_m < 60
+    later = [state for state in drive.states if cut_s <= state.time_s <= cut_s + 10]
+    assert any(incident.kind == "breakdown" for state in later for incident in state.ahead.incidents)
+
+
+@pytest.mark.sumo
 def test_an_ambulance_comes_from_behind(staged: Staged, average: EgoPlan) -> None:
     ambulance = staged('kind = "emergency"\nat_m = 300.0\nbehind_m = 200.0', empty=True)
     drive = driven(ambulance, replace(average, driver="calm"))
@@ -293,6 +318,8 @@ EVERYTHING = (
     'kind = "tractor"\nfrom_edge = "c0c1"\nto_edge = "c4ce"\nfrom_s = -20.0',
     'kind = "braking_leader"\nat_m = 100.0',
     'kind = "emergency"\nat_m = 200.0\nbehind_m = 150.0',
+    'kind = "cut_in"\nat_m = 150.0',
+    'kind = "cut_out"\nat_m = 250.0',
 )
 
 

@@ -1,0 +1,101 @@
+"""A kept trial: the road second by second, and what the agent did."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+from automotive_cosim.cockpit.actions import parse
+from automotive_cosim.contracts import ActionType, Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import parse_json
+from automotive_cosim.report.page import element
+from automotive_cosim.run.drive_recorder import SHOWN
+from automotive_cosim.run.road import NAME, RoadRecord, read_record
+from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.words import action_in_words
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedAct:
+    """Something that the agent did, other than wait."""
+
+    at_s: float
+    """When it acted, on the clock of the recorded road."""
+    action: Json
+    words: str
+
+
+@dataclass(frozen=True, slots=True)
+class Recording:
+    """A kept trial."""
+
+    folder: Path
+    road: RoadRecord
+    acts: tuple[RecordedAct, ...]
+
+    @property
+    def begin_s(self) -> float:
+        """The first recorded second; before 0 in an episode, which counts from the hand-over."""
+        return self.road.seconds[0].at_s
+
+    @property
+    def scenario(self) -> str:
+        """Name or path of the scenario."""
+        return str(self.road.about.get("scenario", ""))
+
+    @property
+    def title(self) -> str:
+        """What was run, in a line."""
+        about = self.road.about
+        return (
+            f"{about.get('task', 'a drive')} in {self.scenario}, {about.get('agent', '')}, seed {about.get('seed')}"
+        )
+
+
+def read_recording(folder: Path) -> Recording:
+    """Reads a folder of ``run`` or ``drive``, or a trial's in ``pictures/`` of an evaluation.
+
+    Raises:
+        UserError: it has no recorded road, or cannot be read.
+    """
+    path = folder / NAME
+    if not path.is_file():
+        raise UserError(f"{folder} has no {NAME}; `run`, `drive --out` and `eval --pictures all` record the road")
+    road = read_record(path)
+    if not road.seconds:
+        raise UserError(f"{path} has no second of a drive; record the trial again")
+    try:
+        return Recording(folder, road, tuple(_acts(folder)))
+    except (LookupError, TypeError, ValueError) as error:
+        raise UserError(f"cannot read the steps of {folder}: {type(error).__name__}: {error}") from error
+
+
+def _acts(folder: Path) -> Iterator[RecordedAct]:
+    """The acts, each at the instant of the observation that it answers."""
+    shown, steps, evaluation = folder / SHOWN, folder / "steps.jsonl", folder.parent.parent
+    if shown.is_file():
+        for before, now in pairwise(_lines(shown)):
+            if _acted(now["action"]):
+                yield RecordedAct(before["at_s"], now["action"], now["words"])
+        return
+    if steps.is_file():
+        found = _lines(steps)
+    elif trace_file(evaluation, folder.name).is_file():
+        found = read_trace(evaluation, folder.name)[:-1]
+    else:
+        return
+    for before, now in pairwise(found):
+        if _acted(now["action"]):
+            words = action_in_words(parse(now["action"]), tuple(map(element, before["elements"])))
+            yield RecordedAct(round(before["time_s"] - found[0]["time_s"], 2), now["action"], words)
+
+
+def _acted(action: Json | None) -> bool:
+    return action is not None and action.get("action_type") != ActionType.WAIT
+
+
+def _lines(path: Path) -> list[Json]:
+    return [parse_json(line) for line in path.read_bytes().splitlines()]

@@ -1,0 +1,133 @@
+"""A tree of claims, each with what this run says about it, in the terms of ISO 34502 and ISO 21448."""
+
+from __future__ import annotations
+
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.drives.judge import EventOutcome
+from automotive_cosim.report.stats import rate, rate_upper_bound
+from automotive_cosim.safety.dossier.domain import NONE, domain
+from automotive_cosim.safety.dossier.subject import (
+    NOT_COMPLIANT,
+    Claim,
+    Subject,
+    failing,
+    number_told,
+    percent,
+    sentence,
+)
+
+CLAIMS = (
+    "Each claim is about this run. Supported: the run has evidence for it and none against it. Contradicted: "
+    "it has evidence against it. Limited: it says something, with the bound that is given. Not examined: it says "
+    "nothing. " + NOT_COMPLIANT
+)
+
+
+def claims(subject: Subject) -> Claim:
+    """The tree, from the run's facts."""
+    parts = (
+        _preventable(subject),
+        _quiet(subject),
+        _known_hazards(subject),
+        _unknown(subject),
+        _covered(subject),
+        _traced(subject),
+    )
+    statuses = {part.status for part in parts}
+    status = "contradicted" if "contradicted" in statuses else "limited"
+    return Claim(
+        f"In the situations of this run, {subject.agent} does what safety or the law requires, and leaves the "
+        "rest as it is.",
+        status, sentence(subject), "summary", parts,
+    )  # fmt: skip
+
+
+def _preventable(subject: Subject) -> Claim:
+    text = "In reasonably foreseeable and preventable situations, it acts in time (ISO 34502)."
+    events = [event for row in subject.drives for event in row.events if not event.lookalike]
+    real = [event for event in events if event.outcome.counts]
+    if not real:
+        passed = sum(row.has_succeeded for row in subject.episodes)
+        if not subject.episodes:
+            return Claim(text, "not examined", "No event required an act.", "events")
+        found = rate((row.task, row.success) for row in subject.episodes)
+        bounds = (
+            ""
+            if found.interval is None
+            else f", {100 * found.interval.low:.0f} to {100 * found.interval.high:.0f} %"
+        )
+        status = "supported" if passed == len(subject.episodes) else "contradicted"
+        return Claim(
+            text, status, f"{passed} of {counted(len(subject.episodes), 'episode')} passed{bounds}.", "events"
+        )
+    met = sum(event.outcome.is_credited for event in real)
+    void = sum(event.outcome is EventOutcome.VOID for event in events)
+    evidence = (
+        f"{met} of {counted(len(real), 'event')} were met; {void} more were void: nothing had to be done, or "
+        "nobody could have."
+    )
+    careful = [event for row in subject.reference for event in row.events if event.outcome.counts]
+    if careful:
+        theirs = sum(event.outcome.is_credited for event in careful)
+        evidence += f" The rule-perfect watcher of the same run met {theirs} of {len(careful)}."
+    return Claim(text, "supported" if met == len(real) else "contradicted", evidence, "events")
+
+
+def _quiet(subject: Subject) -> Claim:
+    text = "It does not disturb the driver without a reason."
+    scores = [row.score for row in subject.drives if row.score is not None]
+    if not scores:
+        return Claim(text, "not examined", "The run has no drives.", "events")
+    nuisances, hours = sum(score.nuisances for score in scores), sum(score.driven_s for score in scores) / 3600
+    upper = rate_upper_bound(nuisances, hours)
+    evidence = f"{counted(nuisances, 'nuisance')} in {hours:.2f} h, at most {number_told(upper)} an hour."
+    return Claim(text, "contradicted" if nuisances else "limited", evidence, "unseen")
+
+
+def _known_hazards(subject: Subject) -> Claim:
+    text = "Known hazardous situations (area 2 of ISO 21448) are few and described by what triggers them."
+    failed = counted(len(subject.failed), "failing trial")
+    if subject.findings is None:
+        status = "not examined" if subject.failed else "limited"
+        return Claim(text, status, f"{failed}; no search made them small.", "failures")
+    words = "; ".join(each["words"] for each in subject.findings["failures"])
+    return Claim(text, "limited", f"{failed}. Triggering conditions: {words or 'none found'}.", "failures")
+
+
+def _unknown(subject: Subject) -> Claim:
+    text = "Unknown hazardous situations (area 3 of ISO 21448) are rare."
+    if subject.findings is not None:
+        upper = subject.findings["unseen_rate_upper"]
+        told = (
+            "no bound"
+            if upper is None
+            else f"at most {percent(upper)} of the space searched, beyond the minimal cases"
+        )
+        return Claim(text, "limited", f"{told[0].upper()}{told[1:]}.", "unseen")
+    bad, total, upper = failing(subject)
+    return Claim(
+        text, "limited", f"{bad} of {counted(total, 'unit')} failed: at most {percent(upper)} of such.", "unseen"
+    )
+
+
+def _covered(subject: Subject) -> Claim:
+    section = domain(subject)
+    empty = sum(str(row[2]) == NONE for row in section.tables[0].rows)
+    total = len(section.tables[0].rows)
+    status = "limited" if empty else "supported"
+    return Claim(
+        "The run covers the operational domain.",
+        status,
+        f"{total - empty} of {total} values have a trial.",
+        "domain",
+    )
+
+
+def _traced(subject: Subject) -> Claim:
+    traced = sum(row.trace_sha256 is not None for row in subject.judged)
+    total = len(subject.judged)
+    return Claim(
+        "The evidence can be checked and repeated.", "supported" if traced == total else "limited",
+        f"{traced} of {counted(total, 'trial')} have a hash of their trace; the files' hashes are listed.",
+        "versions",
+    )  # fmt: skip

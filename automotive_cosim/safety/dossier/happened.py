@@ -1,0 +1,164 @@
+"""What happened: events, failures with their minimal cases, and how critical it was."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from statistics import median
+
+import numpy as np
+
+from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.judge import EventOutcome
+from automotive_cosim.measures import DEFAULT_THRESHOLDS
+from automotive_cosim.report.stats import CONFIDENCE
+from automotive_cosim.report.tables import Table
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.safety.dossier.subject import CONFIDENCE_WORDS, Section, Subject, hours_of, share_told
+
+MOST_FAILURES = 40
+"""Failing trials that are listed; all of them are in the data."""
+DRAWS = 2000
+"""Bootstrap samples, at which the second digit of a bound is stable."""
+LEAST_CLUSTERS = 5
+"""Fewer trials give no bootstrap interval."""
+
+
+def events(subject: Subject) -> Section:
+    """Events of drives by kind, and tasks by module."""
+    made = []
+    if subject.drives:
+        lines = []
+        for kind in KINDS:
+            events = [event for row in subject.drives for event in row.events if event.kind == kind]
+            if not events:
+                continue
+            real = [event for event in events if event.outcome.counts]
+            alike = [event for event in events if event.lookalike]
+            tally = Counter(event.outcome for event in events)
+            met = sum(event.outcome.is_credited for event in real)
+            own = tally[EventOutcome.CAUSED] + tally[EventOutcome.EVADED]
+            counts = met, tally[EventOutcome.LATE], tally[EventOutcome.MISSED], own, tally[EventOutcome.VOID]
+            left = f"{tally[EventOutcome.AVOIDED]} of {len(alike)}" if alike else "–"
+            lines.append((kind, str(len(real)), share_told(met, len(real)), *map(str, counts), left))
+        heads = "Kind", "Due", "Met % (interval)", "Met", "Late", "Missed", "Own doing", "Void", "Look-alikes left"
+        note = (
+            "Void: nothing had to be done, it passed by itself, or nobody could have met it. Own doing: caused, or "
+            "evaded by holding the car back for no reason. Intervals: Wilson, 95 %, as if events were independent."
+        )
+        made.append(Table("events", "Events by kind", heads, tuple(lines), note))
+    if subject.episodes:
+        groups: dict[str, list[EpisodeRow]] = {}
+        for row in subject.episodes:
+            groups.setdefault(str(row.module), []).append(row)
+        modules = []
+        for module, rows in sorted(groups.items()):
+            missing = Counter(part for row in rows for part in row.missing)
+            lacks = ", ".join(f"{part.replace('_', ' ')} {count}" for part, count in missing.most_common())
+            passed = sum(row.has_succeeded for row in rows)
+            modules.append((module, str(len(rows)), share_told(passed, len(rows)), lacks or "–"))
+        columns = "Module", "Episodes", "Passed % (interval)", "Parts missing"
+        made.append(Table("tasks", "Tasks by module", columns, tuple(modules)))
+    return Section("events", "Events", tables=tuple(made))
+
+
+def failures(subject: Subject) -> Section:
+    """Minimal cases of a search, and every failing trial."""
+    made, told = [], []
+    if subject.findings is not None:
+        cases = tuple(
+            (
+                str(number),
+                each["words"],
+                each["why"],
+                "–"
+                if each["neighbour"] is None
+                else f"{each['differs']} {_told(each['neighbour'][each['differs']])}",
+                f"failures/{number:02d}.toml",
+            )
+            for number, each in enumerate(subject.findings["failures"], 1)
+        )
+        heads = "No.", "Fails with", "What is missing", "Passes with", "Replay"
+        note = (
+            "Each failed three times of three; factors that are not named are nominal. Replay: automotive-cosim "
+            "eval --plan with that file, which also has the nearest passing neighbour."
+        )
+        if cases:
+            made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=5))
+    else:
+        told.append("No search was made: failures were not made small. automotive-cosim search does that.")
+    lines = tuple(
+        (row.id, ", ".join(row.missing).replace("_", " ") or "–") for row in subject.failed[:MOST_FAILURES]
+    )
+    if lines:
+        more = len(subject.failed) - len(lines)
+        note = "Replay: automotive-cosim replay FOLDER TRIAL." + (f" {more} more are in the data." if more else "")
+        made.append(Table("failures", "Failing trials", ("Trial", "What is missing"), lines, note, heads=2))
+    else:
+        told.append("No judged trial failed.")
+    return Section("failures", "Failures", tuple(told), tuple(made))
+
+
+def _told(value: object) -> str:
+    return f"{value:g}" if isinstance(value, float) else str(value)
+
+
+MEASURES: tuple[tuple[str, str, bool, float | None], ...] = (
+    ("Min TTC ahead, s", "min_ttc_s", True, DEFAULT_THRESHOLDS.ttc_s),
+    ("Min TTC behind, s", "min_ttc_behind_s", True, DEFAULT_THRESHOLDS.ttc_s),
+    ("Min gap time, s", "min_gap_time_s", True, None),
+    ("Max DRAC, m/s²", "max_drac_mps2", False, DEFAULT_THRESHOLDS.drac_mps2),
+    ("Max MDRAC, m/s²", "max_mdrac_mps2", False, DEFAULT_THRESHOLDS.mdrac_mps2),
+)
+"""Name, field, whether low is critical, and threshold."""
+
+
+def measured(subject: Subject) -> Section:
+    """How close vehicles came."""
+    found = [(row, row.measures) for row in subject.judged if row.measures is not None]
+    lines: list[tuple[str, ...]] = []
+    for name, attribute, low, threshold in MEASURES:
+        values = [value for _, each in found if (value := getattr(each, attribute)) is not None]
+        if not values:
+            continue
+        worst = min(values) if low else max(values)
+        critical = "–"
+        if threshold is not None:
+            beyond = sum(value <= threshold if low else value >= threshold for value in values)
+            sign = "≤" if low else "≥"
+            critical = f"{sign} {threshold:g}: {beyond} of {len(values)}, {share_told(beyond, len(values))} %"
+        lines.append((name, f"{worst:.2f}", f"{median(values):.2f}", critical))
+    for name, attribute in (
+        ("TET ahead, s/h", "tet_s"),
+        ("TIT ahead, s²/h", "tit_s2"),
+        ("TET behind, s/h", "tet_behind_s"),
+    ):
+        value, bounds = _per_hour([(getattr(each, attribute), hours_of([row])) for row, each in found])
+        if value is not None:
+            lines.append((name, "–", f"{value:.2f}", bounds))
+    note = (
+        f"Worst and median of the trials; then how many of them were critical, with Wilson's interval "
+        f"({CONFIDENCE_WORDS}). "
+        "TET and TIT: per hour driven, with the interval from resampling whole trials. Definitions, with sources: "
+        "docs/search.md. SUMO's drivers avoid collisions by construction: compare runs with each other."
+    )
+    heads = "Measure", "Worst", "Median or rate", "Critical trials, or interval"
+    return Section(
+        "measures",
+        "Surrogate measures",
+        tables=(Table("measures", "Surrogate measures", heads, tuple(lines), note),),
+    )
+
+
+def _per_hour(pairs: Sequence[tuple[float, float]]) -> tuple[float | None, str]:
+    """A rate per hour and its bootstrap interval in words."""
+    table = np.asarray(pairs, dtype=float)
+    if not len(table) or table[:, 1].sum() == 0:
+        return None, ""
+    value = float(table[:, 0].sum() / table[:, 1].sum())
+    if len(table) < LEAST_CLUSTERS:
+        return value, f"too few trials for an interval ({len(table)})"
+    rng = np.random.default_rng(0)
+    drawn = table[rng.integers(len(table), size=(DRAWS, len(table)))].sum(axis=1)
+    low, high = np.percentile(drawn[:, 0] / drawn[:, 1], [50 * (1 - CONFIDENCE), 50 * (1 + CONFIDENCE)])
+    return value, f"{low:.2f} to {high:.2f}"

@@ -1,0 +1,179 @@
+"""The trials that a safety report is about, and what its parts share."""
+
+from __future__ import annotations
+
+from collections.abc import Hashable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import read_json
+from automotive_cosim.report.results import NOT_RANKED, Results, contestant, read_results
+from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
+from automotive_cosim.report.tables import Table
+from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.safety.page import FINDINGS
+
+CONFIDENCE_WORDS = f"{100 * CONFIDENCE:.0f} %"
+NOT_COMPLIANT = (
+    "This document states facts of one run in simulation. It makes no claim of compliance with ISO 34502, ISO "
+    "21448 or any other standard, and none about safety on public roads."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Claim:
+    """A claim, what this run says about it, and the claims that it rests on."""
+
+    text: str
+    status: str
+    """``supported``, ``contradicted``, ``limited`` or ``not examined``, by this run."""
+    evidence: str
+    section: str = ""
+    """The section with the evidence."""
+    parts: tuple[Claim, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A section."""
+
+    name: str
+    title: str
+    told: tuple[str, ...] = ()
+    """Paragraphs."""
+    tables: tuple[Table, ...] = ()
+    claims: tuple[Claim, ...] = ()
+
+
+@dataclass(frozen=True)
+class Subject:
+    """One agent's trials of a run, and what the run was."""
+
+    results: Results
+    label: str
+    agent: str
+    rows: tuple[TrialRow, ...]
+    findings: Json | None
+    """Of a search; its trials are drawn to failures, so that they give no rates."""
+    reference: tuple[DriveTrialRow, ...] = ()
+    """Drives of the rule-perfect watcher in the same run."""
+
+    @property
+    def judged(self) -> list[TrialRow]:
+        """The trials with a judgement."""
+        return [row for row in self.rows if row.outcome is not None]
+
+    @property
+    def failed(self) -> list[TrialRow]:
+        """Those that failed."""
+        return [row for row in self.judged if not row.has_succeeded]
+
+    @property
+    def drives(self) -> list[DriveTrialRow]:
+        """The judged drives."""
+        return [row for row in self.judged if isinstance(row, DriveTrialRow)]
+
+    @property
+    def episodes(self) -> list[EpisodeRow]:
+        """The judged episodes of tasks."""
+        return [row for row in self.judged if isinstance(row, EpisodeRow)]
+
+    @property
+    def hours(self) -> float:
+        """Driven."""
+        return hours_of(self.judged)
+
+    @property
+    def clusters(self) -> dict[Hashable, list[TrialRow]]:
+        """The independent units: drives of one family and seed, and episodes of one task, depend on each other."""
+        found: dict[Hashable, list[TrialRow]] = {}
+        for row in self.judged:
+            key = (row.subject, row.seed) if isinstance(row, DriveTrialRow) else (row.subject,)
+            found.setdefault(key, []).append(row)
+        return found
+
+
+def read_subject(folder: Path, agent: str = "") -> Subject:
+    """The trials of an agent in a folder of ``eval`` or ``search``.
+
+    Args:
+        folder: the folder.
+        agent: whose; empty if there is only one that is neither a reference nor a control.
+
+    Raises:
+        UserError: it is none, has no judged trials, or has several agents and none is named.
+    """
+    results = read_results(folder)
+    every: tuple[TrialRow, ...] = (*results.rows, *results.drives)
+    labels = {contestant(row): row for row in every}
+    ranked = [each for each in labels if each.agent not in NOT_RANKED] or list(labels)
+    chosen = [each for each in labels if each.agent == agent] if agent else ranked
+    if not chosen:
+        raise UserError(f"{folder} has no trial of agent {agent!r}; give one of {', '.join(_agents(labels))}")
+    if len({each.agent for each in chosen}) > 1:
+        raise UserError(f"{folder} has several agents; give --agent with one of {', '.join(_agents(labels))}")
+    mine = tuple(row for row in every if contestant(row) in chosen)
+    findings = dict(read_json(folder / FINDINGS)) if (folder / FINDINGS).is_file() else None
+    name = chosen[0].agent
+    reference = tuple(
+        row for row in results.drives if row.agent == "rule-perfect" != name and row.score is not None
+    )
+    models = ", ".join(sorted({each.base_model for each in chosen} - {"none"}))
+    made = Subject(results, f"{name}, {models}" if models else name, name, mine, findings, reference)
+    if not made.judged:
+        raise UserError(f"{folder} has no judged trial of {name} yet; rerun its command to resume")
+    return made
+
+
+def _agents(labels: Iterable[object]) -> list[str]:
+    return sorted({str(getattr(each, "agent", "")) for each in labels})
+
+
+def hours_of(rows: Iterable[TrialRow]) -> float:
+    """Hours driven in trials."""
+    return sum(cell.hours for row in rows for cell in row.exposure)
+
+
+def failing(subject: Subject) -> tuple[int, int, float]:
+    """Independent units that failed, all of them, and the upper bound of their share."""
+    groups = subject.clusters
+    bad = sum(any(not row.has_succeeded for row in rows) for rows in groups.values())
+    return bad, len(groups), upper_bound(bad, len(groups))
+
+
+def sentence(subject: Subject) -> str:
+    """The result in a sentence."""
+    failed, judged = len(subject.failed), len(subject.judged)
+    hours = f"{subject.hours:.2f} h driven"
+    if subject.findings is not None:
+        minimal = counted(len(subject.findings["failures"]), "minimal failure")
+        return f"A search with {counted(judged, 'judged trial')} ({hours}) found {minimal}."
+    return f"{failed} of {counted(judged, 'judged trial')} failed ({hours})."
+
+
+def share_told(count: int, total: int) -> str:
+    """A share in per cent, with its interval."""
+    if not total:
+        return "–"
+    bounds = wilson(count, total)
+    return f"{100 * count / total:.0f} ({100 * bounds.low:.0f} to {100 * bounds.high:.0f})"
+
+
+def percent(share: float) -> str:
+    """A share in words."""
+    return f"{100 * share:.0f} %" if share >= 0.1 else f"{100 * share:.2g} %"
+
+
+def number_told(value: float) -> str:
+    """A rate in words."""
+    return f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
+
+
+def fact_table(name: str, title: str, lines: Iterable[tuple[str, str]], note: str = "") -> Table:
+    """A table of facts and their values."""
+    return Table(name, title, ("Fact", "Value"), tuple(lines), note, heads=2)

@@ -1,0 +1,149 @@
+"""Bounds on what was not seen, and the four areas of ISO 21448."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterable, Iterator
+from math import log, sqrt
+
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.report.stats import CONFIDENCE, rate_upper_bound
+from automotive_cosim.report.tables import Table
+from automotive_cosim.safety.dossier.subject import (
+    CONFIDENCE_WORDS,
+    Section,
+    Subject,
+    failing,
+    hours_of,
+    number_told,
+    percent,
+)
+
+
+def missing_mass(counts: Iterable[int]) -> tuple[float, float]:
+    """The share of situations of kinds that were not seen: Good and Turing's estimate, and its upper bound.
+
+    Good 1953, Biometrika 40; McAllester and Schapire 2000, COLT: the estimate errs by at most
+    (2 √2 + √3) √(ln(3/δ)/n) with probability 1 - δ.
+
+    Args:
+        counts: how often each kind was seen.
+    """
+    seen = list(counts)
+    total = sum(seen)
+    if not total:
+        return 1.0, 1.0
+    share = sum(count == 1 for count in seen) / total
+    return share, min(1.0, share + (2 * sqrt(2) + sqrt(3)) * sqrt(log(3 / (1 - CONFIDENCE)) / total))
+
+
+def unseen(subject: Subject) -> Section:
+    """Bounds on failures, rates and situations that were not seen."""
+    lines: list[tuple[str, str, str]] = []
+    told = []
+    if subject.findings is not None:
+        found = subject.findings
+        told.append(
+            "Trials of a search are drawn to failures, so that rates of its trials say nothing about the space; "
+            "its bounds are over the points alone that represent the whole space."
+        )
+        for name, key in (
+            ("Failure rate in the space searched", "failure_rate_upper"),
+            ("Rate of failures that no minimal case explains", "unseen_rate_upper"),
+        ):
+            if found[key] is not None:
+                lines.append((name, f"at most {percent(found[key])}", "Clopper and Pearson"))
+        lines.append(
+            ("Pairs of levels of two factors tried", f"{found['pairs_covered']} of {found['pairs']}", "2-wise")
+        )
+    else:
+        bad, total, upper = failing(subject)
+        three = f"; rule of three: {percent(min(1.0, 3 / total))}" if not bad else ""
+        units = counted(total, "independent unit")
+        lines.append(
+            (
+                f"Share of failing units ({bad} of {units})",
+                f"at most {percent(upper)}{three}",
+                "Clopper and Pearson",
+            )
+        )
+        lines += _rates(subject)
+    kinds = Counter(_kinds(subject))
+    share, upper = missing_mass(kinds.values())
+    lines.append(
+        (
+            f"Next situation of a kind not seen ({len(kinds)} kinds in "
+            f"{counted(sum(kinds.values()), 'situation')})",
+            f"about {percent(share)}, at most {percent(upper)}",
+            "Good and Turing",
+        )
+    )
+    table = Table(
+        "unseen", "Bounds on what was not seen", ("Figure", f"Bound ({CONFIDENCE_WORDS}, one-sided)", "By"),
+        tuple(lines),
+        "Units: drives of one family and seed, or episodes of one task, count once. Kinds: a place with a kind of "
+        "event, or a task's half in a place. All bounds are for trials drawn as these were, not for the road.",
+        heads=3,
+    )  # fmt: skip
+    return Section("unseen", "What was not seen", tuple(told), (table,))
+
+
+def _rates(subject: Subject) -> Iterator[tuple[str, str, str]]:
+    """Upper bounds of rates per hour of drives."""
+    hours = hours_of(subject.drives)
+    if not hours:
+        return
+    lost = sum(
+        event.outcome.counts and not event.outcome.is_credited for row in subject.drives for event in row.events
+    )
+    nuisances = sum(row.score.nuisances for row in subject.drives if row.score is not None)
+    collisions = sum(row.harm.collided for row in subject.drives if row.harm is not None)
+    for name, count in (("Collisions", collisions), ("Events not met", lost), ("Nuisances", nuisances)):
+        three = f"; rule of three: {number_told(3 / hours)}" if not count else ""
+        upper = rate_upper_bound(count, hours)
+        yield (
+            f"{name} per hour ({count} in {hours:.2f} h)",
+            f"at most {number_told(upper)}{three}",
+            "Poisson, exact",
+        )
+
+
+def _kinds(subject: Subject) -> Iterator[tuple[str, str]]:
+    for row in subject.drives:
+        yield from ((row.scenario, event.kind) for event in row.events)
+    for episode in subject.episodes:
+        yield episode.scenario, f"{episode.task} {episode.half}"
+
+
+def areas(subject: Subject) -> Section:
+    """The four areas of ISO 21448, as far as the run fills them."""
+    failures, passed = subject.failed, len(subject.judged) - len(subject.failed)
+    minimal = "" if subject.findings is None else f", {counted(len(subject.findings['failures']), 'minimal case')}"
+    _, _, upper = failing(subject)
+    bound = (subject.findings or {}).get("failure_rate_upper", upper)
+    lines = (
+        (
+            "1: known, not hazardous",
+            f"{counted(passed, 'trial')} that passed",
+            "Events, Operational domain covered",
+        ),
+        ("2: known, hazardous", f"{counted(len(failures), 'trial')} that failed{minimal}", "Failures"),
+        (
+            "3: unknown, hazardous",
+            "not known"
+            if bound is None
+            else f"at most {percent(bound)} of situations drawn as here, area 2 included",
+            "What was not seen",
+        ),
+        (
+            "4: unknown, not hazardous",
+            "the rest of the domain",
+            "Operational domain covered: values without a trial",
+        ),
+    )
+    note = (
+        "Areas of ISO 21448 (SOTIF). Hazardous stands for a failed trial: harm depends on the driver and "
+        "the traffic."
+    )
+    table = Table("areas", "Areas", ("Area", "In this run", "Section"), lines, note, heads=3)
+    return Section("areas", "Known and unknown, hazardous and not", tables=(table,))

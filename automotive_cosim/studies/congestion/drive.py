@@ -1,0 +1,156 @@
+"""One seed of a congestion study: its traffic is warmed up once, and copied for no measure and for each.
+
+All copies start from the same instant with the same random numbers, so they differ by the measure alone.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
+from dataclasses import replace
+from pathlib import Path
+
+from automotive_cosim.errors import CosimError
+from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.executor import Executor, Runner
+from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.store import opened
+from automotive_cosim.studies.congestion.outputs import (
+    EDGES,
+    EdgeFlow,
+    cells,
+    class_in,
+    read_flows,
+    read_queues,
+    write_edges,
+)
+from automotive_cosim.studies.congestion.plan import (
+    EPOCH_S,
+    INTERVAL_S,
+    CongestionJob,
+    CongestionPlan,
+    measure_in,
+)
+from automotive_cosim.studies.congestion.rows import CongestionRow, Emitted, FlowCell, FlowState, MeasureOutcome
+from automotive_cosim.studies.traffic import gridlock
+from automotive_cosim.traffic.flow import FlowPulse
+from automotive_cosim.traffic.fork import Forked, RemoteFlow
+from automotive_cosim.traffic.network import read_network
+from automotive_cosim.traffic.options import read_configuration
+
+
+def run_congestion(
+    plan: CongestionPlan,
+    folder: Path,
+    *,
+    executor: Executor = Processes(),  # noqa: B008, frozen
+    retries: int = 1,
+    tell: Callable[[Progress[CongestionRow]], None] = lambda progress: None,
+) -> Progress[CongestionRow]:
+    """Runs the remaining seeds of a study; arguments and errors are those of ``studies.batch.run_study``."""
+    plan.check()
+    with opened(folder, plan.as_json(), CongestionRow, parts=(EDGES,)) as store:
+        return run_jobs(plan.jobs(), store, seeds, failed, executor=executor, retries=retries, tell=tell)
+
+
+@contextmanager
+def seeds() -> Iterator[Runner[CongestionJob, CongestionRow]]:
+    """Makes the runner of the seeds in a worker."""
+    yield run
+
+
+def failed(job: CongestionJob, kind: str, why: str) -> CongestionRow:
+    """The row of a seed that ended in an infrastructure error."""
+    return replace(_planned(job), error=why, error_kind=kind)
+
+
+def run(job: CongestionJob, folder: Path) -> CongestionRow:
+    """Runs a seed; an error becomes a row too. The flows on every edge are written into the study's folder."""
+    try:
+        return _driven(job, folder)
+    except CosimError as error:
+        return failed(job, type(error).__name__, str(error))
+
+
+def _planned(job: CongestionJob) -> CongestionRow:
+    return CongestionRow(id=job.id, scenario=job.plan.scenario, seed=job.seed)
+
+
+def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
+    plan = job.plan
+    scenario = plan.scene()
+    configuration = read_configuration(scenario.config)
+    of = class_in(read_network(configuration.net))
+    begin_s = configuration.begin_s + scenario.sumo.warm_up_s
+    names = ("", *plan.measures)
+    outcomes: list[MeasureOutcome] = []
+    edges: list[Sequence[EdgeFlow]] = []
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-flow-") as scratch, ExitStack() as stack:
+        warm = Forked(scenario, job.seed, allow_unprojected=True, outputs=Path(scratch), flow_s=INTERVAL_S)
+        stack.enter_context(closing(warm))
+        warm.watch(consumptions=plan.emissions)
+        running: list[RemoteFlow] = []
+        for name in names:
+            copy = stack.enter_context(closing(warm.copy()))
+            if name:
+                copy.apply(measure_in(name, "--measure"), job.seed)
+            copy.begin(plan.duration_s, INTERVAL_S)
+            running.append(copy)
+        for name, copy in zip(names, running, strict=True):
+            pulses = copy.ended()
+            copy.close()
+            assert copy.outputs is not None
+            flows = list(read_flows(copy.outputs, begin_s, [each.slowed for each in pulses[1:]]))
+            queues = read_queues(copy.outputs, begin_s)
+            edges.append(flows)
+            outcomes.append(_outcome(name, plan, cells(flows, queues, of), pulses))
+    write_edges(folder / EDGES, job.id, edges)
+    return replace(_planned(job), outcomes=tuple(outcomes))
+
+
+def _outcome(
+    name: str, plan: CongestionPlan, found: tuple[FlowCell, ...], pulses: Sequence[FlowPulse]
+) -> MeasureOutcome:
+    """An outcome from the flows and from the traffic's states, the first of which is that of the copy."""
+    first = pulses[0]
+    states = tuple(
+        FlowState(
+            at_s=number * INTERVAL_S,
+            running=each.pulse.running,
+            backlog=each.pulse.backlog,
+            departed=each.pulse.departed - first.pulse.departed,
+            arrived=each.arrived - first.arrived,
+            teleported=each.pulse.teleported - first.pulse.teleported,
+        )
+        for number, each in enumerate(pulses)
+    )
+    jam = gridlock([each.pulse for each in pulses[:: round(EPOCH_S / INTERVAL_S)]])
+    return MeasureOutcome(
+        measure=name,
+        cells=found,
+        states=states,
+        emitted=tuple(_emitted(plan, pulses)),
+        gridlock="" if jam is None else jam.why,
+    )
+
+
+def _emitted(plan: CongestionPlan, pulses: Sequence[FlowPulse]) -> Iterator[Emitted]:
+    """What each class emitted in each period."""
+    each_s = round(plan.period_s / INTERVAL_S)
+    for period in range(len(plan.demand)):
+        before, after = (pulses[number * each_s].consumed for number in (period, period + 1))
+        for name, (_, *sums) in sorted(after.items()):
+            _, *earlier = before.get(name, (0, 0.0, 0.0, 0.0, 0.0, 0.0))
+            co2_g, nox_g, fuel_g, energy_wh, noise_s = (
+                round(one - two, 3) for one, two in zip(sums, earlier, strict=True)
+            )
+            yield Emitted(
+                period=period,
+                emission_class=name,
+                co2_g=co2_g,
+                nox_g=nox_g,
+                fuel_g=fuel_g,
+                energy_wh=energy_wh,
+                noise_s=noise_s,
+            )

@@ -1,0 +1,156 @@
+"""Reads SUMO's outputs of the flow on every edge and of the queues, and sums them by class of road."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import io
+import xml.etree.ElementTree as ET
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
+from automotive_cosim.studies.congestion.rows import EdgeRow, FlowCell, FlowSums
+from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.options import EDGE_FLOWS, QUEUE_PERIOD_S, QUEUES
+
+EDGES = "edges"
+"""Folder of the flows on every edge, in a study's."""
+JUNCTIONS, OTHER, UNKNOWN = "junctions", "other", "unknown"
+"""Inside junctions; edges on which no car may drive; roads whose class the network does not tell."""
+COLUMNS = ("measure", "edge", "from_s", "time_s", "lost_s", "distance_m")
+
+
+@dataclass(frozen=True, slots=True)
+class EdgeFlow:
+    """The flow on an edge in one interval."""
+
+    edge: str
+    from_s: float
+    flow: FlowSums
+
+
+def read_flows(folder: Path, begin_s: float, slowed: Sequence[Mapping[str, float]] = ()) -> Iterator[EdgeFlow]:
+    """The flows of a run, edge by edge and interval by interval.
+
+    Args:
+        folder: SUMO's outputs.
+        begin_s: simulation time from which ``from_s`` counts.
+        slowed: for every interval, edges with a lower limit than usual, and its share of the usual one, against
+            which time is lost there.
+    """
+    from_s = 0.0
+    for event, element in ET.iterparse(folder / EDGE_FLOWS, ("start", "end")):
+        if element.tag == "interval" and event == "start":
+            from_s = float(element.attrib["begin"]) - begin_s
+        elif element.tag == "interval":
+            element.clear()
+        elif element.tag == "edge" and event == "end":
+            time_s = float(element.get("sampledSeconds", 0.0))
+            number = round(from_s / INTERVAL_S)
+            share = slowed[number].get(element.attrib["id"], 1.0) if number < len(slowed) else 1.0
+            flow = FlowSums(
+                time_s=time_s,
+                lost_s=time_s - share * (time_s - float(element.get("timeLoss", 0.0))),
+                standing_s=float(element.get("waitingTime", 0.0)),
+                distance_m=time_s * float(element.get("speed", 0.0)),
+            )
+            yield EdgeFlow(element.attrib["id"], from_s, flow)
+
+
+def read_queues(folder: Path, begin_s: float) -> Iterator[tuple[str, float, float]]:
+    """Lane, seconds since ``begin_s`` and length in m of every queue, every ``QUEUE_PERIOD_S``."""
+    for _, element in ET.iterparse(folder / QUEUES):
+        if element.tag == "data":
+            at_s = float(element.attrib["timestep"]) - begin_s
+            for lane in element.iter("lane"):
+                length_m = float(lane.attrib["queueing_length"])
+                if at_s >= 0 and length_m > 0:
+                    yield lane.attrib["id"], at_s, length_m
+            element.clear()
+
+
+def class_in(network: Network) -> Callable[[str], str]:
+    """What gives the class of an edge's road."""
+
+    def of(edge: str) -> str:
+        if edge.startswith(":"):
+            return JUNCTIONS
+        found = network.edges.get(edge)
+        return OTHER if found is None else found.road_class or UNKNOWN
+
+    return of
+
+
+def cells(
+    flows: Sequence[EdgeFlow], queues: Iterator[tuple[str, float, float]], of: Callable[[str], str]
+) -> tuple[FlowCell, ...]:
+    """The flows by class of road and five minutes."""
+    sums: dict[tuple[float, str], FlowSums] = defaultdict(FlowSums)
+    for each in flows:
+        sums[each.from_s // EPOCH_S * EPOCH_S, of(each.edge)] += each.flow
+    total_m: dict[tuple[float, str], float] = defaultdict(float)
+    longest_m: dict[tuple[float, str], float] = defaultdict(float)
+    for lane, at_s, length_m in queues:
+        key = at_s // EPOCH_S * EPOCH_S, of(lane.rpartition("_")[0])
+        total_m[key] += length_m
+        longest_m[key] = max(longest_m[key], length_m)
+    samples = EPOCH_S / QUEUE_PERIOD_S
+    return tuple(
+        FlowCell(
+            from_s=from_s,
+            road_class=road_class,
+            flow=rounded(flow),
+            queue_m=round(total_m[from_s, road_class] / samples, 1),
+            longest_m=round(longest_m[from_s, road_class], 1),
+        )
+        for (from_s, road_class), flow in sorted(sums.items())
+    )
+
+
+def rounded(flow: FlowSums) -> FlowSums:
+    """A flow as it is stored."""
+    return FlowSums(
+        time_s=round(flow.time_s, 2),
+        lost_s=round(flow.lost_s, 2),
+        standing_s=round(flow.standing_s, 2),
+        distance_m=round(flow.distance_m, 1),
+    )
+
+
+def write_edges(folder: Path, job: str, measured: Sequence[Sequence[EdgeFlow]]) -> None:
+    """Writes the flows of a seed, those without a measure first, without the inside of junctions.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for measure, flows in enumerate(measured):
+        for each in flows:
+            if not each.edge.startswith(":"):
+                flow = rounded(each.flow)
+                row = measure, each.edge, f"{each.from_s:g}", flow.time_s, flow.lost_s, flow.distance_m
+                writer.writerow(row)
+    folder.mkdir(parents=True, exist_ok=True)
+    draft = folder / f".{job}.part"
+    draft.write_bytes(gzip.compress(text.getvalue().encode(), mtime=0))
+    draft.replace(folder / f"{job}.csv.gz")
+
+
+def read_edges(path: Path) -> Iterator[EdgeRow]:
+    """What ``write_edges`` wrote; nothing if the file is not there."""
+    if path.is_file():
+        with gzip.open(path, "rt", encoding="utf-8", newline="") as file:
+            for row in csv.DictReader(file):
+                yield EdgeRow(
+                    measure=int(row["measure"]),
+                    edge=row["edge"],
+                    from_s=float(row["from_s"]),
+                    time_s=float(row["time_s"]),
+                    lost_s=float(row["lost_s"]),
+                    distance_m=float(row["distance_m"]),
+                )

@@ -1,0 +1,125 @@
+"""``report.html`` of a congestion study, with its tables, plots and data as files."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.scenarios.incidents import Jam
+from automotive_cosim.studies.congestion.charts import charts
+from automotive_cosim.studies.congestion.plan import measure_in, name_of
+from automotive_cosim.studies.congestion.results import (
+    WHOLE,
+    CongestionStudy,
+    change,
+    cost,
+    delay_h,
+    indices,
+    read_congestion,
+    strongest,
+)
+from automotive_cosim.studies.congestion.tables import mean, tables
+from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
+from automotive_cosim.studies.shown import ShownStudy, write_shown
+from automotive_cosim.studies.tables import told
+from automotive_cosim.studies.warnings import steps_told
+
+
+def write_congestion(folder: Path) -> Path:
+    """Writes all of a study's pages, tables and plots into its folder; returns ``report.html``.
+
+    Raises:
+        UserError: the folder is not a congestion study's, or cannot be written.
+        SetupError: the extra ``report`` is not installed.
+    """
+    study = read_congestion(folder)
+    plan = study.plan
+    about = (
+        f"{counted(len(study.rows), 'seed')}, {plan.minutes:g} minutes each; every measure begins in a copy of "
+        "the same traffic"
+    )
+    shown = ShownStudy("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
+    return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
+
+
+def answer(study: CongestionStudy) -> str:
+    """What the study found, in a sentence: the delay, and what the strongest measure does to it."""
+    plan = study.plan
+    seeds = len(list(study.outcomes("")))
+    found = indices(plan, (outcome for _, outcome in study.outcomes("")))
+    if found is None:
+        return "No seed was driven to its end."
+    before_h = mean(study, "", lambda each: delay_h(plan, each))
+    over = f"over {counted(seeds, 'seed')}" + ("" if seeds >= LEAST_SEEDS else f"; {LEAST_SEEDS} give an interval")
+    if not plan.measures:
+        return (
+            f"{plan.opened.name} loses {before_h:.1f} vehicle-hours an hour; a trip takes {found.travel_time:.2f} "
+            f"times its time on empty roads, and {found.planning_time:.2f} times in the worst twentieth of the "
+            f"time, {over}."
+        )
+    best = study.measures[strongest(study)]
+    total, added = cost(study, best), change(study, best)
+    after = indices(plan, (outcome for _, outcome in study.outcomes(best)))
+    assert after is not None, "somebody drove without the measure too"
+    assert total is not None, "so there are seeds"
+    assert added is not None
+    of = f", of {len(plan.measures)} measures the one that changes most," if len(plan.measures) > 1 else ""
+    lost_h = round(added.value, 1)
+    detours_h = round(total.value, 1) - lost_h
+    share = f" ({told(added.value / before_h, '+.0%')})" if before_h else ""
+    index = (
+        f"the travel time index goes from {found.travel_time:.2f} to {after.travel_time:.2f}"
+        if f"{found.travel_time:.2f}" != f"{after.travel_time:.2f}"
+        else f"the travel time index stays at {after.travel_time:.2f}"
+    )
+    return (
+        f"“{name_of(best)}”{of} {_told(total)}: {abs(lost_h):.1f} {'more' if lost_h >= 0 else 'fewer'} are lost in "
+        f"congestion{share} and detours take {abs(detours_h):.1f} {'more' if detours_h >= 0 else 'fewer'}; "
+        f"{index}, {over}."
+    )
+
+
+def _told(total: SeedMean) -> str:
+    """What a measure costs, if that can be told."""
+    value, bounds = total.value, total.interval
+    if bounds and bounds.low < 0 < bounds.high:
+        low, high = told(bounds.low, "+.1f"), told(bounds.high, "+.1f")
+        return f"changes {told(value, '+.1f')} vehicle-hours an hour, which cannot be told from 0 ({low} to {high})"
+    low_h, high_h = sorted((abs(bounds.low), abs(bounds.high))) if bounds else (0.0, 0.0)
+    sure = f" ({low_h:.1f} to {high_h:.1f})" if bounds else ""
+    return f"{'costs' if value >= 0 else 'saves'} {abs(value):.1f}{sure} vehicle-hours an hour"
+
+
+def warnings(study: CongestionStudy) -> list[str]:
+    """Warnings to read before using the study's figures."""
+    return [*_found(study)]
+
+
+def _found(study: CongestionStudy) -> Iterator[str]:
+    plan = study.plan
+    seeds = len(list(study.outcomes("")))
+    if seeds < LEAST_SEEDS:
+        yield f"{counted(seeds, 'seed')}: no interval of a mean below {LEAST_SEEDS} seeds."
+    elif seeds < PUBLISHED_SEEDS:
+        yield f"{seeds} seeds: run {PUBLISHED_SEEDS} before publishing."
+    for measure in study.measures:
+        jams = [outcome.gridlock for _, outcome in study.outcomes(measure) if outcome.gridlock]
+        if jams:
+            where = f"With “{name_of(measure)}”" if measure else "Without a measure"
+            yield (
+                f"{where}, the traffic of {len(jams)} of {seeds} seeds is gridlocked at the end (for example: "
+                f"{jams[0]}); delays in a gridlock depend on how long it is watched."
+            )
+        teleported = [outcome.states[-1].teleported for _, outcome in study.outcomes(measure)]
+        if sum(teleported):
+            where = f"With “{name_of(measure)}”" if measure else "Without a measure"
+            yield f"{where}, SUMO moved {counted(sum(teleported), 'vehicle')} on that stood too long."
+        if measure and isinstance(measure_in(measure, "--measure"), Jam):
+            yield f"“{name_of(measure)}” brings cars of its own, whose delay is counted."
+        pairs = [(dict(study.outcomes(""))[seed], outcome) for seed, outcome in study.outcomes(measure)]
+        if measure and pairs and all(one.states == two.states and one.cells == two.cells for one, two in pairs):
+            yield f"“{name_of(measure)}” changes nothing in any seed."
+    yield from steps_told(plan.opened, plan.step_s)
+    if all(mean(study, each, lambda one: delay_h(plan, one, WHOLE)) == 0 for each in study.measures):
+        yield "Nobody loses any time: there is no congestion to measure."

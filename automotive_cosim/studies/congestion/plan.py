@@ -1,0 +1,228 @@
+"""What a congestion study runs: the traffic of every seed, without a measure and with each."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from typing import Annotated, Any
+
+from annotated_types import Ge, Le, MinLen
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.scenarios import Scenario, Trip
+from automotive_cosim.scenarios.incidents import AnyIncident, EgoIncident, RushHour
+from automotive_cosim.scenarios.wording import KINDS, read_line
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.studies.plan import check_edges, driven_at, option
+from automotive_cosim.traffic.flow import Advice, SignalControl
+
+KIND = "congestion"
+"""Kind of study in the manifest."""
+
+INTERVAL_S, EPOCH_S = 60.0, 300.0
+"""Length of the intervals of the flow on every edge, and of those over which travel times vary (five minutes, as in
+FHWA's reports on reliability)."""
+
+Measure = AnyIncident | Advice | SignalControl
+MEASURES = {**KINDS, "advice": Advice, "signals": SignalControl}
+
+
+@dataclass(frozen=True, slots=True)
+class CongestionPlan:
+    """A congestion study."""
+
+    scenario: Annotated[str, MinLen(1)]
+    """Name or folder, a ``.sumocfg`` or a network."""
+    measures: tuple[str, ...] = ()
+    """What is done in one copy of the traffic each: a kind and its fields (``measure_in``)."""
+    seeds: Annotated[tuple[Annotated[int, Ge(0)], ...], MinLen(1)] = tuple(range(10))
+    """Seeds of the traffic: each is a day."""
+    minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0
+    """How long after the warm-up is measured, in whole five minutes."""
+    demand: Annotated[tuple[Annotated[float, Ge(0.01), Le(100)], ...], MinLen(1)] = (1.0,)
+    """Factors on the demand in periods of equal length, such as off-peak, peak and off-peak; the first also holds
+    in the warm-up."""
+    incidents: tuple[str, ...] = ()
+    """Incidents with and without a measure, besides the scenario's own."""
+    share: Annotated[float, Ge(0), Le(1)] | None = None
+    """Share of the cars with SUMO's rerouting device; None takes the scenario's."""
+    corridor: str = ""
+    """Name of the trip along which the time-space diagrams go; empty takes the first."""
+    step_s: Annotated[float, Ge(0.1), Le(1)] = 1.0
+    """SUMO's step length."""
+    scale: Annotated[float, Ge(0.01), Le(100)] | None = None
+    """Factor on the demand; None takes the scenario's."""
+    warm_up_s: Annotated[float, Ge(0), Le(86_400)] | None = None
+    """Traffic before the measure; None takes the scenario's."""
+    redraw: bool = False
+    """Whether every seed redraws the trips of the demand."""
+    emissions: bool = False
+    """Whether to measure what every vehicle emits and consumes."""
+
+    def as_json(self) -> Json:
+        """The plan as a JSON object, for the manifest."""
+        values = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
+        return {"study": KIND} | values
+
+    def check(self) -> None:
+        """Checks every name and number before anything runs.
+
+        Raises:
+            UserError: one does not exist or is out of range.
+        """
+        _check(asdict(self))
+        for name in ("measures", "seeds"):
+            values = getattr(self, name)
+            if len(set(values)) < len(values):
+                raise UserError(f"{option(name)} lists a value twice: {', '.join(map(str, values))}")
+        if self.minutes % (EPOCH_S / 60):
+            raise UserError(f"--minutes is {self.minutes:g}; give a multiple of {EPOCH_S / 60:g}")
+        if self.duration_s % (len(self.demand) * EPOCH_S):
+            raise UserError(
+                f"--demand has {len(self.demand)} periods in {self.minutes:g} minutes; each must be a multiple of "
+                f"{EPOCH_S / 60:g} minutes"
+            )
+        for text, place in (*((each, "--measure") for each in self.measures), *self._incidents):
+            found = measure_in(text, place)
+            if not isinstance(found, Advice | SignalControl):
+                if isinstance(found, EgoIncident):
+                    raise UserError(f"{place} has {found.kind!r}, which needs the ego, but this study has none")
+                check_edges(found, place, self.opened)
+        if self.corridor:
+            self.opened.trip(self.corridor)
+        self.scene()
+
+    @property
+    def _incidents(self) -> list[tuple[str, str]]:
+        return [(each, "--incident") for each in self.incidents]
+
+    @property
+    def opened(self) -> Scenario:
+        """The scenario before the study's changes.
+
+        Raises:
+            ScenarioError: it cannot be read.
+        """
+        return _opened(self.scenario)
+
+    def scene(self) -> Scenario:
+        """The scenario as it is driven, without a measure.
+
+        Raises:
+            ScenarioError: it cannot be read.
+        """
+        incidents: list[AnyIncident] = [read_line(text, KINDS, place) for text, place in self._incidents]
+        scenario = driven_at(
+            self.opened,
+            step_s=self.step_s,
+            share=self.share,
+            scale=self.scale,
+            warm_up_s=self.warm_up_s,
+            redraw=self.redraw,
+            incidents=incidents,
+        )
+        hours = [
+            RushHour(
+                scale=factor,
+                from_s=-scenario.sumo.warm_up_s if not number else number * self.period_s,
+                to_s=(number + 1) * self.period_s,
+            )
+            for number, factor in enumerate(self.demand)
+            if factor != 1
+        ]
+        return replace(scenario, incidents=(*scenario.incidents, *hours))
+
+    @property
+    def duration_s(self) -> float:
+        """How long after the warm-up is measured."""
+        return self.minutes * 60
+
+    @property
+    def period_s(self) -> float:
+        """Length of the periods of the demand."""
+        return self.duration_s / len(self.demand)
+
+    @property
+    def along(self) -> Trip:
+        """The trip along which the time-space diagrams go."""
+        return self.opened.trip(self.corridor) if self.corridor else self.opened.ego.trips[0]
+
+    def jobs(self) -> tuple[CongestionJob, ...]:
+        """One for each seed."""
+        return tuple(CongestionJob(self, seed) for seed in self.seeds)
+
+
+@dataclass(frozen=True, slots=True)
+class CongestionJob:
+    """The traffic of one seed."""
+
+    plan: CongestionPlan
+    seed: int
+
+    @property
+    def id(self) -> str:
+        """Its id, which can be a file name."""
+        return f"seed{self.seed}"
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """The warm traffic that its copies start from."""
+        return "", self.seed
+
+    @property
+    def kind(self) -> str:
+        """All take about the same time."""
+        return ""
+
+    @property
+    def situation(self) -> str:
+        """No other depends on it."""
+        return self.id
+
+    @property
+    def wall_s(self) -> float:
+        """Limit of its wall time: a city runs slower than real time."""
+        return 3_600.0 + 10 * self.plan.duration_s * (1 + len(self.plan.measures))
+
+
+def measure_in(text: str, place: str) -> Measure:
+    """The measure that a line describes, as ``closure edge=c2c3``, ``advice share=0.5`` or
+    ``signals control=static``.
+
+    Raises:
+        UserError: it is none.
+    """
+    found: Measure = read_line(text, MEASURES if place == "--measure" else KINDS, place)
+    return found
+
+
+def name_of(text: str) -> str:
+    """Name of a measure in tables; empty text stands for none."""
+    return re.sub(r"\s+", " ", text).strip() or "none"
+
+
+@lru_cache(maxsize=4)
+def _opened(name: str) -> Scenario:
+    return open_scenario(name)
+
+
+def make_congestion(values: Mapping[str, Any]) -> CongestionPlan:
+    """A plan from a manifest's table.
+
+    Raises:
+        UserError: it is another kind of study, or of another version.
+    """
+    plan = dict(values)
+    if plan.pop("study", None) == KIND:
+        with suppress(UserError):  # its message would mention options that the user has not given
+            return _check(plan)
+    raise UserError("the folder has no congestion study of this version; use the version that wrote it")
+
+
+def _check(values: Mapping[str, Any]) -> CongestionPlan:
+    return checked(CongestionPlan, values, lambda steps: ("the study", option(str(steps[0])) if steps else ""))

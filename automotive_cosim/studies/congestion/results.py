@@ -1,0 +1,219 @@
+"""Reads the results of a congestion study, and makes the figures that traffic engineers use.
+
+| figure | what it is |
+|---|---|
+| delay | vehicle-hours lost on the road (SUMO's ``timeLoss``) and waited outside for room to enter |
+| travel time index (TTI) | time of all vehicles divided by what their distances take without congestion |
+| planning time index (PTI) | 95th percentile of the travel time indices of all five minutes of all seeds |
+| buffer index | what that exceeds the mean by, as a share of the mean |
+
+TTI, PTI and buffer index are FHWA's (Travel Time Reliability: Making It There On Time, All The Time, 2006), with
+seeds for days; five minutes count by the distance driven in them, as free-flow time.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.run.store import read_manifest, read_rows
+from automotive_cosim.studies.congestion.outputs import EDGES, read_edges
+from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S, CongestionPlan, make_congestion
+from automotive_cosim.studies.congestion.rows import CongestionRow, EdgeRow, FlowCell, FlowSums, MeasureOutcome
+from automotive_cosim.studies.intervals import SeedMean, seed_mean
+
+LATE = 0.95
+"""Quantile of the planning time index."""
+
+HOUR_S = 3_600.0
+
+
+@dataclass(frozen=True)
+class CongestionStudy:
+    """The content of a congestion study's folder."""
+
+    folder: Path
+    manifest: Json
+    plan: CongestionPlan
+    rows: tuple[CongestionRow, ...]
+    """One row per seed, in the order of the plan."""
+
+    @property
+    def errors(self) -> tuple[CongestionRow, ...]:
+        """Seeds that ended in an infrastructure error."""
+        return tuple(row for row in self.rows if row.error is not None)
+
+    @property
+    def measures(self) -> tuple[str, ...]:
+        """No measure, then all of the plan."""
+        return ("", *self.plan.measures)
+
+    def outcomes(self, measure: str) -> Iterator[tuple[int, MeasureOutcome]]:
+        """Seed and outcome of a measure."""
+        for row in self.rows:
+            for each in row.outcomes:
+                if each.measure == measure:
+                    yield row.seed, each
+
+    @property
+    def classes(self) -> tuple[str, ...]:
+        """Classes of road, those with the most driving first."""
+        driven: dict[str, float] = {}
+        for _, outcome in self.outcomes(""):
+            for cell in outcome.cells:
+                driven[cell.road_class] = driven.get(cell.road_class, 0.0) + cell.flow.distance_m
+        return tuple(sorted(driven, key=lambda name: -driven[name]))
+
+    @cached_property
+    def edges(self) -> dict[tuple[int, str, float], FlowSums]:
+        """The flow by number of the measure, edge and minute, summed over the seeds."""
+        sums: dict[tuple[int, str, float], FlowSums] = {}
+        for row in self.rows:
+            for each in read_edges(self.folder / EDGES / f"{row.id}.csv.gz"):
+                key = each.measure, each.edge, each.from_s
+                sums[key] = sums.get(key, FlowSums()) + _flow(each)
+        return sums
+
+
+def _flow(row: EdgeRow) -> FlowSums:
+    return FlowSums(time_s=row.time_s, lost_s=row.lost_s, distance_m=row.distance_m)
+
+
+def read_congestion(folder: Path) -> CongestionStudy:
+    """Reads a study's folder, even of a running study.
+
+    Raises:
+        UserError: it is not a congestion study's folder, or is damaged.
+    """
+    manifest = read_manifest(folder)
+    plan = make_congestion(manifest["plan"])
+    rows = read_rows(folder, CongestionRow)
+    return CongestionStudy(folder, manifest, plan, tuple(rows[job.id] for job in plan.jobs() if job.id in rows))
+
+
+@dataclass(frozen=True, slots=True)
+class NetworkPart:
+    """The part of a study that a figure is about: a class of road, a period of the demand, or all."""
+
+    road_class: str | None = None
+    period: int | None = None
+
+    def cells(self, plan: CongestionPlan, outcome: MeasureOutcome) -> Iterator[FlowCell]:
+        """Its cells of an outcome."""
+        for cell in outcome.cells:
+            if self.road_class in (None, cell.road_class) and self.period in (
+                None,
+                int(cell.from_s // plan.period_s),
+            ):
+                yield cell
+
+    def hours(self, plan: CongestionPlan) -> float:
+        """How long it lasts."""
+        return (plan.duration_s if self.period is None else plan.period_s) / HOUR_S
+
+
+WHOLE = NetworkPart()
+
+
+def flow_in(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> FlowSums:
+    """The flow of a part."""
+    return sum((cell.flow for cell in part.cells(plan, outcome)), FlowSums())
+
+
+def waited_s(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
+    """Vehicle-seconds outside, waiting for room to enter; only of all classes of road together."""
+    states = [s for s in outcome.states[1:] if part.period in (None, int((s.at_s - 1) // plan.period_s))]
+    return 0.0 if part.road_class else sum(each.backlog for each in states) * INTERVAL_S
+
+
+def delay_h(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
+    """Vehicle-hours of delay per hour."""
+    lost_s = flow_in(plan, outcome, part).lost_s + waited_s(plan, outcome, part)
+    return lost_s / HOUR_S / part.hours(plan)
+
+
+def detour_h(
+    plan: CongestionPlan, before: MeasureOutcome, after: MeasureOutcome, part: NetworkPart = WHOLE
+) -> float:
+    """Vehicle-hours per hour that what is driven more takes without congestion; negative if less is driven."""
+    free_s = flow_in(plan, after, part).free_s - flow_in(plan, before, part).free_s
+    return free_s / HOUR_S / part.hours(plan)
+
+
+def throughput_per_h(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
+    """Arrivals per hour."""
+    first_s = 0.0 if part.period is None else part.period * plan.period_s
+    last_s = first_s + part.hours(plan) * HOUR_S
+    arrived = {each.at_s: each.arrived for each in outcome.states}
+    return (arrived[last_s] - arrived[first_s]) / part.hours(plan)
+
+
+def queue_m(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> tuple[float, float]:
+    """Mean total length of the queues, and the longest one of a lane, in m."""
+    found = list(part.cells(plan, outcome))
+    epochs = part.hours(plan) * HOUR_S / EPOCH_S
+    return sum(cell.queue_m for cell in found) / epochs, max((cell.longest_m for cell in found), default=0.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Indices:
+    """The indices of a part."""
+
+    travel_time: float
+    planning_time: float
+
+    @property
+    def buffer(self) -> float:
+        """What the 95th percentile exceeds the mean by, as a share of the mean."""
+        return self.planning_time / self.travel_time - 1
+
+
+def indices(plan: CongestionPlan, outcomes: Iterable[MeasureOutcome], part: NetworkPart = WHOLE) -> Indices | None:
+    """The indices over all seeds and five minutes; None if nobody drove there."""
+    epochs: dict[tuple[int, float], FlowSums] = {}
+    for number, outcome in enumerate(outcomes):
+        for cell in part.cells(plan, outcome):
+            key = number, cell.from_s
+            epochs[key] = epochs.get(key, FlowSums()) + cell.flow
+    driven = [flow for flow in epochs.values() if flow.free_s > 0]
+    if not driven:
+        return None
+    free_s = np.array([flow.free_s for flow in driven])
+    index = np.array([flow.time_s for flow in driven]) / free_s
+    order = np.argsort(index)
+    reached = np.cumsum(free_s[order]) / free_s.sum()
+    late = float(index[order][int(np.searchsorted(reached, LATE))])
+    return Indices(float((index * free_s).sum() / free_s.sum()), late)
+
+
+def strongest(study: CongestionStudy) -> int:
+    """Number of the measure that costs or saves most, detours included; 0 without measures."""
+    changes = [cost(study, measure) for measure in study.plan.measures]
+    sizes = [0.0 if each is None else abs(each.value) for each in changes]
+    return 1 + sizes.index(max(sizes)) if sizes else 0
+
+
+def change(study: CongestionStudy, measure: str, part: NetworkPart = WHOLE) -> SeedMean | None:
+    """What a measure adds to the delay, in vehicle-hours per hour, seed by seed."""
+    return paired(study, measure, lambda one, two: delay_h(study.plan, two, part) - delay_h(study.plan, one, part))
+
+
+def cost(study: CongestionStudy, measure: str) -> SeedMean | None:
+    """What a measure costs in delay and detours, in vehicle-hours per hour, seed by seed."""
+    plan = study.plan
+    return paired(
+        study, measure, lambda one, two: delay_h(plan, two) - delay_h(plan, one) + detour_h(plan, one, two)
+    )
+
+
+def paired(
+    study: CongestionStudy, measure: str, of: Callable[[MeasureOutcome, MeasureOutcome], float]
+) -> SeedMean | None:
+    """The mean of a figure of the traffic without and with a measure, seed by seed."""
+    before = dict(study.outcomes(""))
+    return seed_mean((seed, of(before[seed], outcome)) for seed, outcome in study.outcomes(measure))

@@ -1,0 +1,116 @@
+"""The rows of a congestion study: one per seed, with the traffic without a measure and with each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from automotive_cosim.run.row import InColumns, JobRow
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlowSums:
+    """Sums over all vehicles on some edges in some time; of two, their sum."""
+
+    time_s: float = 0.0
+    """Time that they spent there."""
+    lost_s: float = 0.0
+    """SUMO's ``timeLoss``: the part by which they were slower than limits and drivers allow, at signals too."""
+    standing_s: float = 0.0
+    """The part of it in which they stood."""
+    distance_m: float = 0.0
+    """Driven there."""
+
+    @property
+    def free_s(self) -> float:
+        """What the same distances take without congestion and signals."""
+        return max(0.0, self.time_s - self.lost_s)
+
+    def __add__(self, other: FlowSums) -> FlowSums:
+        return FlowSums(
+            time_s=self.time_s + other.time_s,
+            lost_s=self.lost_s + other.lost_s,
+            standing_s=self.standing_s + other.standing_s,
+            distance_m=self.distance_m + other.distance_m,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlowCell:
+    """The flow on the roads of one class in five minutes."""
+
+    from_s: float
+    """Seconds after the end of the warm-up."""
+    road_class: str
+    """OpenStreetMap's, or ``junctions``, ``other``, ``unknown`` (``outputs``)."""
+    flow: Annotated[FlowSums, InColumns("")]
+    queue_m: float
+    """Mean over time of the total length of the queues, by SUMO's queue output."""
+    longest_m: float
+    """The longest queue of a lane."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class FlowState:
+    """The traffic as a whole at an instant; counts begin with the measure."""
+
+    at_s: float
+    """Seconds after the end of the warm-up."""
+    running: int
+    backlog: int
+    """Vehicles that wait outside for room to enter."""
+    departed: int
+    arrived: int
+    teleported: int
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Emitted:
+    """What the vehicles of one emission class emitted and consumed in one period of the demand."""
+
+    period: int
+    emission_class: str
+    """SUMO's name, as ``HBEFA4/PC_petrol_Euro-4``."""
+    co2_g: float
+    nox_g: float
+    fuel_g: float
+    energy_wh: float
+    noise_s: float
+    """Sound energy, as seconds of a car at 50 km/h (``traffic.accounts.LOUD_DB``)."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MeasureOutcome:
+    """The traffic without a measure, or with one."""
+
+    measure: str
+    """As in the plan; empty without one."""
+    cells: tuple[FlowCell, ...]
+    states: tuple[FlowState, ...]
+    """Every minute, the first at the end of the warm-up."""
+    emitted: tuple[Emitted, ...] = ()
+    gridlock: str = ""
+    """Why the traffic counts as gridlocked at the end; empty while it flows. It counts all the same."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CongestionRow(JobRow):
+    """One seed."""
+
+    scenario: str
+    seed: int
+    outcomes: tuple[MeasureOutcome, ...] = ()
+    """Without a measure first, then in the order of the plan."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class EdgeRow:
+    """The flow on one edge in one minute: a line of ``edges/SEED.csv.gz``."""
+
+    measure: int
+    """0 without a measure, then their numbers in the plan."""
+    edge: str
+    from_s: float
+    time_s: float
+    lost_s: float
+    distance_m: float

@@ -1,0 +1,273 @@
+"""The tables of a congestion study."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from datetime import timedelta
+from statistics import fmean
+
+from automotive_cosim.contracts import KMH_PER_MPS
+from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.studies.congestion.plan import name_of
+from automotive_cosim.studies.congestion.results import (
+    HOUR_S,
+    WHOLE,
+    CongestionStudy,
+    NetworkPart,
+    change,
+    cost,
+    delay_h,
+    detour_h,
+    flow_in,
+    indices,
+    paired,
+    queue_m,
+    strongest,
+    throughput_per_h,
+    waited_s,
+)
+from automotive_cosim.studies.congestion.rows import Emitted, FlowSums, MeasureOutcome
+from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
+from automotive_cosim.studies.tables import NONE, told, told_mean
+from automotive_cosim.traffic.network import Network, read_network
+from automotive_cosim.traffic.options import read_configuration
+
+WORST = 15
+"""Roads in the table of those where the delay changes most."""
+
+BEFORE = "none"
+
+
+def tables(study: CongestionStudy) -> list[Table]:
+    """All tables that apply, the most important first."""
+    made = (whole(study), by_class(study), emissions(study), roads(study), errors(study))
+    return [table for table in made if table.rows]
+
+
+def mean(study: CongestionStudy, measure: str, of: Callable[[MeasureOutcome], float]) -> float:
+    """The mean of a figure over the seeds."""
+    found = [of(outcome) for _, outcome in study.outcomes(measure)]
+    return fmean(found) if found else 0.0
+
+
+def whole(study: CongestionStudy) -> Table:
+    """The network as a whole, without a measure and with each."""
+    plan = study.plan
+    rows: list[TableRow] = []
+    for measure in study.measures:
+        outcomes = [outcome for _, outcome in study.outcomes(measure)]
+        found = indices(plan, outcomes)
+        if found is None:
+            continue
+        flow = sum((flow_in(plan, outcome) for outcome in outcomes), FlowSums())
+        before_h = mean(study, "", lambda each: delay_h(plan, each))
+        added = change(study, measure) if measure else None
+        rows.append(
+            (
+                name_of(measure),
+                f"{mean(study, measure, lambda each: delay_h(plan, each)):.2f}",
+                told_mean(added, "+.2f"),
+                NONE if added is None or not before_h else told(added.value / before_h, "+.0%"),
+                told_mean(
+                    paired(study, measure, lambda one, two: detour_h(plan, one, two)) if measure else None, "+.2f"
+                ),
+                told_mean(cost(study, measure) if measure else None, "+.2f"),
+                f"{found.travel_time:.2f}",
+                f"{found.planning_time:.2f}",
+                f"{found.buffer:.0%}",
+                f"{KMH_PER_MPS * flow.distance_m / flow.time_s:.1f}",
+                f"{mean(study, measure, lambda each: queue_m(plan, each)[0]):.0f}",
+                f"{max(queue_m(plan, each)[1] for each in outcomes):.0f}",
+                f"{mean(study, measure, lambda each: throughput_per_h(plan, each)):.0f}",
+                f"{flow.distance_m / 1000 / len(outcomes) / WHOLE.hours(plan):.0f}",
+                f"{mean(study, measure, lambda each: waited_s(plan, each)) / HOUR_S / WHOLE.hours(plan):.2f}",
+            )
+        )
+    columns = (
+        "Measure",
+        "Delay, veh-h/h",
+        "Change, veh-h/h",
+        "Change",
+        "Detours, veh-h/h",
+        "Both, veh-h/h",
+        "Travel time index",
+        "Planning time index",
+        "Buffer index",
+        "Mean speed, km/h",
+        "Queues, m",
+        "Longest queue, m",
+        "Arrivals per h",
+        "Veh-km per h",
+        "Waiting outside, veh-h/h",
+    )
+    note = (
+        "Means over the seeds. Delay: vehicle-hours lost on the road (SUMO's time loss, signals included) and "
+        "waited outside for room to enter. Change: seed by seed, against the copy of the same traffic without the "
+        f"measure; in brackets 95 % t intervals, from {LEAST_SEEDS} seeds. Detours: what is driven more, in "
+        "vehicle-hours without congestion; negative if less is driven, as in a jam. Travel time index: time of all "
+        "vehicles divided by that of the same distances without congestion; planning time index: its 95th "
+        "percentile over all five minutes of all seeds; buffer index: what that exceeds the mean by. Queues: mean "
+        "total length; longest: of a lane, in any seed."
+    )
+    return Table("whole", "The network with each measure", columns, tuple(rows), note)
+
+
+def by_class(study: CongestionStudy) -> Table:
+    """The same by class of road and period of the demand."""
+    plan = study.plan
+    rows: list[TableRow] = []
+    periods = (None, *range(len(plan.demand))) if len(plan.demand) > 1 else (None,)
+    for period in periods:
+        for road_class in study.classes:
+            part = NetworkPart(road_class, period)
+            for measure in study.measures:
+                outcomes = [outcome for _, outcome in study.outcomes(measure)]
+                found = indices(plan, outcomes, part)
+                if found is None:
+                    continue
+                flow = sum((flow_in(plan, outcome, part) for outcome in outcomes), FlowSums())
+                queues = [queue_m(plan, outcome, part) for outcome in outcomes]
+                rows.append(
+                    (
+                        period_name(study, period),
+                        road_class,
+                        name_of(measure),
+                        f"{fmean(delay_h(plan, each, part) for each in outcomes):.2f}",
+                        told_mean(change(study, measure, part) if measure else None, "+.2f"),
+                        f"{found.travel_time:.2f}",
+                        f"{found.planning_time:.2f}",
+                        f"{found.buffer:.0%}",
+                        f"{fmean(total for total, _ in queues):.0f}",
+                        f"{max(longest for _, longest in queues):.0f}",
+                        f"{flow.distance_m / 1000 / len(outcomes) / part.hours(plan):.0f}",
+                    )
+                )
+    columns = (
+        "Time",
+        "Road class",
+        "Measure",
+        "Delay, veh-h/h",
+        "Change, veh-h/h",
+        "Travel time index",
+        "Planning time index",
+        "Buffer index",
+        "Queues, m",
+        "Longest queue, m",
+        "Veh-km per h",
+    )
+    note = "Classes are OpenStreetMap's; waiting outside belongs to none of them. Figures as above."
+    return Table("by_class", "By class of road and hour", columns, tuple(rows), note, heads=3)
+
+
+def period_name(study: CongestionStudy, period: int | None) -> str:
+    """Clock times of a period with the factor on its demand, as ``08:30 to 09:00, demand × 1.5``."""
+    plan = study.plan
+    start = plan.opened.start
+    if period is None:
+        return "all"
+    first, last = (start + timedelta(seconds=number * plan.period_s) for number in (period, period + 1))
+    return f"{first:%H:%M} to {last:%H:%M}, demand × {plan.demand[period]:g}"
+
+
+def emissions(study: CongestionStudy) -> Table:
+    """What all vehicles emit and consume, by emission class."""
+    hours = WHOLE.hours(study.plan)
+
+    def per_h(outcome: MeasureOutcome, name: str, of: Callable[[Emitted], float]) -> float:
+        return sum(of(each) for each in outcome.emitted if each.emission_class == name) / hours
+
+    kinds: tuple[tuple[Callable[[Emitted], float], str], ...] = (
+        (lambda each: each.co2_g / 1000, ".1f"),
+        (lambda each: each.nox_g, ".1f"),
+        (lambda each: each.fuel_g / 1000, ".1f"),
+        (lambda each: each.energy_wh / 1000, ".2f"),
+        (lambda each: each.noise_s / HOUR_S, ".2f"),
+    )
+    named = sorted({each.emission_class for _, outcome in study.outcomes("") for each in outcome.emitted})
+    rows: list[TableRow] = []
+    for name in named:
+        before = dict(study.outcomes(""))
+        for measure in study.measures:
+            cells = []
+            for of, form in kinds:
+                if measure:
+                    added = seed_mean(
+                        (seed, per_h(outcome, name, of) - per_h(before[seed], name, of))
+                        for seed, outcome in study.outcomes(measure)
+                    )
+                    cells.append(told_mean(added, f"+{form}"))
+                else:
+                    cells.append(f"{fmean(per_h(each, name, of) for each in before.values()):{form}}")
+            rows.append((name, name_of(measure), *cells))
+    columns = (
+        "Emission class",
+        "Measure",
+        "CO2, kg/h",
+        "NOx, g/h",
+        "Fuel, kg/h",
+        "Electricity, kWh/h",
+        "Noise, h/h",
+    )
+    note = (
+        "Without a measure as it is, with one as the change. Classes are those that the demand's vehicle types "
+        "declare (emissionClass), else SUMO's own for the kind of vehicle. Noise is sound energy at the vehicles "
+        "(Harmonoise), in hours of a car at 50 km/h, 65 dB(A)."
+    )
+    return Table("emissions", "Emissions and consumption", columns, tuple(rows), note, heads=2)
+
+
+def roads(study: CongestionStudy) -> Table:
+    """The roads on which the strongest measure changes the delay most; without any, those with the most delay."""
+    network = network_of(study)
+    rows = [
+        (
+            network.edges[edge].name or NONE,
+            edge,
+            f"{before:.2f}",
+            *((f"{after:.2f}", told(after - before, "+.2f")) if study.plan.measures else ()),
+        )
+        for edge, before, after in worst(study)
+    ]
+    measured = ("Delay with the measure", "Change") if study.plan.measures else ()
+    note = "Vehicle-hours of delay per hour on the edge, means over the seeds."
+    if study.plan.measures:
+        note = f"{note[:-1]}, with “{name_of(study.measures[strongest(study)])}”."
+    title = "Roads where the delay changes most" if study.plan.measures else "Roads with the most delay"
+    return Table("roads", title, ("Street", "Edge", "Delay", *measured), tuple(rows), note, heads=2)
+
+
+def worst(study: CongestionStudy, most: int = WORST) -> list[tuple[str, float, float]]:
+    """Edges for cars with their delay in vehicle-hours per hour without and with the strongest measure."""
+    before, after = (delay_of_edges(study, number) for number in (0, strongest(study)))
+    known = network_of(study).edges
+    by = (lambda edge: after.get(edge, 0.0) - before.get(edge, 0.0)) if study.plan.measures else before.__getitem__
+    named = sorted({edge for edge in (*before, *after) if edge in known}, key=lambda edge: -abs(by(edge)))
+    return [(edge, before.get(edge, 0.0), after.get(edge, 0.0)) for edge in named[:most]]
+
+
+def delay_of_edges(study: CongestionStudy, number: int) -> dict[str, float]:
+    """Delay of every edge with a measure, in vehicle-hours per hour, mean over the seeds."""
+    sums: dict[str, float] = {}
+    for (measure, edge, _), flow in study.edges.items():
+        if measure == number:
+            sums[edge] = sums.get(edge, 0.0) + flow.lost_s
+    divisor = HOUR_S * WHOLE.hours(study.plan) * max(1, sum(row.error is None for row in study.rows))
+    return {edge: lost_s / divisor for edge, lost_s in sums.items()}
+
+
+def network_of(study: CongestionStudy) -> Network:
+    """The network of the scenario."""
+    return read_network(read_configuration(study.plan.opened.config).net)
+
+
+def errors(study: CongestionStudy) -> Table:
+    """Seeds that ended in an infrastructure error."""
+    rows = tuple((row.id, row.error_kind or "", row.error or "") for row in study.errors)
+    note = "Rerun the command to retry them."
+    return Table("errors", "Infrastructure errors", ("Seed", "Kind", "Message"), rows, note, heads=3)
+
+
+def all_measures(study: CongestionStudy) -> Iterator[tuple[int, str]]:
+    """Number and name of no measure and of each."""
+    for number, measure in enumerate(study.measures):
+        yield number, name_of(measure)

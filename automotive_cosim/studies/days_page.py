@@ -1,0 +1,251 @@
+"""The report of a study from day to day."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from statistics import fmean
+from typing import TYPE_CHECKING
+
+from automotive_cosim.contracts.plain import counted
+from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
+from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.studies.days import NEAR, SETTLED, WEEK, DaysRow, DaysStudy, StudyDay, read_days
+from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
+from automotive_cosim.studies.shown import ShownStudy, write_shown
+from automotive_cosim.studies.tables import NONE, told, told_mean
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+LEAST_SHARE = 0.0005
+"""Smaller differences are none in the answer, which has a tenth of a per cent."""
+
+EQUILIBRIUM = "user equilibrium"
+
+
+def write_days(folder: Path) -> Path:
+    """Writes the report of a study from day to day into its folder; returns ``report.html``.
+
+    Raises:
+        UserError: the folder is not such a study's, or cannot be written.
+        SetupError: the extra ``report`` is not installed.
+    """
+    study = read_days(folder)
+    plan = study.plan
+    about = f"{counted(len(plan.seeds), 'seed')}, up to {counted(plan.days, 'day')} of {plan.minutes:g} minutes"
+    shown = ShownStudy("Study from day to day", about, answer(study), warnings(study), tables(study), charts(study))
+    return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
+
+
+def named(share: float | None) -> str:
+    """What a share is called."""
+    return EQUILIBRIUM if share is None else f"{share:.0%} advised"
+
+
+def shares(study: DaysStudy) -> list[float | None]:
+    """The shares that were run, the equilibrium last."""
+    return [share for share in (*study.plan.shares, None) if study.of(share)]
+
+
+def mean_s(study: DaysStudy, share: float | None) -> SeedMean | None:
+    """Mean travel time per trip once it has settled, over the seeds."""
+    return over_seeds(study.of(share), lambda day: day.mean_s)
+
+
+def over_seeds(rows: Sequence[DaysRow], of: Callable[[StudyDay], float | None]) -> SeedMean | None:
+    """The mean of a figure of the last days over the seeds."""
+    found = [(row.seed, row.last(of)) for row in rows]
+    return seed_mean((seed, value) for seed, value in found if value is not None)
+
+
+def answer(study: DaysStudy) -> str:
+    """The best share in a sentence, beside nobody advised and beside the user equilibrium."""
+    found = {share: mean for share in shares(study) if share is not None and (mean := mean_s(study, share))}
+    if not found:
+        return "No share was driven to its end."
+    best = min(found, key=lambda share: found[share].value)
+    least_s = found[best].value
+    parts = []
+    others = {"with nobody advised": found.get(0.0) if best else None, f"in the {EQUILIBRIUM}": mean_s(study, None)}
+    for what, mean in others.items():
+        if mean is not None:
+            share = least_s / mean.value - 1
+            far = f"{abs(share):.1%} {'less' if share < 0 else 'more'} than"
+            parts.append(f"{far if abs(share) >= LEAST_SHARE else 'as long as'} {what}")
+    beside = f", {' and '.join(parts)}" if parts else ""
+    over = counted(found[best].seeds, "seed")
+    return (
+        f"A trip is shortest with {best:.0%} of the drivers advised: {least_s:.0f} s{beside}; "
+        f"{_settled(study, best)}, over {over}."
+    )
+
+
+def _settled(study: DaysStudy, share: float | None) -> str:
+    days = [row.settled for row in study.of(share)]
+    known = [day for day in days if day is not None]
+    if known == [0] * len(days):
+        return "nobody takes another route"
+    if len(known) == len(days):
+        return f"traffic settles by day {max(known)}"
+    return f"traffic does not settle in {study.plan.days} days in {len(days) - len(known)} of {len(days)} seeds"
+
+
+def warnings(study: DaysStudy) -> list[str]:
+    """Warnings to read before using the study's figures."""
+    found = []
+    seeds = len(study.plan.seeds)
+    if seeds < LEAST_SEEDS:
+        found.append(f"{counted(seeds, 'seed')}: no interval of a mean below {LEAST_SEEDS} seeds.")
+    gap = over_seeds(study.of(None), lambda day: day.relative_gap)
+    if gap is not None and gap.value > NEAR:
+        found.append(
+            f"The nearest that was found to a user equilibrium has a relative gap of {gap.value:.1%}, more than "
+            f"{NEAR:.0%}: differences from it are differences from a guess."
+        )
+    unsettled = [
+        named(share)
+        for share in shares(study)
+        if share is not None and any(row.settled is None for row in study.of(share))
+    ]
+    if unsettled:
+        found.append(f"Not settled in every seed: {', '.join(unsettled)}; run more --days.")
+    late = sum(row.days[-1].unfinished for row in study.rows if row.days)
+    if late:
+        found.append(f"{counted(late, 'trip')} had not arrived at the end of the last days and count up to then.")
+    teleported = sum(row.days[-1].teleports for row in study.rows if row.days)
+    if teleported:
+        found.append(f"SUMO moved {counted(teleported, 'vehicle')} on that stood too long, on the last days.")
+    return found
+
+
+def tables(study: DaysStudy) -> list[Table]:
+    """All tables."""
+    rows: list[TableRow] = []
+    nobody = {row.seed: row.last(lambda day: day.mean_s) or 0.0 for row in study.of(0.0)}
+    best = {row.seed: row.last(lambda day: day.mean_s) or 0.0 for row in study.of(None)}
+    for share in shares(study):
+        here = study.of(share)
+        own = {row.seed: row.last(lambda day: day.mean_s) or 0.0 for row in here}
+        against = [
+            told_mean(seed_mean((seed, own[seed] - other[seed]) for seed in own.keys() & other.keys()), "+.1f")
+            for other in (nobody, best)
+        ]
+        settled = [row.settled for row in here]
+        rows.append(
+            (
+                named(share),
+                str(len(here)),
+                NONE
+                if share is None or None in settled
+                else f"{fmean(day for day in settled if day is not None):.0f}",
+                told_mean(mean_s(study, share), ".1f"),
+                told_mean(over_seeds(here, lambda day: day.advised_s), ".1f"),
+                told_mean(over_seeds(here, lambda day: day.others_s), ".1f"),
+                NONE if share == 0 else against[0],
+                NONE if share is None else against[1],
+                _per_cent(over_seeds(here, lambda day: day.relative_gap)),
+            )
+        )
+    columns = (
+        "Drivers",
+        "Seeds",
+        "Settled on day",
+        "Trip, s",
+        "Advised, s",
+        "Others, s",
+        "Against nobody, s",
+        "Against equilibrium, s",
+        "Relative gap",
+    )
+    note = (
+        f"Means of the last {WEEK} days, from the planned departure to the arrival. Settled: the mean of {WEEK} "
+        f"days differs by less than {SETTLED:.0%} from that of the {WEEK} days before. User equilibrium: the day "
+        "with the smallest gap. Differences: seed by seed. "
+        "Relative gap: what all drivers lost against the routes that were quickest that day; 0 is a user "
+        "equilibrium."
+    )
+    return [Table("shares", "Travel time by the share of advised drivers", columns, tuple(rows), note)]
+
+
+def _per_cent(mean: SeedMean | None) -> str:
+    return NONE if mean is None else told(mean.value, ".1%")
+
+
+def charts(study: DaysStudy) -> dict[str, tuple[str, str, str]]:
+    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+
+    Raises:
+        SetupError: matplotlib is not installed.
+    """
+    made: dict[str, tuple[str, Drawing | None]] = {
+        "days": ("Travel time from day to day", _days(study)),
+        "shares": ("Travel time by the share of advised drivers", _shares(study)),
+    }
+    return {
+        name: (title, drawn(name, drawing, WIDE_IN), drawn(name, drawing, NARROW_IN))
+        for name, (title, drawing) in made.items()
+        if drawing is not None
+    }
+
+
+def _days(study: DaysStudy) -> Drawing | None:
+    found = shares(study)
+    if not found:
+        return None
+
+    def draw(axes: Axes) -> None:
+        for number, share in enumerate(found):
+            rows = study.of(share)
+            shortest = min(len(row.days) for row in rows)
+            means_s = [fmean(row.days[day].mean_s for row in rows) for day in range(shortest)]
+            axes.plot(
+                range(shortest),
+                means_s,
+                marker=None if share is None else MARKERS[number % len(MARKERS)],
+                linestyle="--" if share is None else "-",
+                color=INK if share is None else PALETTE[number % len(PALETTE)],
+                markersize=5,
+                label=named(share),
+            )
+        axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
+        axes.locator_params(axis="x", integer=True)
+        axes.set_xlabel("day")
+        axes.set_ylabel("mean travel time, s")
+        legend(axes)
+
+    return 3.4 + 0.23 * len(found), draw
+
+
+def _shares(study: DaysStudy) -> Drawing | None:
+    advised = [share for share in shares(study) if share is not None]
+    if len(advised) < 2:
+        return None
+    lines: dict[str, Callable[[StudyDay], float | None]] = {
+        "all": lambda day: day.mean_s,
+        "advised": lambda day: day.advised_s,
+        "others": lambda day: day.others_s,
+    }
+
+    def draw(axes: Axes) -> None:
+        for number, (name, of) in enumerate(lines.items()):
+            known = [(share, mean) for share in advised if (mean := over_seeds(study.of(share), of)) is not None]
+            reach = [0.0 if mean.interval is None else mean.interval.high - mean.value for _, mean in known]
+            axes.errorbar(
+                [100 * share for share, _ in known],
+                [mean.value for _, mean in known],
+                yerr=reach,
+                marker=MARKERS[number],
+                color=PALETTE[number],
+                markersize=6,
+                label=name,
+            )
+        equal = mean_s(study, None)
+        if equal is not None:
+            axes.axhline(equal.value, color=INK, linestyle="--", linewidth=1, label=EQUILIBRIUM)
+        axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
+        axes.set_xlabel("% of the drivers advised")
+        axes.set_ylabel("mean travel time of the last days, s")
+        legend(axes)
+
+    return 4.4, draw

@@ -1,0 +1,69 @@
+"""Writes the report of a study of a whole network: one page, its tables and plots as files."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.report.charts import INK
+from automotive_cosim.report.tables import Table
+from automotive_cosim.report.templates import render
+from automotive_cosim.run.record import write_whole
+from automotive_cosim.run.store import cannot_write
+
+
+@dataclass(frozen=True, slots=True)
+class ShownStudy:
+    """What a report shows."""
+
+    title: str
+    """What kind of study it is."""
+    about: str
+    """What was run, in a few words."""
+    answer: str
+    """The result in one sentence."""
+    warnings: Sequence[str]
+    tables: Sequence[Table]
+    plots: Mapping[str, tuple[str, str, str]]
+    """By name: title, SVG for a wide page, SVG for a narrow one."""
+
+
+def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, errors: int) -> Path:
+    """Writes ``report.html``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
+
+    Args:
+        folder: the study's.
+        shown: what to show.
+        plan: the study's plan.
+        manifest: with its starts.
+        errors: number of infrastructure errors.
+
+    Raises:
+        UserError: they cannot be written.
+    """
+    try:
+        for name in ("tables", "plots"):
+            (folder / name).mkdir(exist_ok=True)
+        for table in shown.tables:
+            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
+                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
+        for name, (_, wide, _) in shown.plots.items():
+            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
+        text = render(
+            "studies/network.html",
+            title=shown.title,
+            about=shown.about,
+            answer=shown.answer,
+            warnings=shown.warnings,
+            tables=shown.tables,
+            plots=shown.plots,
+            errors=errors,
+            plan=plan,
+            starts=manifest["starts"],
+        )
+        write_whole(folder / "report.html", text)
+    except OSError as error:
+        raise cannot_write(folder, error) from error
+    return folder / "report.html"

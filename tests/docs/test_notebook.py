@@ -1,0 +1,24 @@
+"""The notebook is made from its script, and what the script prints is what it says."""
+
+import runpy
+
+import pytest
+
+from tests.docs.notebook import NOTEBOOK, SCRIPT, made
+
+
+def test_the_notebook_is_that_of_the_script():
+    assert NOTEBOOK.read_text(encoding="utf-8") == made(), "renew it: python -m tests.docs.notebook --renew"
+
+
+@pytest.mark.long
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_the_script_runs_and_only_the_agent_that_knows_its_place_wins_both(capsys):
+    told = runpy.run_path(str(SCRIPT))
+    assert told["reward"] == 1.0
+    won = {name: [told["outcomes"][name, half] for half in ("first", "second")] for name in ("t3a", "asurada")}
+    assert won["asurada"] == [True, True]
+    assert False in won["t3a"]
+    assert not told["blind"].success
+    assert "The driver says: " in capsys.readouterr().out

@@ -1,0 +1,137 @@
+"""OpenSCENARIO XML as a scenario: the declared subset, and what is outside."""
+
+from __future__ import annotations
+
+from datetime import datetime
+
+import pytest
+
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.exchange.incoming import import_openscenario
+from automotive_cosim.exchange.opendrive import write_opendrive
+from automotive_cosim.scenarios import load
+from automotive_cosim.scenarios.incidents import VehicleAction
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.options import read_configuration
+
+VEHICLE = """<ScenarioObject name="{}"><Vehicle name="car" vehicleCategory="car"><BoundingBox>
+<Center x="1.35" y="0" z="0.75"/><Dimensions width="1.8" length="4.5" height="1.5"/></BoundingBox>
+</Vehicle></ScenarioObject>"""
+SPEED = """<PrivateAction><LongitudinalAction><SpeedAction><SpeedActionDynamics/><SpeedActionTarget>
+<AbsoluteTargetSpeed value="{}"/></SpeedActionTarget></SpeedAction></LongitudinalAction>
+</PrivateAction>"""
+LANES = """<PrivateAction><LateralAction><LaneChangeAction><LaneChangeActionDynamics/><LaneChangeTarget>
+<RelativeTargetLane entityRef="other" value="{}"/></LaneChangeTarget></LaneChangeAction></LateralAction>
+</PrivateAction>"""
+PLACE = "<PrivateAction><TeleportAction><Position>{}</Position></TeleportAction></PrivateAction>"
+GOAL = """<PrivateAction><RoutingAction><AcquirePositionAction><Position>
+<WorldPosition x="1000" y="213"/></Position></AcquirePositionAction></RoutingAction></PrivateAction>"""
+SKY = """<GlobalAction><EnvironmentAction><Environment name="sky">{}</Environment></EnvironmentAction>
+</GlobalAction>"""
+
+
+def event(name, at_s, action):
+    return f"""<Event name="{name}" priority="override"><Action name="{name}">{action}</Action>
+<StartTrigger><ConditionGroup><Condition name="t" delay="0" conditionEdge="none"><ByValueCondition>
+<SimulationTimeCondition value="{at_s}"
+rule="greaterThan"/></ByValueCondition></Condition></ConditionGroup></StartTrigger></Event>"""
+
+
+FOG = """<TimeOfDay animation="true" dateTime="2026-11-05T07:30:00"/>
+<Weather temperature="278.15"><Fog visualRange="150"/></Weather>"""
+RAIN = '<Weather><Precipitation precipitationType="rain" precipitationIntensity="5"/></Weather>'
+TEXT = f"""<?xml version="1.0" encoding="UTF-8"?>
+<OpenSCENARIO><FileHeader/><CatalogLocations/>
+<RoadNetwork><LogicFile filepath="road.xodr"/></RoadNetwork>
+<Entities>{VEHICLE.format("ego")}{VEHICLE.format("other")}</Entities>
+<Storyboard><Init><Actions>{SKY.format(FOG)}
+<Private entityRef="ego">{PLACE.format('<WorldPosition x="320" y="239.9"/>')}{GOAL}</Private>
+<Private entityRef="other">{PLACE.format('<WorldPosition x="420" y="231.4"/>')}{SPEED.format(8)}</Private>
+</Actions></Init>
+<Story name="s"><Act name="a"><ManeuverGroup name="g" maximumExecutionCount="1">
+<Actors selectTriggeringEntities="false"><EntityRef entityRef="other"/></Actors><Maneuver name="m">
+{event("moves", 4, LANES.format(1))}{event("brakes", 6, SPEED.format(3))}{event("rain", 30, SKY.format(RAIN))}
+</Maneuver></ManeuverGroup><StartTrigger/></Act></Story><StopTrigger/></Storyboard></OpenSCENARIO>
+"""
+
+
+def grid():
+    return read_configuration(open_scenario("grid").config).net
+
+
+@pytest.fixture
+def file(tmp_path):
+    (tmp_path / "pass.xosc").write_text(TEXT, "utf-8")
+    return tmp_path / "pass.xosc"
+
+
+def test_the_subset_becomes_a_scenario(file, tmp_path):
+    made = load(import_openscenario(file, tmp_path / "made", grid(), country="FR"))
+    assert made.start.replace(tzinfo=None) == datetime(2026, 11, 5, 7, 30)
+    (trip,) = made.ego.trips
+    assert (trip.from_edge, trip.to_edge) == ("c0c1", "c3c4")
+    first, later = made.weather
+    assert (first.weather.visibility, first.weather.temperature_2m, first.weather.weather_code) == (150.0, 5.0, 45)
+    assert (later.at_s, later.weather.precipitation, later.weather.visibility) == (30.0, 5.0, 150.0)
+    (other,) = made.incidents
+    assert other.route[0] == "c0c1"
+    assert other.lane == 0
+    assert other.position_m == pytest.approx(420 + 3.6 - 315.6, abs=1.0), "the front bumper"
+    assert other.actions == (VehicleAction(4.0, None, 1), VehicleAction(6.0, 10.8, 0))
+
+
+@pytest.mark.slow
+def test_an_opendrive_file_becomes_the_network(file, tmp_path):
+    write_opendrive(grid(), tmp_path / "road.xodr")
+    made = load(import_openscenario(file, tmp_path / "made"))
+    (other,) = made.incidents
+    assert other.position_m == pytest.approx(420 + 3.6 - 315.6, abs=1.0)
+    on_lane = '<LanePosition roadId="210" laneId="-2" s="104.6"/>'
+    file.write_text(TEXT.replace('<WorldPosition x="420" y="231.4"/>', on_lane), "utf-8")
+    again = load(import_openscenario(file, tmp_path / "again"))
+    assert again.incidents[0].route == other.route
+    assert again.incidents[0].position_m == pytest.approx(other.position_m, abs=1.0)
+
+
+@pytest.mark.sumo
+def test_an_imported_vehicle_does_what_the_file_says(file, tmp_path, simulations: Simulations):
+    scenario = open_scenario(import_openscenario(file, tmp_path / "made", grid(), country="FR"))
+    traffic = simulations.warm(scenario).depart(EgoPlan(scenario.ego.trips[0], "average"))
+    try:
+        seen = {}
+        for at_s in range(1, 13):
+            traffic.advance(1.0)
+            (seen[at_s],) = (each for each in traffic.look().vehicles if each.vehicle_id != "ego")
+    finally:
+        traffic.close()
+    assert seen[3].speed_mps == pytest.approx(8.0, abs=0.2)
+    assert seen[11].speed_mps == pytest.approx(3.0, abs=0.2)
+    slope = -0.0384
+    beside_m = [each.y_m - slope * each.x_m for each in (seen[3], seen[7])]
+    assert beside_m[1] - beside_m[0] == pytest.approx(3.2, abs=0.1), "a lane to the left"
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "told"),
+    [
+        ('<WorldPosition x="320" y="239.9"/>', '<RoadPosition roadId="1"/>', r"line \d+: <RoadPosition> in"),
+        ('<WorldPosition x="320" y="239.9"/>', '<WorldPosition x="320" y="900"/>', "from the nearest lane"),
+        ('<WorldPosition x="320" y="239.9"/>', '<WorldPosition x="$x" y="2"/>', r"has the parameter x = \$x"),
+        ('<WorldPosition x="420" y="231.4"/>', '<WorldPosition x="far" y="2"/>', "x = 'far', which is no number"),
+        ('entityRef="ego">', 'entityRef="me">', "names no entity 'me'"),
+        (LANES.format(1), SPEED.format(1).replace("Absolute", "Relative"), "<RelativeTargetSpeed>"),
+        ('<EntityRef entityRef="other"/>', '<EntityRef entityRef="ego"/>', "acts on ego, which"),
+        ("<CatalogLocations/>", "<CatalogLocations><VehicleCatalog/></CatalogLocations>", "<VehicleCatalog>"),
+        ('rule="greaterThan"', 'rule="lessThan"', "has the rule lessThan"),
+        ("<SimulationTimeCondition", "<TimeOfDayCondition", "<TimeOfDayCondition>"),
+        (GOAL, "", "neither AssignRouteAction nor AcquirePositionAction"),
+    ],
+)  # fmt: skip
+def test_what_is_outside_is_refused_by_name_and_line(file, tmp_path, before, after, told):
+    assert before in TEXT
+    file.write_text(TEXT.replace(before, after), "utf-8")
+    with pytest.raises(ScenarioError, match=told):
+        import_openscenario(file, tmp_path / "made", grid())
+    assert not (tmp_path / "made").exists()

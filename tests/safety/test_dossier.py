@@ -1,0 +1,130 @@
+"""The safety report: made-up drives, whose figures are known."""
+
+from __future__ import annotations
+
+import csv
+import json
+from dataclasses import replace
+from importlib.util import find_spec
+from math import isclose, log, sqrt
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.drives.harm import Harm
+from automotive_cosim.drives.judge import EventOutcome, JudgedEvent
+from automotive_cosim.drives.score import together
+from automotive_cosim.errors import UserError
+from automotive_cosim.measures import ExposureCell, FollowingFigures
+from automotive_cosim.report.stats import rate_upper_bound
+from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.rows import kind_of
+from automotive_cosim.run.store import opened
+from automotive_cosim.safety.dossier.claims import claims
+from automotive_cosim.safety.dossier.document import dossier
+from automotive_cosim.safety.dossier.filing import write_dossier
+from automotive_cosim.safety.dossier.subject import failing, read_subject
+from automotive_cosim.safety.dossier.unseen import missing_mass
+
+CELLS = (
+    ExposureCell("primary", "dry", "day", "30 to 50", 0.3, 12.0),
+    ExposureCell("primary_link", "fog", "day", "0 to 30", 0.1, 2.0),
+)
+NOTHING = together([])
+
+
+def event(kind: str, outcome: EventOutcome) -> JudgedEvent:
+    alike = outcome in (EventOutcome.AVOIDED, EventOutcome.TAKEN)
+    return JudgedEvent(kind, "", alike, 1.0, outcome, 10.0, 12.0, 20.0, 30.0, 13.0)
+
+
+def run(folder: Path, missed: int, agents: tuple[str, ...] = ("asurada",)) -> Path:
+    """Six drives an agent of 0.4 h each, with two events and a look-alike; ``missed`` of them miss an event."""
+    plan = make_plan({"agents": list(agents), "drives": ["grid_june"], "seeds": list(range(6))})
+    jobs = plan.jobs()
+    with opened(folder, plan.as_json(), kind_of, planned=len(jobs)) as store:
+        for number, job in enumerate(jobs):
+            lost = number % 6 < missed
+            outcomes = EventOutcome.HIT, EventOutcome.MISSED if lost else EventOutcome.HIT, EventOutcome.AVOIDED
+            kinds = "over_limit", "tunnel", "blue_light"
+            score = replace(NOTHING, events=2, hits=2 - lost, missed=int(lost), driven_s=1440.0)
+            store.append(
+                replace(
+                    job.planned(),
+                    score=score,
+                    value=50.0 if lost else 100.0,
+                    events=tuple(map(event, kinds, outcomes)),
+                    exposure=CELLS,
+                    measures=FollowingFigures(
+                        2.0 if lost else 8.0, 1.0, 1.0, 1.5, 3.0 * lost, 1.0 * lost, None, 0.0
+                    ),
+                    harm=Harm(1440.0, 14_000.0, 0.0, 0.0, 0.0, False),
+                    trace_sha256="0" * 64,
+                )
+            )
+    return folder
+
+
+def table(folder: Path, name: str) -> list[dict[str, str]]:
+    return list(csv.DictReader((folder / "safety/data" / f"{name}.csv").read_text("utf-8").splitlines()))
+
+
+@pytest.mark.slow
+def test_figures_are_those_of_the_rows(tmp_path: Path) -> None:
+    page, pdf = write_dossier(run(tmp_path / "runs", missed=2))
+    folder = tmp_path / "runs"
+    domain = {(row["Attribute"], row["Value"]): row for row in table(folder, "domain")}
+    assert domain["Place", "grid"]["Trials"] == "6"
+    assert domain["Place", "tokyo"]["Trials"] == "none"
+    assert domain["Road", "primary"]["Hours"] == "2.40"
+    assert domain["Weather", "fog"]["Kilometres"] == "12.0"
+    assert domain["Language", "Japanese"]["Trials"] == "none"
+    events = {row["Kind"]: row for row in table(folder, "events")}
+    assert (events["tunnel"]["Due"], events["tunnel"]["Missed"]) == ("6", "2")
+    assert events["tunnel"]["Met % (interval)"].startswith("67 (")
+    assert events["blue_light"]["Look-alikes left"] == "6 of 6"
+    assert len(table(folder, "failures")) == 2
+    measures = {row["Measure"]: row for row in table(folder, "measures")}
+    assert measures["Min TTC ahead, s"]["Critical trials, or interval"].startswith("≤ 3: 2 of 6")
+    assert measures["TET ahead, s/h"]["Median or rate"] == "2.50"
+    text = page.read_text("utf-8")
+    assert "no claim of compliance" in text
+    assert all(f'id="{name}"' in text for name in ("domain", "events", "unseen", "claims"))
+    if find_spec("typst") is not None:
+        assert pdf is not None
+        assert pdf.read_bytes().startswith(b"%PDF")
+    assert not list((folder / "safety/data").glob("*.typ"))
+    assert json.loads((folder / "safety/data/report.json").read_text("utf-8"))["title"].startswith("Safety report")
+
+
+@pytest.mark.parametrize(("missed", "root", "acts"), [(0, "limited", "supported"), (1, *["contradicted"] * 2)])
+def test_claims_follow_from_the_rows(tmp_path: Path, missed: int, root: str, acts: str) -> None:
+    subject = read_subject(run(tmp_path / "runs", missed))
+    tree = claims(subject)
+    assert (tree.status, tree.parts[0].status) == (root, acts)
+    names = {section.name for section in dossier(subject).sections}
+    assert all(part.section in names for part in (tree, *tree.parts))
+    assert all(part.status in ("supported", "contradicted", "limited", "not examined") for part in tree.parts)
+    bad, total, upper = failing(subject)
+    assert (bad, total) == (missed, 6)
+    assert 0.3 < upper < 0.6
+
+
+def test_an_agent_must_be_named_if_there_are_several(tmp_path: Path) -> None:
+    folder = run(tmp_path / "runs", 0, ("asurada", "m3a", "rule-perfect"))
+    with pytest.raises(UserError, match="several agents; give --agent with one of asurada, m3a, rule-perfect"):
+        read_subject(folder)
+    subject = read_subject(folder, "asurada")
+    assert len(subject.rows) == len(subject.reference) == 6
+    with pytest.raises(UserError, match="no trial of agent 'me'"):
+        read_subject(folder, "me")
+
+
+def test_bounds_are_their_closed_forms() -> None:
+    assert isclose(rate_upper_bound(0, 10.0), -log(0.05) / 10)
+    assert 0.29 < rate_upper_bound(0, 10.0) < 3 / 10
+    assert isclose(rate_upper_bound(40, 20 / 3), 53.0 / (20 / 3), rel_tol=0.05)
+    share, upper = missing_mass([1, 1, 998])
+    assert share == 2 / 1000
+    assert isclose(upper, share + (2 * sqrt(2) + sqrt(3)) * sqrt(log(60) / 1000))
+    assert missing_mass([]) == (1.0, 1.0)

@@ -1,0 +1,54 @@
+"""The library of logical scenarios."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.drives.events import KINDS
+from automotive_cosim.errors import UserError
+from automotive_cosim.run.jobs import DriveJob, Limits
+from automotive_cosim.safety.space import LIBRARY, FactorChoices, FactorRange, read_space, space_file
+from automotive_cosim.safety.trying import trial_of
+from tests.laws import over
+
+DOCS = Path(__file__).parents[2] / "docs/search.md"
+ROAD_WORDS = "cuts in", "cuts out", "the vehicle ahead brakes"
+
+
+def test_there_are_thirty_and_the_docs_list_them() -> None:
+    assert len(LIBRARY) >= 30
+    if DOCS.is_file():
+        listed = re.findall(r"^\| `([a-z-]+)` \| (.+) \|$", DOCS.read_text("utf-8"), re.MULTILINE)
+        about = {name: read_space(path).about for name, path in LIBRARY.items()}
+        assert {name: told for name, told in listed if name in about} == about
+
+
+@over(LIBRARY)
+def test_every_space_can_be_searched(name: str) -> None:
+    space = read_space(space_file(name))
+    assert space.about.endswith(".")
+    assert space.sources
+    assert space.occurs in KINDS or space.occurs in ROAD_WORDS
+    assert space.rule.events
+    assert set(space.rule.events) <= KINDS.keys()
+    assert any(
+        (isinstance(each, FactorRange) and each.name != "seed") or len(each.levels) > 1 for each in space.factors
+    )
+    staged = space.factor("stage").nominal if any(each.name == "stage" for each in space.factors) else ""
+    assert staged
+    for factor in space.factors:
+        ends = factor.values if isinstance(factor, FactorChoices) else (factor.least, factor.most, factor.nominal)
+        for value in ends:
+            job = trial_of({**space.nominal, factor.name: value}).job("silent", "none", 0, Limits(), ())
+            assert isinstance(job, DriveJob)
+            assert job.setup.script.staged == () or staged != "nothing"
+
+
+def test_neither_a_file_nor_a_name_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(UserError, match="did you mean 'cut-in'"):
+        space_file("cutin")
+    with pytest.raises(UserError, match=r"there is no file mine\.toml"):
+        space_file("mine.toml")

@@ -1,0 +1,39 @@
+"""Incidents in one line."""
+
+from __future__ import annotations
+
+import pytest
+
+from automotive_cosim.errors import CosimError
+from automotive_cosim.scenarios.incidents import Breakdown, Incident, Jam
+from automotive_cosim.scenarios.wording import KINDS, read_line
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("breakdown edge=7 position_m=12 aside=true", Breakdown(edge="7", position_m=12.0, aside=True)),
+        ("jam edges=a,b length_m=200 from_s=-30 trip=", Jam(edges=("a", "b"), length_m=200.0, from_s=-30.0)),
+    ],
+)
+def test_a_line_is_the_table_it_stands_for(text: str, expected: Incident) -> None:
+    assert read_line(text, KINDS, "--incident") == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("", "no kind in --incident named ''"),
+        ("jm edges=a", "did you mean 'jam'?"),
+        ("jam edges=a", "--incident lacks 'length_m'"),
+        ("jam edges=a length_m=far", "length_m is 'far'; it must be a number above 0"),
+        ("closure edge", "give fields as name=value"),
+        ("closure edge=a from_s=10 to_s=4", "is not before"),
+        ("closure edge=a lenght_m=4", "'lenght_m'"),
+    ],
+)
+def test_what_is_none_is_refused_in_a_line(text: str, told: str) -> None:
+    with pytest.raises(CosimError) as refused:
+        read_line(text, KINDS, "--incident")
+    assert told in str(refused.value)
+    assert "\n" not in str(refused.value)

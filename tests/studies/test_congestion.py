@@ -1,0 +1,266 @@
+"""Congestion of a network: what SUMO writes, what is made of it, and that a measure alone makes a difference."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from typer.testing import CliRunner
+
+from automotive_cosim.cli.results import report
+from automotive_cosim.cli.study import app
+from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.studies.congestion.drive import run_congestion
+from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows, read_queues
+from automotive_cosim.studies.congestion.page import answer, warnings
+from automotive_cosim.studies.congestion.plan import CongestionPlan, make_congestion
+from automotive_cosim.studies.congestion.results import (
+    CongestionStudy,
+    NetworkPart,
+    change,
+    delay_h,
+    indices,
+    queue_m,
+    read_congestion,
+    throughput_per_h,
+)
+from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, FlowState, FlowSums, MeasureOutcome
+from automotive_cosim.studies.congestion.tables import emissions, whole, worst
+from automotive_cosim.studies.versions import pairs
+
+from .conftest import Draw
+
+
+def cell(
+    from_s: float, time_s: float, lost_s: float, road_class: str = "primary", queue_m: float = 0.0
+) -> FlowCell:
+    flow = FlowSums(time_s=time_s, lost_s=lost_s, distance_m=10 * (time_s - lost_s))
+    return FlowCell(from_s=from_s, road_class=road_class, flow=flow, queue_m=queue_m, longest_m=2 * queue_m)
+
+
+def outcome(*found: FlowCell, measure: str = "", backlog: int = 0) -> MeasureOutcome:
+    """An hour in which a vehicle arrives every minute."""
+    states = [
+        FlowState(at_s=60.0 * n, running=9, backlog=backlog, departed=n, arrived=n, teleported=0) for n in range(61)
+    ]
+    return MeasureOutcome(measure=measure, cells=found, states=tuple(states))
+
+
+PLAN = CongestionPlan("grid", measures=("closure edge=c1c2",), demand=(1.0, 2.0), step_s=0.1)
+
+
+def study(*added_s: float) -> CongestionStudy:
+    """Each seed loses an hour, and more with the measure."""
+    rows = [
+        CongestionRow(
+            id=f"seed{seed}",
+            scenario="grid",
+            seed=seed,
+            outcomes=(
+                outcome(cell(0.0, 7200.0, 3600.0)),
+                outcome(cell(0.0, 7200.0 + more_s, 3600.0 + more_s), measure=PLAN.measures[0]),
+            ),
+        )
+        for seed, more_s in enumerate(added_s)
+    ]
+    return CongestionStudy(Path(), {}, PLAN, tuple(rows))
+
+
+def test_the_indices_are_those_of_the_books() -> None:
+    """Nineteen free five minutes and one that takes three times as long, each with 100 s of free driving."""
+    made = outcome(*(cell(300.0 * n, 300.0 if n == 19 else 110.0, 200.0 if n == 19 else 10.0) for n in range(20)))
+    found = indices(PLAN, [made])
+    assert found is not None
+    assert found.travel_time == pytest.approx((19 * 110 + 300) / 2000)
+    assert found.planning_time == pytest.approx(1.1), "the worst twentieth begins after 95 % of the driving"
+    assert found.buffer == pytest.approx(1.1 / found.travel_time - 1)
+    assert indices(PLAN, [made], NetworkPart("motorway")) is None
+
+
+def test_delay_queues_and_throughput_are_by_class_and_period() -> None:
+    made = outcome(
+        cell(0.0, 500.0, 180.0, queue_m=60.0),
+        cell(300.0, 500.0, 180.0, "residential"),
+        cell(1800.0, 900.0, 360.0, queue_m=30.0),
+        backlog=2,
+    )
+    assert delay_h(PLAN, made) == pytest.approx((180 + 180 + 360) / 3600 + 2), "two wait outside all the time"
+    assert delay_h(PLAN, made, NetworkPart("primary", 0)) == pytest.approx(180 / 1800)
+    assert delay_h(PLAN, made, NetworkPart("primary", 1)) == pytest.approx(360 / 1800)
+    assert delay_h(PLAN, made, NetworkPart(None, 1)) == pytest.approx(360 / 1800 + 2)
+    assert queue_m(PLAN, made, NetworkPart("primary", 0)) == (10.0, 120.0), (
+        "of six times five minutes one has a queue"
+    )
+    assert throughput_per_h(PLAN, made) == throughput_per_h(PLAN, made, NetworkPart(None, 1)) == 60
+
+
+def test_the_answer_stands_first_and_is_paired_by_seed() -> None:
+    found = study(*(3600.0 + 36.0 * seed for seed in range(10)))
+    added = change(found, PLAN.measures[0])
+    assert added is not None
+    assert added.interval is not None
+    assert added.value == pytest.approx(1.045)
+    assert answer(found).startswith(
+        "“closure edge=c1c2” costs 1.0 (1.0 to 1.1) vehicle-hours an hour: 1.0 more are lost in congestion "
+        "(+104%) and detours take 0.0 more; "
+    )
+    assert "the travel time index goes from 2.00 to 3.04" in answer(found)
+    unsure = study(*(3600.0 if seed % 2 else -1800.0 for seed in range(10)))
+    assert "cannot be told from 0" in answer(unsure)
+    saved = study(*[-1800.0] * 10)
+    assert "saves 0.5 (0.5 to 0.5) vehicle-hours an hour: 0.5 fewer are lost in congestion (−50%)" in answer(saved)
+    assert [str(row[0]) for row in whole(found).rows] == ["none", "closure edge=c1c2"]
+
+
+def test_it_warns() -> None:
+    few = study(60.0)
+    assert any("1 seed: no interval" in each for each in warnings(few))
+    none = study(*[0.0] * 30)
+    assert warnings(none) == ["“closure edge=c1c2” changes nothing in any seed."]
+    jam = replace(none.rows[0].outcomes[1], gridlock="30 of 40 vehicles stand")
+    jammed = replace(none.rows[0], outcomes=(none.rows[0].outcomes[0], jam))
+    assert any("gridlocked" in each for each in warnings(replace(none, rows=(jammed, *none.rows[1:]))))
+
+
+def test_sumos_outputs_are_read_against_the_usual_limit(tmp_path: Path) -> None:
+    (tmp_path / "edges.xml").write_text(
+        '<meandata><interval begin="100.00" end="160.00" id="flow">'
+        '<edge id="a" sampledSeconds="60.00" timeLoss="20.00" waitingTime="5.00" speed="5.00"/>'
+        '<edge id=":n_0" sampledSeconds="6.00" timeLoss="0.00" waitingTime="0.00" speed="9.00"/>'
+        '</interval><interval begin="160.00" end="220.00" id="flow">'
+        '<edge id="a" sampledSeconds="60.00" timeLoss="20.00" speed="5.00"/></interval></meandata>'
+    )
+    (tmp_path / "queues.xml").write_text(
+        '<queue-export><data timestep="90.00"><lanes><lane id="a_0" queueing_length="99"/></lanes></data>'
+        '<data timestep="110.00"><lanes><lane id="a_0" queueing_length="30"/><lane id="a_1" queueing_length="60"/>'
+        "</lanes></data></queue-export>"
+    )
+    flows = list(read_flows(tmp_path, 100.0, [{}, {"a": 0.5}]))
+    assert [(each.edge, each.from_s) for each in flows] == [("a", 0.0), (":n_0", 0.0), ("a", 60.0)]
+    assert [each.flow.lost_s for each in flows] == [20.0, 0.0, 40.0], "at half the limit, half the time is lost too"
+    found = cells(flows, read_queues(tmp_path, 100.0), lambda edge: "junctions" if edge[0] == ":" else "primary")
+    assert [each.road_class for each in found] == ["junctions", "primary"]
+    primary = found[1]
+    assert (primary.flow.time_s, primary.flow.distance_m, primary.flow.standing_s) == (120.0, 600.0, 5.0)
+    assert (primary.queue_m, primary.longest_m) == (3.0, 60.0), (
+        "the mean of thirty samples, before 0 is not counted"
+    )
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"scenario": "grit"}, "grid"),
+        ({"measures": ("closure edge=zz",)}, "edge for cars in --measure"),
+        ({"measures": ("closures edge=c1c2",)}, "did you mean 'closure'"),
+        ({"measures": ("advice share=2",)}, "share is 2"),
+        ({"measures": ("signals control=green",)}, "control"),
+        ({"measures": ("emergency",)}, "needs the ego"),
+        ({"measures": ("advice share=1", "advice share=1")}, "twice"),
+        ({"incidents": ("advice share=1",)}, "kind in --incident"),
+        ({"minutes": 7.0}, "multiple of 5"),
+        ({"minutes": 10.0, "demand": (1.0, 2.0, 1.0)}, "--demand has 3 periods"),
+        ({"corridor": "avenu"}, "avenue"),
+        ({"seeds": ()}, "--seeds is empty"),
+    ],
+)
+def test_a_plan_that_cannot_be_run_is_refused(wrong: dict[str, object], told: str) -> None:
+    with pytest.raises(CosimError, match=told):
+        replace(CongestionPlan("grid"), **wrong).check()  # type: ignore[arg-type]
+
+
+def test_plans_come_back_from_their_manifest() -> None:
+    assert make_congestion(PLAN.as_json()) == PLAN
+
+
+CARS = """<routes>
+    <vType id="car" vClass="passenger" sigma="0" speedFactor="1" speedDev="0"/>
+    <route id="main" edges="access main exit"/>
+    <flow id="cars" type="car" route="main" begin="0" end="20000" period="20" departSpeed="max"/>
+</routes>"""
+
+
+@pytest.fixture(scope="module")
+def driven(two_ways: Draw, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Cars on the main road of the two ways, with roadworks on it, without and with advice."""
+    plan = CongestionPlan(
+        str(two_ways(CARS)),
+        measures=("roadworks edge=main limit_kmh=9", "advice share=0", "advice share=1 age_s=300"),
+        seeds=(0,),
+        minutes=20.0,
+        warm_up_s=300.0,
+        emissions=True,
+    )
+    folder = tmp_path_factory.mktemp("congestion") / "study"
+    run_congestion(plan, folder)
+    return folder
+
+
+def test_roadworks_cost_what_can_be_reckoned(driven: Path) -> None:
+    """1,000 m at 2.5 instead of 10 m/s take 300 s more; a car every 20 s makes 15 vehicle-hours an hour."""
+    found = read_congestion(driven)
+    assert not found.errors
+    (_, before), (_, works), (_, nobody), (_, all_) = (next(found.outcomes(each)) for each in found.measures)
+    assert found.measures[0] == ""
+    assert delay_h(found.plan, before) < 0.2, "free but for turns"
+    late = [each.flow for each in works.cells if each.from_s == 900.0 and each.road_class == "unknown"]
+    lost_h = sum(flow.lost_s for flow in late) / 300.0
+    assert lost_h == pytest.approx(15.0, abs=1.0)
+    for silent in (nobody, all_):
+        assert (silent.cells, silent.states) == (before.cells, before.states), "there is nothing to avoid"
+    assert sum(each.co2_g for each in works.emitted) != sum(each.co2_g for each in before.emitted)
+    assert [edge for edge, *_ in worst(found, 1)] == ["main"]
+    assert len(emissions(found).rows) == 4
+    assert {row.edge for row in read_edges(driven / "edges" / "seed0.csv.gz")} == {"access", "main", "exit"}
+
+
+def test_who_is_advised_leaves_the_roadworks(two_ways: Draw, tmp_path: Path) -> None:
+    """With all of them advised by fresh news, cars take the other way, and the delay falls."""
+    plan = CongestionPlan(
+        str(two_ways(CARS)),
+        measures=("advice share=1", "advice share=1 compliance=0"),
+        incidents=("roadworks edge=main limit_kmh=9 from_s=-300",),
+        seeds=(0,),
+        minutes=20.0,
+        warm_up_s=600.0,
+    )
+    run_congestion(plan, tmp_path / "study")
+    found = read_congestion(tmp_path / "study")
+    without, advised, deaf = (delay_h(plan, next(found.outcomes(each))[1]) for each in found.measures)
+    assert advised < 0.6 * without
+    assert deaf == without
+    assert answer(found).startswith("“advice share=1”, of 2 measures the one that changes most, saves")
+
+
+def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> None:
+    again = shutil.copytree(driven, tmp_path / "suite" / "again")
+    told = CliRunner().invoke(app, ["compare", str(driven), str(again), "--json"])
+    assert told.exit_code == 0
+    assert json.loads(told.output)["same"]
+    lines = again / "episodes.jsonl"
+    row = json.loads(lines.read_text(encoding="utf-8"))
+    row["outcomes"][1]["cells"][0]["flow"]["lost_s"] += 3600.0
+    lines.write_text(json.dumps(row) + "\n", encoding="utf-8")
+    told = CliRunner().invoke(app, ["compare", str(driven), str(again)])
+    assert told.exit_code == 1
+    assert "1 of 1 row differ" in told.output
+    assert "| delay, roadworks edge=main limit_kmh=9 |" in told.output
+    assert "+3.00 |" in told.output, "an hour lost in twenty minutes"
+    shutil.copytree(driven, tmp_path / "other" / "again")
+    (pair,) = pairs(tmp_path / "suite", tmp_path / "other")
+    assert (pair.name, pair.rows) == ("again", (1, 0, 0))
+    with pytest.raises(UserError, match="no study in common"):
+        pairs(tmp_path, tmp_path / "other")
+
+
+def test_the_report_is_whole(driven: Path) -> None:
+    report(driven)
+    page = (driven / "report.html").read_text(encoding="utf-8")
+    assert page.index("<h1>“roadworks edge=main limit_kmh=9”") < page.index("The network with each measure")
+    for name in ("delay", "map", "map_change", "mfd", "time_space", "time_space_measure"):
+        assert (driven / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
+    for name in ("whole", "by_class", "roads", "emissions"):
+        assert (driven / "tables" / f"{name}.csv").is_file()

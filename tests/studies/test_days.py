@@ -1,0 +1,132 @@
+"""From day to day: who is advised, what is remembered, when it has settled, and what is said of it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from automotive_cosim.errors import CosimError
+from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes
+from automotive_cosim.studies.days import (
+    WEEK,
+    DaysJob,
+    DaysPlan,
+    DaysRow,
+    DaysStudy,
+    StudyDay,
+    has_settled,
+    make_days,
+    run_chain,
+)
+from automotive_cosim.studies.days_page import answer, charts, tables, warnings
+
+Draw = Callable[..., Path]
+PLAN = DaysPlan("grid", shares=(0.0, 1.0), seeds=(0, 1))
+
+
+def day(mean_s: float, **more: object) -> StudyDay:
+    made = StudyDay(
+        mean_s=mean_s, advised_s=None, others_s=mean_s, relative_gap=0.1, changed=5, unfinished=0, teleports=0
+    )
+    return replace(made, **more)  # type: ignore[arg-type]
+
+
+def row(share: float | None, seed: int, *means_s: float) -> DaysRow:
+    days = tuple(map(day, means_s))
+    return DaysRow(id=f"{share}-{seed}", scenario="grid", share=share, seed=seed, days=days)
+
+
+def study() -> DaysStudy:
+    """Advised drivers come down from 200 to 150 s, to 3 % above the equilibrium."""
+    down = [200.0, 180.0, 160.0, *[150.0] * 2 * WEEK]
+    rows = [
+        each
+        for seed in (0, 1)
+        for each in (
+            replace(row(0.0, seed), days=(day(200.0, changed=0),)),
+            row(1.0, seed, *down),
+            replace(row(None, seed), days=(day(190.0), day(145.6, relative_gap=0.01), day(150.0))),
+        )
+    ]
+    return DaysStudy(Path(), {}, PLAN, tuple(rows))
+
+
+def test_it_settles_when_a_week_is_as_the_week_before() -> None:
+    assert not has_settled([100.0] * (2 * WEEK - 1))
+    assert has_settled([100.0] * 2 * WEEK)
+    assert not has_settled([100.0] * WEEK + [98.0] * WEEK)
+    assert has_settled([100.0] * WEEK + [99.5] * WEEK)
+    nobody, advised, _ = study().rows[:3]
+    assert nobody.settled == 0, "nobody changes anything"
+    assert advised.settled == 12, "two even weeks after three days of change"
+
+
+@pytest.mark.slow
+def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
+    found = study()
+    assert answer(found) == (
+        "A trip is shortest with 100% of the drivers advised: 150 s, 25.0% less than with nobody advised and 3.0% "
+        "more than in the user equilibrium; traffic settles by day 12, over 2 seeds."
+    )
+    (table,) = tables(found)
+    assert [str(each[0]) for each in table.rows] == ["0% advised", "100% advised", "user equilibrium"]
+    assert [str(each[6]) for each in table.rows] == ["–", "−50.0", "−54.4"]
+    assert set(charts(found)) == {"days", "shares"}
+    assert warnings(found) == ["2 seeds: no interval of a mean below 10 seeds."]
+    far = replace(found, rows=(*found.rows[:2], row(None, 0, 150.0), *found.rows[3:5], row(None, 1, 150.0)))
+    assert any("relative gap of 10.0%, more than 2%" in each for each in warnings(far))
+    restless = replace(found, rows=(*found.rows[:4], row(1.0, 1, 200.0, 100.0), found.rows[5]))
+    assert any("Not settled in every seed: 100% advised" in each for each in warnings(restless))
+
+
+def test_what_is_remembered_is_smoothed() -> None:
+    def times(seconds: float, *edges: str) -> EdgeTimes:
+        exits = tuple(10.0 + seconds * number for number in range(len(edges)))
+        return EdgeTimes(dict.fromkeys("abc", 1.0), [DrivenTrip("t", "car", 0.0, edges, exits)])
+
+    memory = times(100.0, "a", "b").blended(times(200.0, "a", "b", "c"), 0.75)
+    assert memory.at("b", 0) == pytest.approx(0.75 * 100 + 0.25 * 200)
+    assert memory.at("c", 0) == pytest.approx(200.0), "what was never driven before is taken as it is"
+
+
+@pytest.mark.parametrize(
+    ("wrong", "told"),
+    [
+        ({"scenario": "grit"}, "grid"),
+        ({"shares": (0.5, 0.5)}, "twice"),
+        ({"shares": (1.5,)}, "--shares is 1.5"),
+        ({"memory": 2.0}, "--memory is 2"),
+        ({"days": 1}, "--days is 1"),
+    ],
+)
+def test_a_plan_that_cannot_be_run_is_refused(wrong: dict[str, object], told: str) -> None:
+    with pytest.raises(CosimError, match=told):
+        replace(PLAN, **wrong).check()  # type: ignore[arg-type]
+    assert make_days(PLAN.as_json()) == PLAN
+
+
+CARS = """<routes>
+    <vType id="car" vClass="passenger" sigma="0" speedFactor="1" speedDev="0"/>
+    <vType id="lorry" vClass="truck" maxSpeed="2" sigma="0" speedFactor="1" speedDev="0"/>
+    <route id="main" edges="access main exit"/>
+    <route id="slowly" edges="main leave"/>
+    <flow id="lorries" type="lorry" route="slowly" begin="0" end="900" period="60" departPos="100"/>
+    <flow id="cars" type="car" route="main" begin="0" end="900" period="20" departSpeed="max"/>
+</routes>"""
+
+
+def test_advised_drivers_learn_the_way_around_lorries(two_ways: Draw) -> None:
+    plan = DaysPlan(str(two_ways(CARS)), compliance=1.0, memory=0.0, days=2, minutes=5.0, warm_up_s=300.0)
+    half, nobody = (run_chain(DaysJob(plan, share, 0), Path()) for share in (0.5, 0.0))
+    assert half.error is None, half.error
+    first, second = half.days[:2]
+    assert first.changed > 0
+    assert first.advised_s is not None
+    assert second.advised_s is not None
+    assert second.advised_s < first.advised_s - 100, "from behind lorries at 2 m/s to the free way"
+    assert second.relative_gap < first.relative_gap
+    assert [each.changed for each in nobody.days] == [0]
+    assert nobody.days[0].mean_s == pytest.approx(first.mean_s), "the first day is the same for all shares"
