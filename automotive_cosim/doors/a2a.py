@@ -11,8 +11,8 @@ import asyncio
 import json
 import threading
 import time
-from collections.abc import Callable, Sequence
-from contextlib import suppress
+from collections.abc import AsyncIterator, Callable, Sequence
+from contextlib import asynccontextmanager, suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -39,6 +39,8 @@ from automotive_cosim.run.record import stamped_folder
 from automotive_cosim.run.trial_row import TrialRow
 
 MODES = ["text/plain", "application/json"]
+GRACE_S = 1
+"""Seconds in which connections have to end with the server; a stream of progress would not."""
 LOOK_S = 0.5
 """Between two looks whether an assessment was cancelled."""
 
@@ -188,7 +190,13 @@ def make_app(assessor: Assessor, host: str, port: int, url: str) -> Guarded:
         *create_agent_card_routes(told),
         *create_agent_card_routes(told, card_url="/.well-known/agent.json"),
     ]
-    return Guarded(Starlette(routes=routes), host, port, also=[urlsplit(url).netloc])
+
+    @asynccontextmanager
+    async def until_the_end(app: Starlette) -> AsyncIterator[None]:
+        yield
+        assessor.close()  # the server waits for the threads that run assessments
+
+    return Guarded(Starlette(routes=routes, lifespan=until_the_end), host, port, also=[urlsplit(url).netloc])
 
 
 def serve(host: str, port: int, url: str, workers: int) -> None:
@@ -197,8 +205,5 @@ def serve(host: str, port: int, url: str, workers: int) -> None:
     Raises:
         SystemExit: the address cannot be used.
     """
-    assessor = Assessor(workers)
-    try:
-        uvicorn.run(make_app(assessor, host, port, url), host=host, port=port, log_level="warning")
-    finally:
-        assessor.close()
+    app = make_app(Assessor(workers), host, port, url)
+    uvicorn.run(app, host=host, port=port, log_level="warning", timeout_graceful_shutdown=GRACE_S)

@@ -56,7 +56,6 @@ def assessing(run: Callable[..., object] = run_plan) -> Iterator[str]:
         try:
             yield url
         finally:
-            assessor.close()
             server.should_exit = True
             thread.join()
 
