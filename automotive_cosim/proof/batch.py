@@ -13,7 +13,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.proof.prover import GATES, Proof, Prover, proof_id
 from automotive_cosim.run.batch import Progress, run_jobs
-from automotive_cosim.run.executor import Runner
+from automotive_cosim.run.executor import LoneJob, Runner
 from automotive_cosim.run.plan import choose
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.store import opened
@@ -69,7 +69,7 @@ class ProofPlan:
 
 
 @dataclass(frozen=True, slots=True)
-class ProofJob:
+class ProofJob(LoneJob):
     """One task with one seed."""
 
     task: str
@@ -79,16 +79,6 @@ class ProofJob:
     after: str
     """See ``Prover.prove``. It follows from the plan and not from what a worker has just done, so the distribution
     of jobs does not affect the result."""
-
-    @property
-    def kind(self) -> str:
-        """A proof takes as long as its task, which is unknown before."""
-        return ""
-
-    @property
-    def situation(self) -> str:
-        """Nothing is known about a task before it is tried."""
-        return self.id
 
     @property
     def wall_s(self) -> float:

@@ -41,6 +41,27 @@ class Job(Protocol):
         ...
 
 
+class LoneJob:
+    """A job of a study or proof: none depends on another's situation, and all take about the same time."""
+
+    __slots__ = ()
+
+    @property
+    def id(self) -> str:
+        """Id of its row."""
+        raise NotImplementedError
+
+    @property
+    def situation(self) -> Hashable:
+        """See ``Job``: its own."""
+        return self.id
+
+    @property
+    def kind(self) -> Hashable:
+        """See ``Job``: one for all."""
+        return ""
+
+
 J = TypeVar("J", bound=Job)
 R = TypeVar("R", bound=JobRow)
 J_contra = TypeVar("J_contra", bound=Job, contravariant=True)

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -25,9 +25,8 @@ from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError, UserError
-from automotive_cosim.formats.checked import checked
 from automotive_cosim.run.batch import Progress, run_jobs
-from automotive_cosim.run.executor import Executor, Runner
+from automotive_cosim.run.executor import Executor, LoneJob, Runner
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_manifest, read_rows
@@ -35,7 +34,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import open_scenario, variant
 from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, rerouted
 from automotive_cosim.scenery.gap import NOTICED_S, TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
-from automotive_cosim.studies.plan import driven_at, option
+from automotive_cosim.studies.plan import checked_plan, driven_at, option, plan_of
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Configuration, copied, read_configuration
 
@@ -86,7 +85,7 @@ class DaysPlan:
         Raises:
             UserError: one does not exist or is out of range, or the demand has stops or persons.
         """
-        _check(asdict(self))
+        checked_plan(type(self), asdict(self))
         for name in ("shares", "seeds"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
@@ -111,7 +110,7 @@ class DaysPlan:
 
 
 @dataclass(frozen=True, slots=True)
-class DaysJob:
+class DaysJob(LoneJob):
     """All days of one share and seed."""
 
     plan: DaysPlan
@@ -128,16 +127,6 @@ class DaysJob:
     def simulation(self) -> tuple[str, int]:
         """Every day warms up anew."""
         return self.id, self.seed
-
-    @property
-    def kind(self) -> str:
-        """All take about the same time."""
-        return ""
-
-    @property
-    def situation(self) -> str:
-        """No other depends on it."""
-        return self.id
 
     @property
     def wall_s(self) -> float:
@@ -372,15 +361,7 @@ def make_days(values: Mapping[str, Any]) -> DaysPlan:
     Raises:
         UserError: it is another kind of study, or of another version.
     """
-    plan = dict(values)
-    if plan.pop("study", None) == KIND:
-        with suppress(UserError):
-            return _check(plan)
-    raise UserError("the folder has no study of days of this version; use the version that wrote it")
-
-
-def _check(values: Mapping[str, Any]) -> DaysPlan:
-    return checked(DaysPlan, values, lambda steps: ("the study", option(str(steps[0])) if steps else ""))
+    return plan_of(DaysPlan, KIND, "study of days", values)
 
 
 @lru_cache(maxsize=4)

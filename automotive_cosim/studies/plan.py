@@ -8,7 +8,7 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from itertools import product
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, TypeVar
 
 from annotated_types import Ge, Le, MinLen
 
@@ -16,6 +16,7 @@ from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
+from automotive_cosim.run.executor import LoneJob
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.incidents import AnyIncident, Incident
 from automotive_cosim.scenarios.wording import KINDS, read_line
@@ -123,7 +124,7 @@ class StudyPlan:
         Raises:
             UserError: one does not exist or is out of range.
         """
-        _check(asdict(self))
+        checked_plan(type(self), asdict(self))
         for name in ("departures_s", "seeds", "shares", "ages_s", "compliance", "policies", "trips", "together"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
@@ -215,7 +216,7 @@ class StudyPlan:
 
 
 @dataclass(frozen=True, slots=True)
-class StudyJob:
+class StudyJob(LoneJob):
     """One drive of a study, with all its decisions."""
 
     plan: StudyPlan
@@ -228,16 +229,6 @@ class StudyJob:
     def simulation(self) -> tuple[str, int]:
         """The warm traffic it departs from."""
         return f"{self.share:g}", self.seed
-
-    @property
-    def kind(self) -> str:
-        """Drives of one study all take about the same time."""
-        return ""
-
-    @property
-    def situation(self) -> str:
-        """A drive waits for no situation, so no other drive depends on it."""
-        return self.id
 
     @property
     def wall_s(self) -> float:
@@ -314,16 +305,38 @@ def make_study(values: Mapping[str, Any]) -> StudyPlan:
     Raises:
         UserError: it is another kind of study, or of another version.
     """
-    plan = dict(values)
-    if plan.pop("study", None) == KIND:
+    return plan_of(StudyPlan, KIND, "rerouting study", values)
+
+
+P = TypeVar("P")
+
+
+def plan_of(plan: type[P], kind: str, words: str, values: Mapping[str, Any]) -> P:
+    """The plan of a study from a manifest's table.
+
+    Args:
+        plan: its type.
+        kind: the word by which a manifest names it.
+        words: the same in a message.
+        values: the table.
+
+    Raises:
+        UserError: it is another kind of study, or of another version.
+    """
+    given = dict(values)
+    if given.pop("study", None) == kind:
         with suppress(UserError):  # its message would mention options that the user has not given
-            return _check(plan)
-    raise UserError("the folder has no rerouting study of this version; use the version that wrote it")
+            return checked_plan(plan, given)
+    raise UserError(f"the folder has no {words} of this version; use the version that wrote it")
 
 
-def _check(values: Mapping[str, Any]) -> StudyPlan:
-    """Errors name the option."""
-    return checked(StudyPlan, values, lambda steps: ("the study", option(str(steps[0])) if steps else ""))
+def checked_plan(plan: type[P], values: Mapping[str, Any]) -> P:
+    """A plan of valid values.
+
+    Raises:
+        UserError: one is not valid; the message names the option.
+    """
+    return checked(plan, values, lambda steps: ("the study", option(str(steps[0])) if steps else ""))
 
 
 def option(name: str) -> str:

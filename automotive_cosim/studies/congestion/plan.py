@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from typing import Annotated, Any
@@ -13,12 +12,12 @@ from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.checked import checked
+from automotive_cosim.run.executor import LoneJob
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.incidents import AnyIncident, EgoIncident, RushHour
 from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.studies.plan import check_edges, driven_at, option
+from automotive_cosim.studies.plan import check_edges, checked_plan, driven_at, option, plan_of
 from automotive_cosim.traffic.flow import Advice, SignalControl
 
 KIND = "congestion"
@@ -75,7 +74,7 @@ class CongestionPlan:
         Raises:
             UserError: one does not exist or is out of range.
         """
-        _check(asdict(self))
+        checked_plan(type(self), asdict(self))
         for name in ("measures", "seeds"):
             values = getattr(self, name)
             if len(set(values)) < len(values):
@@ -158,7 +157,7 @@ class CongestionPlan:
 
 
 @dataclass(frozen=True, slots=True)
-class CongestionJob:
+class CongestionJob(LoneJob):
     """The traffic of one seed."""
 
     plan: CongestionPlan
@@ -173,16 +172,6 @@ class CongestionJob:
     def simulation(self) -> tuple[str, int]:
         """The warm traffic that its copies start from."""
         return "", self.seed
-
-    @property
-    def kind(self) -> str:
-        """All take about the same time."""
-        return ""
-
-    @property
-    def situation(self) -> str:
-        """No other depends on it."""
-        return self.id
 
     @property
     def wall_s(self) -> float:
@@ -217,12 +206,4 @@ def make_congestion(values: Mapping[str, Any]) -> CongestionPlan:
     Raises:
         UserError: it is another kind of study, or of another version.
     """
-    plan = dict(values)
-    if plan.pop("study", None) == KIND:
-        with suppress(UserError):  # its message would mention options that the user has not given
-            return _check(plan)
-    raise UserError("the folder has no congestion study of this version; use the version that wrote it")
-
-
-def _check(values: Mapping[str, Any]) -> CongestionPlan:
-    return checked(CongestionPlan, values, lambda steps: ("the study", option(str(steps[0])) if steps else ""))
+    return plan_of(CongestionPlan, KIND, "congestion study", values)
