@@ -7,6 +7,7 @@ if __name__ != "automotive_cosim.agents":
 
 from collections.abc import Callable, Mapping
 
+from automotive_cosim.agents.a2a import A2AAgent, is_remote
 from automotive_cosim.agents.base import Agent, Learner, Privileged, Stage, StageName, Thinker
 from automotive_cosim.agents.caller import Caller, tools
 from automotive_cosim.agents.guest import load
@@ -48,6 +49,7 @@ __all__ = [
     "StageName",
     "Thinker",
     "chosen",
+    "is_remote",
     "make_agent",
     "model_of",
 ]
@@ -72,7 +74,8 @@ MODELLED = frozenset({*PROFILES, NativeAgent.name, Caller.name})
 """Agents with a model."""
 
 AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
-"""Names of all agents; ``package.module:Class`` names one of your own."""
+"""Names of all agents; ``package.module:Class`` names one of your own, ``a2a:http://HOST:PORT`` one that is served
+there."""
 
 
 BY_TOUCH = frozenset({*PROFILES, NativeAgent.name, "human", "oracle", "press-everything", "random"})
@@ -109,7 +112,7 @@ def make_agent(
     """An agent by name.
 
     Args:
-        name: one of ``AGENTS``, or ``package.module:Class``.
+        name: one of ``AGENTS``, ``package.module:Class``, or ``a2a:http://HOST:PORT``.
         model: a model's name (``models.make_model``), for the agents that have one; for ``native`` with the setting
             ``format``.
         settings: how to run it.
@@ -118,8 +121,10 @@ def make_agent(
     Raises:
         UnknownNameError: no agent or model of that name.
         UserError: a class of your own is not an agent, or a memory cannot be used.
-        SetupError: the model's package, key or address is missing.
+        SetupError: the model's package, key or address is missing, or no agent answers at an address.
     """
+    if is_remote(name):
+        return A2AAgent(name, settings)
     if ":" in name:
         return load(name)
     if name in BY_TOUCH and not settings.conditions.interface.touches:

@@ -32,6 +32,8 @@ MOST_CALLS = 10
 """Most calls of one answer; each is a step."""
 REMEMBERED = 20
 """Answers with their results that a watch, which lasts for hundreds of turns, is told of."""
+WORDS = "Words without a call do nothing"
+"""What it is told of them."""
 WRITTEN = re.compile(r"<tool_call>\s*(\{.*?\})\s*</tool_call>", re.DOTALL)
 """A call as models write it where no server takes it out of the text."""
 
@@ -130,9 +132,8 @@ class Caller:
     def _conversation(self) -> Iterator[ChatMessage]:
         """What it is to do, and each earlier answer with its results."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self.channels else ""
-        yield ChatMessage(
-            "system", prompt.fill("caller_watch" if self._keeps_watch else "caller", {"weigh": weigh})
-        )
+        name = "caller_watch" if self._keeps_watch else "caller"
+        yield ChatMessage("system", prompt.fill(name, {"weigh": weigh, "words": WORDS}))
         for answer, results in self._told[-REMEMBERED:] if self._keeps_watch else self._told:
             yield answer
             known = {result.call_id for result in results}

@@ -172,7 +172,7 @@ def live(wire: Wire, request: AgentRequest) -> NoReturn:
 
 def _made(wire: Wire, request: AgentRequest) -> Agent:
     if not request.model:
-        return make_agent(request.name)
+        return make_agent(request.name, settings=request.settings)
     asked = AskedModel(request.model_name, request.sees_pictures, wire)
     return make_agent(request.name, request.model, request.settings, asked)
 

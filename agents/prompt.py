@@ -94,14 +94,24 @@ def turn(
     )
 
 
-def situation(profile: AgentProfile, observation: Observation, *, pictures: bool, on_watch: bool) -> str:
-    """The situation alone, for an agent whose protocol carries the rest: the functions and what was called."""
+def situation(
+    profile: AgentProfile, observation: Observation, *, pictures: bool, on_watch: bool, is_spoken: bool = True
+) -> str:
+    """The situation alone, for an agent whose protocol carries the rest: the functions and what was called.
+
+    Args:
+        profile: what the agent is given.
+        observation: what it sees.
+        pictures: whether the picture comes with it.
+        on_watch: whether it watches over a drive.
+        is_spoken: whether it has what the driver said.
+    """
     given = profile.channels
     is_listed = Channel.ELEMENTS in given
     return fill(
         "caller_now",
         {
-            "goal": driver_words(observation),
+            "goal": driver_words(observation) if is_spoken else None,
             "feedback": _result(observation),
             "elements": _elements(profile, observation) if is_listed else None,
             "pictures": PICTURE if pictures else None,

@@ -55,6 +55,8 @@ class AgentSettings:
     most_seconds: float = 14_400.0
     """An episode's budget of time to wait for the model: hours, for a slow one that is asked hundreds of times on a
     drive of thirty minutes."""
+    answer_s: float = 120.0
+    """Wall seconds in which an agent behind an address has to answer."""
 
     def __post_init__(self) -> None:
         if self.most_tokens <= 0 or self.most_seconds <= 0:

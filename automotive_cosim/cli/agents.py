@@ -24,7 +24,8 @@ def list_agents(as_json: AsJson = False) -> None:
     if as_json:
         print_json({"agents": list(AGENTS), "about": dict(ABOUT), "models": list(MODELS)})
         return
-    about = {name: ABOUT[name] for name in AGENTS} | {"package.module:Class": "your own"}
+    others = {"package.module:Class": "your own", "a2a:http://HOST:PORT": "one that speaks A2A, as CAR-bench's do"}
+    about = {name: ABOUT[name] for name in AGENTS} | others
     for name, line in about.items():
         typer.echo(f"{name:<{max(map(len, about))}}  {line}")
     typer.echo(f"models: {', '.join(MODELS)}")

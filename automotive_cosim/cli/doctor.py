@@ -55,6 +55,7 @@ class Extra(NamedTuple):
 
 
 EXTRAS = {
+    "a2a": Extra("a2a", "a2a and --agent a2a:http://HOST:PORT"),
     "browser": Extra("playwright", "the tests of the pages in a browser"),
     "import": Extra("osmium", "scenarios import and download"),
     "inspect": Extra("inspect_ai", "inspect eval automotive_cosim/cockpit"),

@@ -59,7 +59,9 @@ def evaluate(
     agents: Annotated[
         str | None,
         typer.Option(
-            help="Agents, separated by commas; package.module:Class is one of your own.", show_default=False
+            help="Agents, separated by commas; package.module:Class is one of your own, a2a:http://HOST:PORT one "
+            "that speaks A2A.",
+            show_default=False,
         ),
     ] = None,
     models: Annotated[

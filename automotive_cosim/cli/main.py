@@ -16,6 +16,7 @@ import typer
 
 from automotive_cosim import __version__
 from automotive_cosim.cli import (
+    a2a,
     agents,
     bench,
     compare,
@@ -74,6 +75,7 @@ app.add_typer(show.app, name="show", rich_help_panel=CONTENTS)
 app.command(rich_help_panel=TOOLS)(doctor.doctor)
 app.command(rich_help_panel=TOOLS)(bench.bench)
 app.command(rich_help_panel=TOOLS)(mcp.mcp)
+app.command(rich_help_panel=TOOLS)(a2a.a2a)
 
 
 def _version(wanted: bool) -> None:

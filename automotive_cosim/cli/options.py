@@ -118,7 +118,11 @@ Seed = Annotated[
 SeedList = Annotated[str, typer.Option("--seeds", help="Seeds, as in 0-4 or 0,3,7.", metavar="LIST")]
 AgentName = Annotated[
     str,
-    typer.Option("--agent", help="Agent; `agents` lists them; package.module:Class is one of your own."),
+    typer.Option(
+        "--agent",
+        help="Agent; `agents` lists them; package.module:Class is one of your own, "
+        "a2a:http://HOST:PORT one that speaks A2A.",
+    ),
 ]
 ModelName = Annotated[
     str,

@@ -68,6 +68,18 @@ def varied(results: Results) -> Table:
     return Table("varied", "Where repeats part", columns, tuple(rows), note, heads=2)
 
 
+def pass_hats(rows: Iterable[EpisodeRow], most: int) -> list[float | None]:
+    """pass^k of one contestant for k from 1 to ``most``, over the instances of its judged episodes; None without
+    an instance of k."""
+    instances = _instances(row for row in rows if row.success is not None).values()
+    outcomes = [[row.has_succeeded for row in repeats] for repeats in instances]
+    found: list[float | None] = []
+    for k in range(1, most + 1):
+        shares = [share for each in outcomes if (share := all_pass(each, k)) is not None]
+        found.append(sum(shares) / len(shares) if shares else None)
+    return found
+
+
 def _of(rows: Sequence[EpisodeRow], dimension: str) -> list[EpisodeRow]:
     return [row for row in rows if row.dimension == dimension]
 

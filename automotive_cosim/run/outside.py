@@ -18,7 +18,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
-from automotive_cosim.agents import MODELLED, AgentSettings, Stage, StageName, model_of
+from automotive_cosim.agents import MODELLED, AgentSettings, Stage, StageName, is_remote, model_of
 from automotive_cosim.agents.leftovers import remove
 from automotive_cosim.agents.process import AgentRequest
 from automotive_cosim.agents.wire import GoneError, Wire, packed
@@ -80,7 +80,7 @@ class OutsideAgent:
             nursery: where its process is started.
             name: for ``agents.make_agent``.
             model: the same, for an agent with a model.
-            settings: for an agent with a model; others get none.
+            settings: for an agent with a model or behind an address; others get none.
             chat_model: answers instead of that model.
             step_s: limit of the wall time that its process may take for one step.
             episode_s: the same for the whole episode.
@@ -135,7 +135,8 @@ class OutsideAgent:
         self.stages, self.answer_s, self._step_left_s = (), 0.0, self._step_s
         self._send("seen", observation)
         answer = self._answer()
-        self.stages = self._read(_stages, answer.get("stages", [])) if self._model is not None else ()
+        is_ours = self._model is not None or is_remote(self.name)  # whose stages are no guest's
+        self.stages = self._read(_stages, answer.get("stages", [])) if is_ours else ()
         if "spent" in answer:
             raise OutOfBudgetError(self._text(answer["spent"]))
         if "refused" in answer:
@@ -159,6 +160,8 @@ class OutsideAgent:
                 sees_pictures=model.sees_pictures,
                 settings=self._settings,
             )
+        elif is_remote(self.name):
+            request = replace(request, settings=self._settings)
         self._wire = self._nursery.start(request)
 
     def _hello(self) -> frozenset[Channel]:

@@ -14,7 +14,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim import scenarios
-from automotive_cosim.agents import MODELLED, AgentSettings, make_agent
+from automotive_cosim.agents import MODELLED, AgentSettings, is_remote, make_agent
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
@@ -185,7 +185,7 @@ class Plan(ConditionLists):
                 raise UserError(
                     "agent 'human' needs a person; use `automotive-cosim serve --play`, or `run --agent human`"
                 )
-            if ":" in agent:
+            if ":" in agent and not is_remote(agent):
                 check_agent(agent)
             else:
                 try:

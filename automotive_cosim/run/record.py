@@ -40,7 +40,7 @@ def default_folder(setup: EpisodeSetup, ending: str = "") -> Path:
 
 def stamped_folder(name: str) -> Path:
     """``runs/<timestamp>-<name>``; a second one in the same second gets a number."""
-    folder = Path("runs") / f"{datetime.now():%Y%m%d-%H%M%S}-{name}"
+    folder = Path("runs") / f"{datetime.now():%Y%m%d-%H%M%S}-{name.replace('/', '_')}"
     number = 2
     while folder.exists():
         folder = folder.with_name(f"{folder.name.removesuffix(f'-{number - 1}')}-{number}")

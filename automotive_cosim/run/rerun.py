@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import cast
 
 from automotive_cosim.agents import PROFILES, AgentSettings, NativeAgent, make_agent
+from automotive_cosim.agents.a2a import CHANNELS, is_remote
 from automotive_cosim.agents.settings import parts
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json, Observation
@@ -160,6 +161,8 @@ def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
         return ALL
     if setup.agent == NativeAgent.name:
         return frozenset(NativeAgent.channels)
+    if is_remote(setup.agent):
+        return CHANNELS
     return frozenset(make_agent(setup.agent, settings=AgentSettings(setup.conditions)).channels)
 
 

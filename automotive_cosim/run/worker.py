@@ -185,7 +185,8 @@ def agent_for(
     if not is_outside(name):
         yield make_agent(name, settings=settings)
         return
-    settings = replace(settings, seed=0, most_tokens=limits.tokens)  # it is not told the episode's seed
+    # It is not told the episode's seed.
+    settings = replace(settings, seed=0, most_tokens=limits.tokens, answer_s=limits.agent_step_s)
     asked = model_of(name, model, meter, settings)
     outside = OutsideAgent(
         nursery,

@@ -133,7 +133,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"drive [a-z]", HELP, "takes a minute; tests/drives drives"),
     (r"report runs/hunt", HELP, "needs a search; tests/safety/test_trying.py has one"),
     (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_drives.py reports on some"),
-    (r"(serve|mcp)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
+    (r"(serve|mcp|a2a)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
     (r"scenarios (check|download)", HELP, "takes minutes or the network; tests/osm has them"),
     (r"scenarios equilibrate", HELP, "takes minutes; tests/scenery/test_equilibrium.py tries it"),

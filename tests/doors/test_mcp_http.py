@@ -10,7 +10,7 @@ import pytest
 pytest.importorskip("mcp", reason="the extra mcp is not installed")
 import anyio
 
-from automotive_cosim.doors.mcp_http import Guarded
+from automotive_cosim.doors.guard import Guarded
 from automotive_cosim.service.own_names import is_own, own_names
 from tests.laws import over
 

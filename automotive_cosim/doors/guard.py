@@ -1,0 +1,62 @@
+"""What a server over HTTP asks of each request.
+
+A browser's page on this machine can send requests here, and so can another machine if the address is not a local
+one: a request names this server, comes from no other site and, where there is a token, has it, in its address
+(``?token=``) or as ``Authorization: Bearer``.
+"""
+
+from __future__ import annotations
+
+import hmac
+from collections.abc import Collection
+from http import HTTPStatus
+from urllib.parse import parse_qs
+
+from starlette.datastructures import Headers
+from starlette.responses import PlainTextResponse
+from starlette.types import ASGIApp, Receive, Scope, Send
+
+from automotive_cosim.service.own_names import is_own, own_names
+
+
+class Guarded:
+    """An application that answers requests that name this server, have its token and come from no other site."""
+
+    def __init__(
+        self, app: ASGIApp, host: str, port: int, token: str | None = None, also: Collection[str] = ()
+    ) -> None:
+        """Guards an application that listens there.
+
+        Args:
+            app: the application.
+            host: where it listens.
+            port: the same.
+            token: what a request has to give; None for nothing.
+            also: further values of ``Host`` by which it may be asked, such as that of its address in a network.
+        """
+        self._app = app
+        self._names, self._port = own_names(host), port
+        self._also = frozenset(name.lower() for name in also)
+        self._token = None if token is None else token.encode()
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answers a request, or refuses it."""
+        refusal = None if scope["type"] == "lifespan" else self._refusal(scope)
+        app = self._app if refusal is None else PlainTextResponse(refusal[1], refusal[0])
+        await app(scope, receive, send)
+
+    def _refusal(self, scope: Scope) -> tuple[HTTPStatus, str] | None:
+        headers = Headers(scope=scope)
+        host, origin = headers.get("host", ""), headers.get("origin")
+        if not is_own(host, self._names, self._port) and host.lower() not in self._also:
+            return HTTPStatus.MISDIRECTED_REQUEST, "this server has another name; use the address that it printed"
+        if origin not in (None, f"http://{host}"):
+            return HTTPStatus.FORBIDDEN, "other sites may not use this"
+        if self._token is None:
+            return None
+        kind, _, given = headers.get("authorization", "").partition(" ")
+        if kind.lower() != "bearer":
+            given = parse_qs(scope["query_string"].decode("latin-1")).get("token", [""])[-1]
+        if not hmac.compare_digest(given.strip().encode("utf-8", "replace"), self._token):
+            return HTTPStatus.FORBIDDEN, "the token is missing or wrong; use the address that the server printed"
+        return None
