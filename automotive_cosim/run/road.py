@@ -126,7 +126,9 @@ def _record(path: Path) -> RoadRecord:
             incidents = tuple((kind, x_m, y_m) for kind, x_m, y_m in entry["incidents"])
             weather = Weather(**entry["weather"]) if "weather" in entry else weather
             seconds.append(
-                Second(entry["at_s"], seen, lights, entry["sun_deg"], incidents, entry["local_time"], weather)
+                Second(
+                    entry["at_s"], seen, lights, entry["sun_deg"], incidents, entry.get("local_time", ""), weather
+                )
             )
     shapes = RoadShapes(tuple(lanes), tuple(junctions), in_drawing_order(ground))
     return RoadRecord(shapes, tuple(seconds), about)

@@ -416,7 +416,7 @@ def test_reading_and_answering_have_one_limit(outside, observation):
 @pytest.mark.parametrize("how", ["kill", "stop"])
 def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(outside, monkeypatch, until, how):
     monkeypatch.setattr("automotive_cosim.run.nursery.END_S", 2.0)
-    agent = outside("Kills", how)
+    agent = outside("Kills", how, step_s=5.0)  # the second step waits for whom it killed
     pid = agent.act(None).text
     nursery = agent._nursery._popen.pid
     assert lives(pid)
