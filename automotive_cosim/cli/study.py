@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -38,7 +39,33 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.results import Study
     from automotive_cosim.studies.rows import DriveRow
 
-VIA = "What a trip's via edges are: stops, which every route passes, or route, which other routes may leave."
+StudySeeds = Annotated[
+    str, typer.Option(help="Seeds of the traffic, as in 0-9; at least 10 for an interval, 30 to publish.")
+]
+DemandScale = Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")]
+StepLength = Annotated[float, typer.Option(help="SUMO's step length in seconds.")]
+RedrawTrips = Annotated[
+    bool, typer.Option("--redraw", help="Redraw the trips of the demand for every seed, as on another day.")
+]
+WithEmissions = Annotated[
+    bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
+]
+LeastDelay = Annotated[float, typer.Option(help="Expected delay, in seconds, from which a decision is due.")]
+PerDrive = Annotated[
+    int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
+]
+ViaStops = Annotated[
+    str,
+    typer.Option(
+        help="What a trip's via edges are: stops, which every route passes, or route, which other routes may leave."
+    ),
+]
+StudyFolder = Annotated[
+    Path | None,
+    typer.Option(
+        help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
+    ),
+]
 
 app = typer.Typer(help="Measure what rerouting saves and what a measure does to congestion.", no_args_is_help=True)
 
@@ -64,9 +91,7 @@ def reroute(
     to_place: Annotated[
         str, typer.Option("--to", help="Where it ends; if only --from or --to is given, the other is drawn.")
     ] = "",
-    seeds: Annotated[
-        str, typer.Option(help="Seeds of the traffic, as in 0-9; at least 10 for an interval, 30 to publish.")
-    ] = "0-9",
+    seeds: StudySeeds = "0-9",
     shares: Annotated[
         str | None,
         typer.Option(
@@ -85,11 +110,9 @@ def reroute(
         ),
     ] = "never,always,delay:60,sumo,best",
     driver: Annotated[str, typer.Option(help="Driver profile of the ego.", show_default="scenario's")] = "",
-    delay: Annotated[float, typer.Option(help="Expected delay, in seconds, from which a decision is due.")] = 30.0,
+    delay: LeastDelay = 30.0,
     every: Annotated[float, typer.Option(help="Seconds between two decisions of a drive.")] = 60.0,
-    per_drive: Annotated[
-        int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
-    ] = 5,
+    per_drive: PerDrive = 5,
     placebo_every: Annotated[
         int,
         typer.Option(
@@ -124,7 +147,7 @@ def reroute(
             show_default="none",
         ),
     ] = "",
-    via: Annotated[str, typer.Option(help=VIA)] = "stops",
+    via: ViaStops = "stops",
     incident: Annotated[
         list[str] | None,
         typer.Option(
@@ -133,9 +156,7 @@ def reroute(
             show_default="none",
         ),
     ] = None,
-    emissions: Annotated[
-        bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
-    ] = False,
+    emissions: WithEmissions = False,
     trajectories: Annotated[
         bool, typer.Option("--trajectories", help="Store the ego's position in every future, step by step.")
     ] = False,
@@ -146,19 +167,17 @@ def reroute(
             show_default="SUMO's for cars",
         ),
     ] = "",
-    redraw: Annotated[
-        bool, typer.Option("--redraw", help="Redraw the trips of the demand for every seed, as on another day.")
-    ] = False,
+    redraw: RedrawTrips = False,
     arrived: Annotated[
         float,
         typer.Option(help="Share of the vehicles present at a decision that must arrive before its futures end."),
     ] = 0.95,
-    scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
+    scale: DemandScale = None,
     warm_up: Annotated[
         float | None,
         typer.Option(help="Seconds of traffic before the first departure.", show_default="scenario's"),
     ] = None,
-    step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
+    step: StepLength = 1.0,
     equilibrium_gap: Annotated[
         float | None,
         typer.Option(
@@ -178,12 +197,7 @@ def reroute(
     executor: ExecutorName = "processes",
     ray_address: RayAddress = None,
     ray_send: RaySend = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
-        ),
-    ] = None,
+    out: StudyFolder = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     as_json: AsJson = False,
 ) -> None:
@@ -250,12 +264,8 @@ def reroute(
         errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
         return f"{counted(count, 'decision')}{errors}{time_left(progress)}"
 
-    with where, ProgressView(console, "drives", said) as view:
-        try:
-            run_study(plan, folder, executor=where, tell=view.tell)
-        except KeyboardInterrupt:
-            typer.echo(f"finished drives are in {folder}; rerun the command to resume", err=True)
-            raise
+    with where, ProgressView(console, "drives", said) as view, _resumable("drives", folder):
+        run_study(plan, folder, executor=where, tell=view.tell)
     if measure_gap:
         for each in measure_demand(plan, folder):
             console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
@@ -277,12 +287,10 @@ def suite(
     policies: Annotated[
         str, typer.Option(help="Policies; the table shows always and best.")
     ] = "never,always,delay:60,best",
-    delay: Annotated[float, typer.Option(help="Expected delay, in seconds, from which a decision is due.")] = 30.0,
-    per_drive: Annotated[
-        int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
-    ] = 2,
+    delay: LeastDelay = 30.0,
+    per_drive: PerDrive = 2,
     replicates: Annotated[str, typer.Option(help="How many times each future is driven, or auto.")] = "2",
-    via: Annotated[str, typer.Option(help=VIA)] = "stops",
+    via: ViaStops = "stops",
     warm_ups: Annotated[
         str | None,
         typer.Option(
@@ -359,9 +367,7 @@ def congestion(
             show_default="none",
         ),
     ] = None,
-    seeds: Annotated[
-        str, typer.Option(help="Seeds of the traffic, as in 0-9; at least 10 for an interval, 30 to publish.")
-    ] = "0-9",
+    seeds: StudySeeds = "0-9",
     minutes: Annotated[float, typer.Option(help="How long to measure after the warm-up.")] = 60.0,
     demand: Annotated[
         str,
@@ -378,27 +384,18 @@ def congestion(
     corridor: Annotated[
         str, typer.Option(help="Trip along which the time-space diagrams go.", show_default="the first")
     ] = "",
-    emissions: Annotated[
-        bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
-    ] = False,
-    redraw: Annotated[
-        bool, typer.Option("--redraw", help="Redraw the trips of the demand for every seed, as on another day.")
-    ] = False,
-    scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
+    emissions: WithEmissions = False,
+    redraw: RedrawTrips = False,
+    scale: DemandScale = None,
     warm_up: Annotated[
         float | None, typer.Option(help="Seconds of traffic before the measure.", show_default="scenario's")
     ] = None,
-    step: Annotated[float, typer.Option(help="SUMO's step length in seconds.")] = 1.0,
+    step: StepLength = 1.0,
     workers: Workers = None,
     executor: ExecutorName = "processes",
     ray_address: RayAddress = None,
     ray_send: RaySend = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
-        ),
-    ] = None,
+    out: StudyFolder = None,
     as_json: AsJson = False,
 ) -> None:
     """Measure the delay of a whole network before and after a measure, in copies of the same traffic.
@@ -410,7 +407,6 @@ def congestion(
     from automotive_cosim.studies.congestion.page import answer, warnings, write_congestion
     from automotive_cosim.studies.congestion.plan import CongestionPlan
     from automotive_cosim.studies.congestion.results import read_congestion
-    from automotive_cosim.studies.congestion.rows import CongestionRow
     from automotive_cosim.studies.congestion.tables import whole
 
     plan = CongestionPlan(
@@ -433,21 +429,12 @@ def congestion(
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
-
-    def said(progress: Progress[CongestionRow]) -> str:
-        errors = f"{counted(progress.errors, 'error')}" if progress.errors else ""
-        return f"{errors}{time_left(progress)}"
-
-    with where, ProgressView(console, "seeds", said) as view:
-        try:
-            run_congestion(plan, folder, executor=where, tell=view.tell)
-        except KeyboardInterrupt:
-            typer.echo(f"finished seeds are in {folder}; rerun the command to resume", err=True)
-            raise
+    with where, ProgressView(console, "seeds", _errors) as view, _resumable("seeds", folder):
+        run_congestion(plan, folder, executor=where, tell=view.tell)
     study = read_congestion(folder)
     if len(study.errors) < len(study.rows):
         _show(console, write_congestion(folder), answer(study), warnings(study), [whole(study)], as_json=as_json)
-    _raise_errors(study.errors, len(study.rows))
+    _raise_errors(study.errors, len(study.rows), "run")
 
 
 @app.command()
@@ -463,8 +450,8 @@ def days(
         int, typer.Option("--days", help="Most days to drive.", metavar="N", parser=whole_number(2, 365))
     ] = 30,
     minutes: Annotated[float, typer.Option(help="How long after the warm-up departures count.")] = 60.0,
-    seeds: Annotated[str, typer.Option(help="Seeds of the traffic; at least 10 for an interval.")] = "0-2",
-    scale: Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")] = None,
+    seeds: StudySeeds = "0-2",
+    scale: DemandScale = None,
     warm_up: Annotated[
         float | None, typer.Option(help="Seconds of traffic before it counts.", show_default="scenario's")
     ] = None,
@@ -472,12 +459,7 @@ def days(
     executor: ExecutorName = "processes",
     ray_address: RayAddress = None,
     ray_send: RaySend = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Results folder; an existing one is resumed.", show_default="runs/study-<digest of the plan>"
-        ),
-    ] = None,
+    out: StudyFolder = None,
     as_json: AsJson = False,
 ) -> None:
     """Advise a share of the drivers day after day until traffic settles, beside the user equilibrium.
@@ -485,7 +467,7 @@ def days(
     Rerun the command to resume a stopped study.
     """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.studies.days import DaysPlan, DaysRow, read_days, run_days
+    from automotive_cosim.studies.days import DaysPlan, read_days, run_days
     from automotive_cosim.studies.days_page import answer, tables, warnings, write_days
 
     plan = DaysPlan(
@@ -504,17 +486,12 @@ def days(
     folder = out or _folder(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
-
-    def said(progress: Progress[DaysRow]) -> str:
-        errors = counted(progress.errors, "error") if progress.errors else ""
-        return f"{errors}{time_left(progress)}"
-
-    with where, ProgressView(console, "shares and seeds", said) as view:
+    with where, ProgressView(console, "shares and seeds", _errors) as view, _resumable("shares", folder):
         run_days(plan, folder, executor=where, tell=view.tell)
     study = read_days(folder)
     if len(study.errors) < len(study.rows):
         _show(console, write_days(folder), answer(study), warnings(study), tables(study)[:1], as_json=as_json)
-    _raise_errors(study.errors, len(study.rows))
+    _raise_errors(study.errors, len(study.rows), "run")
 
 
 @app.command()
@@ -543,6 +520,21 @@ def compare(
     raise typer.Exit(not all(pair.is_same for pair in found))
 
 
+def _errors(progress: Progress[Any]) -> str:
+    errors = counted(progress.errors, "error") if progress.errors else ""
+    return f"{errors}{time_left(progress)}"
+
+
+@contextmanager
+def _resumable(units: str, folder: Path) -> Iterator[None]:
+    """Says at Ctrl-C where the study is."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        typer.echo(f"finished {units} are in {folder}; rerun the command to resume", err=True)
+        raise
+
+
 def _show(
     console: Console,
     page: Path,
@@ -565,11 +557,11 @@ def _show(
         console.print(text, soft_wrap=True)
 
 
-def _raise_errors(errors: Sequence[JobRow], count: int) -> None:
+def _raise_errors(errors: Sequence[JobRow], count: int, unit: str) -> None:
     if errors:
         first = errors[0]
         raise InfrastructureError(
-            f"{len(errors)} of {counted(count, 'run')} ended in an error, the first one {first.id}: "
+            f"{len(errors)} of {counted(count, unit)} ended in an error, the first one {first.id}: "
             f"{first.error_kind}: {first.error}; rerun the command to retry them"
         )
 
@@ -595,12 +587,7 @@ def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
             console.print(warning, soft_wrap=True)
         console.print(answer(study), soft_wrap=True)
         console.print(f"{counted(count, 'decision')} counted; report written to {page}", soft_wrap=True)
-    if errors:
-        first = errors[0]
-        raise InfrastructureError(
-            f"{len(errors)} of {counted(len(study.rows), 'drive')} ended in an error, the first one {first.id}: "
-            f"{first.error_kind}: {first.error}; rerun the command to retry them"
-        )
+    _raise_errors(errors, len(study.rows), "drive")
     if not count:
         told_why = ", ".join(f"{number} {name}" for name, number in kept_out.items())
         raise UserError(

@@ -6,50 +6,35 @@ import csv
 import io
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
-from dataclasses import astuple, dataclass, fields
+from dataclasses import astuple, fields
 from pathlib import Path
 
+from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.errors import SetupError
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.run.record import write_whole
 
-
-@dataclass(frozen=True, slots=True)
-class TrajectoryPoint:
-    """A vehicle at one instant. Times are those of the record: 0 is the hand-over, or a drive's departure."""
-
-    at_s: float
-    vehicle: str
-    kind: str
-    """SUMO's vehicle class."""
-    length_m: float
-    width_m: float
-    x_m: float
-    y_m: float
-    """Middle of the front bumper, network coordinates."""
-    heading_deg: float
-    """Clockwise from north."""
-    speed_mps: float
-    signals: int
-    """Bits of ``SumoSignal``."""
+COLUMNS = ("at_s", *(entry.name for entry in fields(SeenVehicle)))
+"""Those of the tables; times are those of the record: 0 is the hand-over, or a drive's departure."""
 
 
-def points(recording: Recording) -> Iterator[TrajectoryPoint]:
+def points(recording: Recording) -> Iterator[tuple[float, SeenVehicle]]:
     """Every vehicle at every recorded second, in order."""
     for second in recording.road.seconds:
         for each in second.vehicles:
-            yield TrajectoryPoint(
-                second.at_s, each.vehicle_id, each.kind, each.length_m, each.width_m,
-                each.x_m, each.y_m, each.heading_deg, each.speed_mps, each.signals,
-            )  # fmt: skip
+            yield second.at_s, each
+
+
+def _lines(recording: Recording) -> Iterator[tuple[object, ...]]:
+    return ((at_s, *astuple(vehicle)) for at_s, vehicle in points(recording))
 
 
 def write_csv(recording: Recording, target: Path) -> None:
     """Writes them as CSV, with a line of names."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(entry.name for entry in fields(TrajectoryPoint))
-    writer.writerows(astuple(each) for each in points(recording))
+    writer.writerow(COLUMNS)
+    writer.writerows(_lines(recording))
     write_whole(target, text.getvalue())
 
 
@@ -59,11 +44,10 @@ def write_parquet(recording: Recording, target: Path) -> None:
     Raises:
         SetupError: the extra ``parquet`` is not installed.
     """
-    names = [entry.name for entry in fields(TrajectoryPoint)]
     try:
         import pandas as pd
 
-        frame = pd.DataFrame([astuple(each) for each in points(recording)], columns=names)
+        frame = pd.DataFrame(_lines(recording), columns=list(COLUMNS))
         frame.to_parquet(target, index=False)
     except ImportError as error:
         raise SetupError("Parquet needs pandas and pyarrow: pip install 'automotive-cosim[parquet]'") from error

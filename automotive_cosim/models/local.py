@@ -6,6 +6,7 @@ of an action. A process loads a model once, when it is first asked.
 
 from __future__ import annotations
 
+import json
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -17,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.errors import ModelError, SetupError, UserError
 from automotive_cosim.models.apis import Chat, ProviderApi
-from automotive_cosim.models.base import ChatMessage, ModelReply
+from automotive_cosim.models.base import ChatMessage, ModelReply, estimated_tokens
 from automotive_cosim.models.remote import read_settings
 
 if TYPE_CHECKING:
@@ -77,9 +78,10 @@ class Local:
         if find_spec("xllamacpp") is None:
             raise SetupError(f"model {name!r} needs llama.cpp; install it with `{INSTALL}`")
         self.name = name
-        self.context_tokens = settings.context - settings.max_tokens
-        """Tokens that a question may have."""
         self._api = api or Chat(is_guided=settings.guided)
+        always = self._api.body(self._file.stem, [ChatMessage("user", "")], {})
+        self.context_tokens = settings.context - settings.max_tokens - estimated_tokens(json.dumps(always))
+        """Tokens that a question may have, beside what goes with each, such as functions."""
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
         """The answer to the last message.

@@ -69,7 +69,7 @@ def misfit(model: ChatModel, tokens: int, picture: bytes | None) -> str:
     if not refused:
         return ""
     if pictures and not _refusal(model, long, ()):
-        return f"{model.name} takes no pictures ({refused}); give --see tree"
+        return f"{model.name} takes no pictures ({refused}); give --see tree, and an agent that can do without"
     model.chat([ChatMessage("user", ASKED)])
     return _too_long(model, tokens, refused)
 
@@ -78,12 +78,12 @@ def _refusal(model: ChatModel, text: str, pictures: tuple[bytes, ...]) -> str:
     try:
         model.chat([ChatMessage("user", text, pictures)])
     except ModelError as error:
-        return str(error)
+        return str(error).removeprefix(f"{model.name} ")
     return ""
 
 
 def _too_long(model: ChatModel, tokens: int, why: str) -> str:
     return (
         f"{model.name} takes no question of {tokens:,} tokens, as the longest here may have ({why}); give it a "
-        "longer context, or --prompt short"
+        "longer context, a slow one more time (?timeout_s=), or --prompt short"
     )

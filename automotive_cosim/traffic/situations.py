@@ -14,7 +14,8 @@ from automotive_cosim.contracts import RoadIncident
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.incidents import EgoIncident, Incident
 from automotive_cosim.traffic.base import EgoPlan, Event
-from automotive_cosim.traffic.scenes import Scene, scene_of
+from automotive_cosim.traffic.scene import Scene
+from automotive_cosim.traffic.scenes import scene_of
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.stage import IncidentStage
 

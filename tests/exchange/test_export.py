@@ -224,5 +224,5 @@ def test_an_episode_is_exported_by_command(tmp_path, simulations, cli):
     rows = list(csv.DictReader((folder / "trajectories.csv").read_text("utf-8").splitlines()))
     fcd = list(ET.parse(folder / "fcd.xml").iter("vehicle"))
     assert len(rows) == len(fcd) == len(seen)
-    assert (float(rows[0]["x_m"]), rows[0]["vehicle"]) == (float(fcd[0].attrib["x"]), fcd[0].attrib["id"])
+    assert (float(rows[0]["x_m"]), rows[0]["vehicle_id"]) == (float(fcd[0].attrib["x"]), fcd[0].attrib["id"])
     assert cli("export", tmp_path / "kept").code == 2

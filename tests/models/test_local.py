@@ -8,9 +8,11 @@ from types import SimpleNamespace
 
 import pytest
 
-from automotive_cosim.agents import make_agent
+from automotive_cosim.agents import AgentSettings, make_agent, model_of
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ModelError, SetupError, UserError
 from automotive_cosim.models import ChatMessage, Local, local, make_model
+from automotive_cosim.run.fit import misfit
 
 FORM = {"type": "object", "properties": {"action": {"type": "object"}}, "required": ["action"]}
 
@@ -69,10 +71,19 @@ def test_an_answer_is_held_to_its_form_if_there_is_one_and_it_is_wanted(file):
 def test_a_question_beyond_its_context_is_the_models_error_and_says_so(file):
     model = make_model(f"local/{file}?context=300&max_tokens=100")
     assert isinstance(model, Local)
-    assert model.context_tokens == 200
+    assert 150 < model.context_tokens < 200, "the form of a request takes some"
     assert not model.sees_pictures
     with pytest.raises(ModelError, match="exceeds the context"):
         model.chat([ChatMessage("user", "word " * 301)])
+
+
+def test_functions_take_their_part_of_the_context(file):
+    called = model_of(
+        "caller", f"local/{file}", settings=AgentSettings(Conditions.named({"interface": "functions"}))
+    )
+    assert isinstance(called, Local)
+    assert called.context_tokens < make_model(f"local/{file}").context_tokens - 5000
+    assert "longer context" in misfit(called, 1500, None)
 
 
 @pytest.mark.parametrize(("query", "said"), [

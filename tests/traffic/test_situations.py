@@ -281,6 +281,18 @@ def test_a_vehicle_cuts_in_and_the_driver_brakes(staged: Staged, average: EgoPla
 
 
 @pytest.mark.sumo
+def test_after_a_cut_in_it_drives_on_also_if_the_time_is_no_whole_number(staged: Staged, average: EgoPlan) -> None:
+    cutting = staged('kind = "cut_in"\nat_m = 100.0\ngap_m = 12.0\nslower_kmh = 12.0\nhold_s = 1.5', empty=True)
+    drive = driven(cutting, average)
+    (cut_s,) = [event.time_s for event in drive.events if event.text == "a vehicle cuts in ahead"]
+    ahead = {state.time_s - cut_s: state.around.leader for state in drive.states if state.around.leader}
+    at_mps = {round(after_s, 1): leader.speed_mps for after_s, leader in ahead.items()}
+    assert at_mps[3.0] > at_mps[2.0] + 1.0, (
+        "it is free two seconds after it moved over, and the ego still behind it"
+    )
+
+
+@pytest.mark.sumo
 def test_the_leader_cuts_out_before_a_standing_car(staged: Staged, average: EgoPlan) -> None:
     revealing = staged('kind = "cut_out"\nfrom_s = 30.0\nreveal_m = 30.0')
     drive = driven(revealing, average)

@@ -1,0 +1,414 @@
+"""Incidents that single vehicles make: by a script, behind the ego, ahead of it and beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from datetime import datetime
+from itertools import pairwise
+from typing import NamedTuple
+
+from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.scenarios import incidents
+from automotive_cosim.traffic.network import Edge
+from automotive_cosim.traffic.scene import CAR_SPACE_M, QuietScene
+from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
+from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
+
+GENTLE_MPS2 = 3.0
+"""A leader that brakes less than this only slows down."""
+
+SWERVES_AFTER_S = 3.0
+"""A driver changes the lane no earlier after a surprise: 1.1 s of reaction and a look over the shoulder."""
+
+CUT_ROOM_M = 60.0
+"""Length of road that is left beyond the place of a cut-in or a cut-out."""
+
+USUAL_MPS2 = 4.5
+"""What a car brakes with if it must: SUMO's default."""
+
+CAR_M = 5.0
+"""Length of a car: SUMO's default."""
+
+NEARLY_S, NEARS_PER_S = 0.3, 0.3
+"""A vehicle that is to cut in does so this much before its place, and nears it by this share in a second."""
+
+HEEDLESS, HEEDFUL = 0, 31
+"""SUMO's speed modes: as commanded, and its default."""
+
+CREEP_MPS = 3.0
+"""No vehicle cuts in more slowly than this."""
+
+FOLLOWS_S = 1.4
+"""A car that pulls out is at least so far ahead, or SUMO finds no room for it."""
+
+NO_LANE_CHANGE, ANY_LANE_CHANGE, WHEN_ASKED = 0, 1621, 512
+"""SUMO's lane change modes: only for safety, its default, and only as commanded."""
+
+CUT_OUT_S = 10.0
+"""How long a vehicle that has cut out keeps its new lane."""
+
+
+class ScriptedVehicleScene(QuietScene):
+    """A vehicle that does at given times what it is told."""
+
+    def __init__(self, stage: IncidentStage, incident: incidents.ScriptedVehicle) -> None:
+        self._stage, self._incident = stage, incident
+        self._lane = stage.lane(incident.route[0], incident.lane)
+        for here, there in pairwise(incident.route):
+            stage.edge(there)
+            if there not in stage.network.crossings.get(here, {}):
+                raise ScenarioError(f"[[incidents]]: no road leads from edge {here!r} to {there!r}")
+        self._left = list(incident.actions)
+        self._since_s = incident.from_s
+
+    def begin(self) -> str:
+        """See ``Scene``."""
+        incident = self._incident
+        speed = f"{incident.speed_kmh / KMH_PER_MPS:.2f}"
+        self._car = self._stage.car("scripted", incident.route, self._lane, incident.position_m, speed)
+        self._stage.sumo.vehicle.setSpeed(self._car, incident.speed_kmh / KMH_PER_MPS)
+        if self._left:  # until it has done all, it changes the lane only when told
+            self._stage.sumo.vehicle.setLaneChangeMode(self._car, NO_LANE_CHANGE)
+        return ""
+
+    def tick(self, local_time: datetime) -> str:
+        """See ``Scene``."""
+        sumo = self._stage.sumo
+        if self._car in sumo.vehicle_ids():
+            while self._left and self._left[0].at_s <= self._since_s:
+                self._act(self._left.pop(0))
+                if not self._left:
+                    sumo.vehicle.setLaneChangeMode(self._car, ANY_LANE_CHANGE)
+        self._since_s += 1.0
+        return ""
+
+    def _act(self, action: incidents.VehicleAction) -> None:
+        sumo, car = self._stage.sumo, self._car
+        if action.speed_kmh is not None:
+            sumo.vehicle.setSpeed(car, action.speed_kmh / KMH_PER_MPS)
+        edge = self._stage.network.edges.get(sumo.edge_of(car))
+        lanes = edge.lane_ids if edge is not None else ()
+        if action.lanes and sumo.lane_of(car) in lanes:
+            from_kerb = -action.lanes if self._stage.network.map.left_hand else action.lanes
+            place = min(max(0, lanes.index(sumo.lane_of(car)) + from_kerb), len(lanes) - 1)
+            sumo.vehicle.changeLane(car, int(lanes[place].rpartition("_")[2]), CUT_OUT_S)
+
+
+class EmergencyScene(QuietScene):
+    """An ambulance, or a van, on the route behind the ego."""
+
+    def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
+        self._stage, self._incident = stage, incident
+        self._sent = False
+
+    def tick(self, local_time: datetime) -> str:
+        """Waits until the ego has come far enough."""
+        stage, sensor = self._stage, self._stage.sensor
+        if self._sent or sensor is None or sensor.position_m < self._incident.behind_m:
+            return ""
+        self._sent = True
+        index, on_edge_m = sensor.route.edge_at(sensor.position_m - self._incident.behind_m)
+        what = "ambulance" if self._incident.blue_light else "van"
+        kind = stage.kind(what)
+        types = stage.sumo.type
+        if self._incident.blue_light:
+            types.setVehicleClass(kind, "emergency")
+            types.setShapeClass(kind, "emergency")
+            types.setParameter(kind, "has.bluelight.device", "true")
+        else:
+            types.setShapeClass(kind, "delivery")
+        types.setLength(kind, 6.5)
+        types.setSpeedFactor(kind, self._incident.speed_ratio)
+        types.setSpeedDeviation(kind, 0.0)
+        types.setParameter(kind, "has.rerouting.device", "false")
+        stage.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
+        return ""
+
+
+class BrakingLeaderScene(QuietScene):
+    """The vehicle ahead brakes."""
+
+    def __init__(self, stage: IncidentStage, incident: incidents.BrakingLeader) -> None:
+        self._stage, self._incident = stage, incident
+        self._has_called = False
+        self._braking = ""
+        self._left_s = 0.0
+
+    def tick(self, local_time: datetime) -> str:
+        """See ``Scene``."""
+        if self._left_s < 0:
+            return ""
+        if self._braking:
+            self._left_s -= 1.0
+            if self._left_s <= 0:
+                self._release()
+            return ""
+        stage, incident = self._stage, self._incident
+        if stage.sumo.speed(stage.ego_id) < incident.from_kmh / KMH_PER_MPS:
+            return ""
+        found = stage.sumo.leader(stage.ego_id, incident.within_m)
+        if found and found[0] and found[1] <= incident.within_m:
+            return self._brake(found[0]) if found[1] >= incident.beyond_m else ""
+        if not self._has_called:
+            self._has_called = True
+            _call(stage, incident.ahead_m)
+        return ""
+
+    def _brake(self, vehicle: str) -> str:
+        sumo, incident = self._stage.sumo, self._incident
+        to_mps = incident.to_kmh / KMH_PER_MPS
+        self._braking = vehicle
+        if incident.keeps_lane:
+            sumo.vehicle.setLaneChangeMode(vehicle, NO_LANE_CHANGE)
+        self._left_s = max(0.0, sumo.speed(vehicle) - to_mps) / incident.deceleration_mps2 + incident.hold_s
+        if incident.deceleration_mps2 < GENTLE_MPS2:  # it can brake as hard as ever if it must
+            slower_s = self._left_s - incident.hold_s
+            sumo.vehicle.slowDown(vehicle, min(to_mps, sumo.speed(vehicle)), max(slower_s, 1.0))
+            return "the vehicle ahead slows down"
+        sumo.vehicle.setDecel(vehicle, incident.deceleration_mps2)
+        sumo.vehicle.setSpeed(vehicle, to_mps)
+        return "the vehicle ahead brakes"
+
+    def end(self) -> str:
+        """See ``Scene``."""
+        if self._braking:
+            self._release()
+        return ""
+
+    def _release(self) -> None:
+        with suppress(*self._stage.sumo.refusals):  # it may have left
+            self._stage.sumo.vehicle.setSpeed(self._braking, -1.0)
+            if self._incident.keeps_lane:
+                self._stage.sumo.vehicle.setLaneChangeMode(self._braking, ANY_LANE_CHANGE)
+        self._braking, self._left_s = "", -1.0
+
+
+def _call(stage: IncidentStage, ahead_m: float) -> None:
+    """A car pulls out in front of the ego, as fast as the ego."""
+    sensor, ego = stage.sensor, stage.ego_id
+    assert sensor is not None
+    here, _ = sensor.route.edge_at(sensor.position_m)
+    index, on_edge_m = sensor.route.edge_at(sensor.position_m + ahead_m + CAR_SPACE_M)
+    lane = stage.sumo.lane_of(ego) if index == here else ""
+    fastest_mps = stage.sumo.type.getMaxSpeed(CAR_TYPE)  # less in fog, which the ego may take no notice of
+    speed = f"{min(stage.sumo.speed(ego), fastest_mps):.2f}"
+    stage.car("leader", sensor.route.edge_ids[index:], lane, on_edge_m, speed)
+
+
+class _Beside(NamedTuple):
+    """The ego on an edge with more than one lane for cars."""
+
+    edge: Edge
+    way: Sequence[str]
+    """The rest of the ego's route, with that edge."""
+    at_m: float
+    """Where on it the ego's front is."""
+    lane: str
+    all_beside: tuple[str, ...]
+
+    @property
+    def beside(self) -> str:
+        """The lane next to the ego's, on the kerb's side if there is one."""
+        return self.all_beside[0]
+
+
+def _beside(stage: IncidentStage, ahead_m: float) -> _Beside | None:
+    """Where the ego is; None beside no other lane, or with less than that way left on the edge."""
+    sensor, lane = stage.sensor, stage.sumo.lane_of(stage.ego_id)
+    assert sensor is not None
+    index, on_edge_m = sensor.route.edge_at(sensor.position_m)
+    way = sensor.route.edge_ids[index:]
+    edge = stage.network.edges.get(way[0])
+    if edge is None or lane not in edge.lane_ids or on_edge_m + ahead_m > edge.length_m:
+        return None
+    place = edge.lane_ids.index(lane)
+    others = tuple(edge.lane_ids[other] for other in (place - 1, place + 1) if 0 <= other < len(edge.lane_ids))
+    return _Beside(edge, way, on_edge_m, lane, others) if others else None
+
+
+def _ahead_m(stage: IncidentStage, vehicle: str, here: _Beside) -> float:
+    """How far a vehicle's front is ahead of the ego's; far away if it is on another edge."""
+    if stage.sumo.edge_of(vehicle) != here.edge.edge_id:
+        return here.edge.length_m
+    return float(stage.sumo.vehicle.getLanePosition(vehicle)) - here.at_m
+
+
+def _move_over(stage: IncidentStage, vehicle: str, lane: str, for_s: float) -> None:
+    """A vehicle changes its lane at once, whoever is there."""
+    stage.sumo.vehicle.setLaneChangeMode(vehicle, NO_LANE_CHANGE)
+    stage.sumo.vehicle.changeLane(vehicle, int(lane.rpartition("_")[2]), for_s)
+
+
+class _KeptInLane:
+    """Keeps the ego in its lane for a while: SUMO's drivers swerve within a step, where people look first."""
+
+    def __init__(self, stage: IncidentStage, for_s: float) -> None:
+        self._stage, self._left_s = stage, for_s
+        self._mode = int(stage.sumo.vehicle.getLaneChangeMode(stage.ego_id))
+        stage.sumo.vehicle.setLaneChangeMode(stage.ego_id, WHEN_ASKED)
+
+    def tick(self) -> None:
+        """A second has passed."""
+        if self._left_s > 1.0:
+            self._left_s -= 1.0
+        else:
+            self.release()
+
+    def release(self) -> None:
+        """Lets it change lanes again; may be called again."""
+        if self._left_s > 0:
+            self._left_s = 0.0
+            with suppress(*self._stage.sumo.refusals):  # the drive may be over
+                self._stage.sumo.vehicle.setLaneChangeMode(self._stage.ego_id, self._mode)
+
+
+class CutInScene(QuietScene):
+    """A vehicle beside the ego, which keeps its distance until it moves over."""
+
+    def __init__(self, stage: IncidentStage, incident: incidents.CutIn) -> None:
+        self._stage, self._incident = stage, incident
+        self._car = ""
+        self._left_s: float | None = None
+        self._kept: _KeptInLane | None = None
+
+    def tick(self, local_time: datetime) -> str:
+        """See ``Scene``."""
+        stage, incident = self._stage, self._incident
+        if self._left_s is not None:
+            if self._left_s > 1.0:
+                self._left_s -= 1.0
+            elif self._left_s > 0:
+                self._release()
+            if self._kept is not None:
+                self._kept.tick()
+            return ""
+        mps, slower_mps = stage.sumo.speed(stage.ego_id), incident.slower_kmh / KMH_PER_MPS
+        found = _beside(stage, incident.gap_m + CUT_ROOM_M)
+        if found is None or mps < incident.from_kmh / KMH_PER_MPS:
+            return ""
+        if not self._car:
+            place_m = found.at_m + incident.gap_m + CAR_SPACE_M
+            self._car = stage.car("cut_in", found.way, found.beside, place_m, f"{mps:.2f}")
+            return ""
+        if self._car not in stage.sumo.vehicle_ids():
+            return ""
+        gap_m = _ahead_m(stage, self._car, found) - CAR_M
+        is_beside = stage.sumo.lane_of(self._car) in found.all_beside
+        if not is_beside or not 0 < gap_m <= incident.gap_m + mps * NEARLY_S:
+            with suppress(*stage.sumo.refusals):
+                stage.sumo.vehicle.setSpeed(self._car, max(CREEP_MPS, mps + (incident.gap_m - gap_m) * NEARS_PER_S))
+            return ""
+        with suppress(*stage.sumo.refusals):  # the lane may have ended by then
+            stage.sumo.vehicle.setSpeed(self._car, max(mps - slower_mps, CREEP_MPS))
+            _move_over(stage, self._car, found.lane, incident.hold_s)
+        self._left_s = incident.hold_s
+        self._kept = _KeptInLane(stage, SWERVES_AFTER_S)
+        return "a vehicle cuts in ahead"
+
+    def end(self) -> str:
+        """See ``Scene``."""
+        if self._car and (self._left_s is None or self._left_s > 0):
+            self._release()
+        if self._kept is not None:
+            self._kept.release()
+        return ""
+
+    def _release(self) -> None:
+        with suppress(*self._stage.sumo.refusals):  # it may have left
+            self._stage.sumo.vehicle.setSpeed(self._car, -1.0)
+            self._stage.sumo.vehicle.setLaneChangeMode(self._car, ANY_LANE_CHANGE)
+        self._left_s = 0.0
+
+
+class CutOutScene(QuietScene):
+    """The vehicle ahead drives at one that stands, and moves over at last."""
+
+    def __init__(self, stage: IncidentStage, incident: incidents.CutOut) -> None:
+        self._stage, self._incident = stage, incident
+        self._called_s, self._is_over = 0.0, False
+        self._car, self._leader, self._beside = "", "", ""
+        self._standing: RoadIncident | None = None
+        self._kept: _KeptInLane | None = None
+
+    def tick(self, local_time: datetime) -> str:
+        """See ``Scene``."""
+        if self._is_over:
+            if self._kept is not None:
+                self._kept.tick()
+            return ""
+        return self._approach() if self._standing else self._place()
+
+    def _place(self) -> str:
+        """Finds the vehicle ahead, and puts one that stands so far ahead of it that SUMO lets it."""
+        stage, incident, sumo = self._stage, self._incident, self._stage.sumo
+        mps = sumo.speed(stage.ego_id)
+        away_m = max(incident.reveal_m, mps**2 / (2 * USUAL_MPS2) + 3 * mps)
+        found = _beside(stage, incident.ahead_m + 3 * CAR_SPACE_M + away_m)
+        if found is None or mps < incident.from_kmh / KMH_PER_MPS:
+            return ""
+        leader = sumo.leader(stage.ego_id, incident.within_m)
+        if not leader or not leader[0] or leader[1] > incident.within_m:
+            self._called_s -= 1.0
+            if self._called_s < 0:
+                self._called_s = CUT_OUT_S
+                _call(stage, max(incident.ahead_m, FOLLOWS_S * mps))
+            return ""
+        if sumo.lane_of(leader[0]) != found.lane:
+            return ""
+        mps = sumo.speed(leader[0])
+        place_m = round(_ahead_m(stage, leader[0], found) + found.at_m + away_m, 1)
+        if place_m > found.edge.length_m - CAR_SPACE_M:
+            return ""
+        car = stage.car("breakdown", (found.edge.edge_id,), found.lane, place_m, "0")
+        for_s = incident.to_s - incident.from_s
+        sumo.set_stop(car, found.edge.edge_id, place_m, int(found.lane.rpartition("_")[2]), for_s, 0)
+        sumo.set_signals(car, HAZARD_SIGNAL)
+        sumo.vehicle.setLaneChangeMode(leader[0], NO_LANE_CHANGE)
+        sumo.vehicle.setSpeedMode(leader[0], HEEDLESS)
+        sumo.vehicle.setSpeed(leader[0], mps)
+        self._car, self._leader, self._beside = car, leader[0], found.beside
+        self._standing = RoadIncident(IncidentKind.BREAKDOWN, found.edge.edge_id, place_m)
+        return ""
+
+    def _approach(self) -> str:
+        sumo, standing = self._stage.sumo, self._standing
+        assert standing is not None
+        try:
+            left_m = standing.position_m - CAR_M - float(sumo.vehicle.getLanePosition(self._leader))
+            soon_m = self._incident.reveal_m + sumo.speed(self._leader)
+            is_before = sumo.edge_of(self._leader) == standing.edge_id and left_m > 0
+            if is_before and (left_m > soon_m or self._car not in sumo.vehicle_ids()):
+                return ""
+            _move_over(self._stage, self._leader, self._beside, CUT_OUT_S)
+            self._release()
+        except sumo.refusals:  # it has left
+            is_before = False
+        if not is_before:  # it passed before SUMO had found room for the standing car: once more
+            with suppress(*sumo.refusals):
+                sumo.vehicle.remove(self._car)
+            self._standing = None
+            return ""
+        self._is_over = True
+        self._kept = _KeptInLane(self._stage, SWERVES_AFTER_S)
+        return "the vehicle ahead cuts out before a standing car"
+
+    def end(self) -> str:
+        """See ``Scene``."""
+        if self._standing and not self._is_over:
+            with suppress(*self._stage.sumo.refusals):  # it may have left
+                self._release()
+                self._stage.sumo.vehicle.setLaneChangeMode(self._leader, ANY_LANE_CHANGE)
+        if self._kept is not None:
+            self._kept.release()
+        return ""
+
+    def _release(self) -> None:
+        """The vehicle ahead heeds others again."""
+        self._stage.sumo.vehicle.setSpeedMode(self._leader, HEEDFUL)
+        self._stage.sumo.vehicle.setSpeed(self._leader, -1.0)
+
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
+        """See ``Scene``."""
+        return self._standing if self._is_over else None
