@@ -8,7 +8,7 @@ from itertools import zip_longest
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.report.results import Results
-from automotive_cosim.report.stats import all_pass, any_passes, clustered_mean
+from automotive_cosim.report.stats import all_pass, any_passes, clustered_mean, wilson
 from automotive_cosim.report.summary import DIMENSIONS, NONE
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -45,7 +45,8 @@ def consistency(results: Results) -> Table:
     columns = ("Contestant", "Dimension", "Instances", *(f"pass^{k}" for k in ks), *(f"pass@{k}" for k in ks[1:]))
     note = (
         "The probability that all of k runs of an instance succeed (pass^k), and that one of them does (pass@k), "
-        "in per cent with a 95 % bootstrap interval over tasks. Each seed is an instance of its own."
+        "in per cent with a 95 % bootstrap interval over tasks, or Wilson's if all tasks agree. Each seed is an "
+        "instance of its own."
     )
     return Table("repeats", "Reliability over repeats", columns, tuple(rows), note, heads=2)
 
@@ -101,8 +102,10 @@ def _share(repeats: Repeats, share: PassShare, k: int) -> str:
     if found is None:
         return NONE
     bounds = found.interval
-    told = f"{100 * found.value:.0f}%"
-    return told if bounds is None else f"{told} ({100 * bounds.low:.0f} to {100 * bounds.high:.0f})"
+    if bounds is None or bounds.low == bounds.high:  # tasks that agree do not show how much others may differ
+        tasks = len({task for task, _ in values})
+        bounds = wilson(found.value * tasks, tasks)
+    return f"{100 * found.value:.0f}% ({100 * bounds.low:.0f} to {100 * bounds.high:.0f})"
 
 
 def _parting(results: Results, won: EpisodeRow, lost: EpisodeRow) -> tuple[str, str, str]:

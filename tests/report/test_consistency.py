@@ -48,3 +48,9 @@ def test_the_first_action_that_differs_is_shown_of_instances_that_did_not_end_al
     rows = {str(row[1]): tuple(map(str, row[2:])) for row in varied(results).rows}
     assert set(rows) == {"hvac_fan_max, first half, seed 1", "hvac_cold_hands, first half, seed 0"}
     assert rows["hvac_cold_hands, first half, seed 0"] == ("2 of 3", "2", "status complete", "none")
+
+
+def test_tasks_that_all_agree_are_no_certainty(results):
+    lost = replace(results, rows=tuple(replace(row, success=False) for row in results.rows))
+    whole = consistency(lost).rows[0]
+    assert [str(cell) for cell in whole[3:]] == ["0% (0 to 66)"] * 3, "Wilson's for none of two tasks"
