@@ -89,8 +89,8 @@ def read_back(recording: Recording, trace: Path) -> str:
     seconds = len(recording.road.seconds)
     return (
         f"| {trace.name} | {trace.stat().st_size / 1e6:.2f} MB | {seconds} messages, {vehicles} vehicles, at most "
-        f"{off_m:.3f} m off; the host is on a lane in {on}, goes along it in {along}, and has its left border on the "
-        f"left in {sides} |"
+        f"{off_m:.3f} m off; the host is on a lane in {on}, goes along it in {along}, and has its left border "
+        f"on the left in {sides} |"
     )
 
 
