@@ -87,7 +87,7 @@ class Roadworks(Incident):
     limit_kmh: Annotated[float, Gt(0)]
     """What is signed there."""
     over: bool = False
-    """Whether the works have ended and only their sign still stands. It holds all the same, but nobody reports it."""
+    """Whether the works have ended and only their sign still stands; it holds, but nobody reports it."""
     closed_lanes: tuple[Annotated[int, Ge(0)], ...] = ()
     """Among the edge's lanes for cars, 0 nearest the kerb."""
 
