@@ -8,9 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.report.stats import upper_bound
+from automotive_cosim.run.meter import Budget, Meter, Spent
 from automotive_cosim.run.plan import make_plan, read_plan
+from automotive_cosim.safety.budget import SearchBudget, SearchLimit
 from automotive_cosim.safety.findings import as_json, coverage, sensitivity, tables, unseen
 from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt
 from automotive_cosim.safety.objective import TriedOutcome
@@ -115,11 +117,58 @@ def test_combinations_that_cannot_be_run_cost_nothing() -> None:
     assert dict(tables(found)[-1].rows)
 
 
-def test_no_point_is_begun_after_the_time_is_over() -> None:
-    left = iter([True, True, False])
-    found = hunt(SPACE, judged(lambda p: 0.5), make_sampler("random", SPACE, 9, 0), 9, goes_on=lambda: next(left))
-    assert found.run == 2
-    assert found.stopped == "its time is over"
+def test_a_search_whose_budget_is_spent_keeps_what_it_has() -> None:
+    """The budget ends in the repeats of the first failure, which is then told but not made small."""
+    asked = 0
+
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        nonlocal asked
+        asked += 1
+        if repeat:
+            raise BudgetSpentError("spent")
+        return TriedOutcome(0.5 if asked < 4 else -0.5, asked >= 4, trial="t")
+
+    found = hunt(SPACE, evaluate, make_sampler("random", SPACE, 9, 0), 9)
+    assert (found.run, found.stopped, found.minimal) == (3, "spent", [])
+    assert [each.outcome.failed for each in found.not_reduced] == [True]
+
+
+def test_a_space_of_few_points_is_used_up() -> None:
+    few = Space((FactorChoices("drive", ("a", "b")),))
+    found = hunt(few, judged(lambda p: 0.5), make_sampler("random", few, 9, 0), 1_000_000)
+    assert "nothing new" in found.stopped
+    assert len(found.samples) < 1100
+
+
+@pytest.mark.parametrize(
+    ("text", "budget"),
+    [
+        ("64", SearchBudget(64)),
+        ("2h", SearchBudget(hours=2)),
+        ("90min", SearchBudget(hours=1.5)),
+        ("$5", SearchBudget(usd=5)),
+        ("64, 2H ,0.5usd", SearchBudget(64, 2, 0.5)),
+    ],
+)
+def test_a_budget_is_points_hours_or_money(text: str, budget: SearchBudget) -> None:
+    assert SearchBudget.read(text) == budget
+
+
+@pytest.mark.parametrize("text", ["", "0", "-3", "1.5", "2 days", "64,32", "1h,30min", "$5h", "5eur", "inf"])
+def test_a_wrong_budget_is_refused(text: str) -> None:
+    with pytest.raises(UserError, match="64, 2h, 90min, 5usd"):
+        SearchBudget.read(text)
+
+
+def test_a_limit_is_that_of_time_or_that_of_the_meter() -> None:
+    used_s = 3500.0
+    limit = SearchLimit(SearchBudget(hours=1), Meter(Budget(usd=1.0), Spent(usd=0.4)), lambda: used_s)
+    assert not limit.refusal()
+    limit.spend(10, 0.7)
+    assert "dollars" in limit.refusal()
+    assert limit.spent() == Spent(10, 1.1)
+    used_s = 3601.0
+    assert "1 of 1 hours" in limit.refusal()
 
 
 def test_findings_count_every_sample() -> None:
