@@ -60,6 +60,8 @@ CASES = {
     ),
     "geo_context": Smallest(("2",)),
     "large_imports": Smallest(("--edges", "60")),
+    "crime": Smallest(("--help",)),
+    "measures": Smallest(),
     "logical_scenarios": Smallest(("--only", "speeding", "--tries", "1", "--minutes", "1")),
     "looking": Smallest(("grid", "2")),
     "pages": Smallest(("1",), needs=("playwright",), program="chromium"),
