@@ -25,6 +25,10 @@ if TYPE_CHECKING:
     from automotive_cosim.run.trial_row import TrialRow
     from automotive_cosim.safety.hunt import Hunt
 
+CAREFUL = ("rule-perfect", "oracle")
+"""The references on drives and on tasks."""
+CAREFUL_FOLDER = "careful"
+"""Of a search's folder: its evaluation of the reference at the minimal failures."""
 SETTINGS = "search.json"
 """File of a search's folder with what it was started with."""
 
@@ -88,7 +92,7 @@ def search(
     from automotive_cosim.safety.budget import LAID, SearchBudget
     from automotive_cosim.safety.findings import as_json as findings_json
     from automotive_cosim.safety.findings import sentence
-    from automotive_cosim.safety.hunt import hunt
+    from automotive_cosim.safety.hunt import hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import even_points, make_sampler
     from automotive_cosim.safety.space import read_space, space_file
@@ -147,6 +151,10 @@ def search(
             most_failures=failures,
             tell=tell,
         )
+        if found.minimal and agent not in CAREFUL:
+            careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})
+            with trying(space, careful, folder / CAREFUL_FOLDER) as watcher:
+                try_carefully(found, watcher)
         note()
         page = write_findings(folder, found, agent, model, about)
     if save is not None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
 from automotive_cosim.errors import BudgetSpentError, UserError
@@ -63,6 +63,8 @@ class MinimalFailure:
     why: str
     trial: str
     neighbour_trial: str
+    prevented: bool | None = None
+    """Whether a careful watcher passes there; None if it was not tried or judged."""
 
     def covers(self, space: Space, point: SearchPoint) -> bool:
         """Whether a point has all that this failure needs, and perhaps more of it."""
@@ -168,6 +170,18 @@ def hunt(
             break
         tell(found)
     return found
+
+
+def try_carefully(found: Hunt, careful: Evaluate) -> None:
+    """Notes which minimal failures a careful watcher prevents, as ISO 34502 asks of a preventable situation.
+
+    Args:
+        found: the search; changed in place.
+        careful: runs a point with that watcher.
+    """
+    for number, each in enumerate(found.minimal):
+        outcome = careful(each.point, 0)
+        found.minimal[number] = replace(each, prevented=None if outcome.margin is None else outcome.passed)
 
 
 class _Runner:

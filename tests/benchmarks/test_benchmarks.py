@@ -68,6 +68,7 @@ CASES = {
     "peers": Smallest(("grid", "--seconds", "5", "--repeats", "1")),
     "ppo_flat": Smallest(("--steps", "64", "--rounds", "1"), needs=("torch", "stable_baselines3")),
     "search": Smallest(("--seeds", "1", "--most", "20")),
+    "sensitivity": Smallest(("--seeds", "1", "--points", "16")),
     "studies": Smallest(("--studies", "2")),
     "towns": Smallest(("4",)),
     "watch_tables": Smallest(("--help",)),

@@ -13,8 +13,8 @@ from automotive_cosim.report.stats import upper_bound
 from automotive_cosim.run.meter import Budget, Meter, Spent
 from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit
-from automotive_cosim.safety.findings import as_json, coverage, sensitivity, tables, unseen
-from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt
+from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, tables, unseen
+from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_carefully
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.page import suite
 from automotive_cosim.safety.samplers import SAMPLERS, even_points, make_sampler
@@ -183,6 +183,38 @@ def test_findings_count_every_sample() -> None:
     assert sum(of_driver) == 50
 
 
+def test_triples_are_counted_as_pairs_are() -> None:
+    found = searched("random", 40)
+    pairs, of_pairs = coverage(found)
+    triples, of_triples = coverage(found, 3)
+    assert (of_pairs, of_triples) == (6 + 5 * 12 + 3 * 16, 6 * 12 + 5 * 48 + 64)
+    assert 0 < pairs < of_pairs
+    assert triples / of_triples < pairs / of_pairs
+
+
+def test_maps_of_two_factors_count_every_sample() -> None:
+    found = searched("sobol", 128)
+    maps = [table for table in tables(found) if table.name.startswith("map_")]
+    assert "driver and visibility_m" in maps[0].title
+    for table in maps:
+        cells = [str(cell).split(" of ") for row in table.rows for cell in row[1:] if str(cell) != "–"]
+        assert sum(int(failed) for failed, _ in cells) == sum(each.outcome.failed for each in found.samples)
+        assert sum(int(of) for _, of in cells) == len(found.samples)
+
+
+def test_a_careful_watcher_prevents_what_it_passes() -> None:
+    found = searched()
+    assert prevented(found) == (0, 0)
+    try_carefully(found, judged(lambda p: 0.5))
+    assert prevented(found) == (len(found.minimal), len(found.minimal))
+    assert "prevents it" in {cell for row in tables(found)[0].rows for cell in row}
+    try_carefully(found, lambda point, repeat: TriedOutcome(None, False, error="lost"))
+    assert prevented(found) == (0, 0)
+    try_carefully(found, judged(lambda p: -0.5))
+    assert prevented(found) == (0, len(found.minimal))
+    assert not any(as_json(found)["failures"][0][name] for name in ("careful_prevents",))
+
+
 def test_few_whole_numbers_are_levels_of_their_own() -> None:
     few, many = (FactorRange("seed", 0, most, 0, whole=True) for most in (3, 40))
     assert few.levels == ("0", "1", "2", "3")
@@ -264,5 +296,11 @@ def test_sensitivity_is_that_of_the_margin() -> None:
     assert shares["hour"][1] is not None
     assert shares["hour"][1] < -0.2
     assert shares["visibility_m"][0] < 0.05
+
+    def folded(point: SearchPoint) -> float:  # the same at both ends and in the middle of the range
+        return abs(((float(point["hour"]) - 6) / 16 * 4) % 2 - 1)
+
+    shares_of_folded = {factor.name: share for factor, share, _ in sensitivity(searched("sobol", 128, folded))}
+    assert shares_of_folded["hour"] > 0.6
     assert "Sensitivity" in [table.title for table in tables(found)]
     assert sensitivity(searched("sobol", 8, additive)) == []
