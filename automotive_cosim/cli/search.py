@@ -55,7 +55,7 @@ def search(
     ],
     model: ModelName = "rules",
     sampler: Annotated[
-        str, typer.Option(help="How points are chosen: climb, random, sobol, lhs, cma or bayes.")
+        str, typer.Option(help="How points are chosen: climb, random, sobol, lhs, grid, cma or bayes.")
     ] = "climb",
     seed: Annotated[
         int, typer.Option(help="Seed of the sampler.", metavar="N", parser=whole_number(0, 2**31 - 1))
@@ -99,8 +99,8 @@ def search(
     from automotive_cosim.safety.trying import check_space, trial_of, trying
 
     file, may_use = space_file(space_name), SearchBudget.read(budget)
-    if sampler == "lhs" and may_use.points is None:
-        raise UserError("a Latin hypercube is laid out for a number of points; give one, as in --budget 64,2h")
+    if sampler in ("lhs", "grid") and may_use.points is None:
+        raise UserError(f"the sampler {sampler} is laid out for a number of points; give one, as in --budget 64,2h")
     check_prices((model,), Budget(usd=may_use.usd))
     if may_use.points is may_use.hours is None and model.startswith(("rules", "replay/")):
         raise UserError(

@@ -13,6 +13,7 @@ from automotive_cosim.report.stats import upper_bound
 from automotive_cosim.run.meter import Budget, Meter, Spent
 from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit
+from automotive_cosim.safety.curves import curves, means
 from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, tables, unseen
 from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_carefully
 from automotive_cosim.safety.objective import TriedOutcome
@@ -181,6 +182,33 @@ def test_findings_count_every_sample() -> None:
     rates = next(table for table in tables(found) if table.name == "rates")
     of_driver = [int(str(row[2])) for row in rates.rows if row[0] == "driver"]
     assert sum(of_driver) == 50
+
+
+def test_a_grid_has_every_value_with_every_other() -> None:
+    factors = (
+        FactorChoices("drive", ("a", "b", "c")),
+        FactorRange("hour", 0.0, 8.0, 4.0),
+        FactorRange("seed", 0, 1, 0, whole=True),
+    )
+    space = Space(factors)
+    sampler = make_sampler("grid", space, 24, 0)
+    asked = [sampler.ask()[0] for _ in range(24)]
+    assert {tuple(point.values()) for point in asked} == {
+        (drive, hour, seed) for drive in "abc" for hour in (1.0, 3.0, 5.0, 7.0) for seed in (0, 1)
+    }
+    small = make_sampler("grid", space, 2, 0)
+    assert len({small.ask()[0]["drive"] for _ in range(2)}) == 2, "as many as the budget, though there are more"
+
+
+def test_response_curves_are_means_of_the_margin() -> None:
+    found = searched("grid", 128)
+    sight = SPACE.factor("visibility_m")
+    assert isinstance(sight, FactorRange)
+    line = means(found, sight)
+    assert line[0][1] < line[-1][1]
+    made = curves(found)
+    assert set(made) == {"visibility_m", "hour"}
+    assert all(svg.startswith("<svg") for _, *svgs in made.values() for svg in svgs)
 
 
 def test_triples_are_counted_as_pairs_are() -> None:
