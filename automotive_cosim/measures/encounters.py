@@ -16,11 +16,12 @@ from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from itertools import combinations, pairwise
 from math import acos, cos, degrees, hypot, radians, sin
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from automotive_cosim.contracts import SeenVehicle
+from automotive_cosim.errors import SetupError
 from automotive_cosim.measures.formulas import (
     crossing_drac_mps2,
     crossing_time_to_collision_s,
@@ -175,10 +176,35 @@ def as_csv(rows: Iterable[Encounter] | Iterable[PairReading], kind: type[Encount
     """The rows as a table with a column for each field; what is None is empty."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    names = PairReading._fields if kind is PairReading else [entry.name for entry in fields(Encounter)]
+    names = _names(kind)
     writer.writerow(names)
     writer.writerows([_plain(getattr(row, name)) for name in names] for row in rows)
     return text.getvalue()
+
+
+def _names(kind: type[Encounter] | type[PairReading]) -> list[str]:
+    return list(PairReading._fields) if kind is PairReading else [entry.name for entry in fields(Encounter)]
+
+
+def as_frame(rows: Iterable[Encounter] | Iterable[PairReading], kind: type[Encounter] | type[PairReading]) -> Any:
+    """The same as a pandas data frame; what is None is missing, and kinds and orders are texts.
+
+    Raises:
+        SetupError: pandas is not installed.
+    """
+    try:
+        import pandas as pd
+    except ImportError as missing:
+        raise SetupError("data frames need pandas: pip install 'automotive-cosim[report]'") from missing
+    names = _names(kind)
+    texts = [name for name in names if name in ("vehicle", "other", "kind", "order")]
+    table = [
+        [str(value) if isinstance(value := getattr(row, name), StrEnum) else value for name in names]
+        for row in rows
+    ]
+    return pd.DataFrame(table, columns=names).astype(
+        {name: "str" if name in texts else "Float64" for name in names}
+    )
 
 
 # --- one instant ---------------------------------------------------------------------------------------------
