@@ -186,14 +186,14 @@ class Watch(Session):
         self._read()
 
     def _read(self) -> None:
-        """Adds what the car reads to the observation, and marks what has changed since the last one."""
+        """Adds to the observation what the car reads, with a mark at what has changed, and that this is a watch."""
         self.marked = tuple(change.name for change in self.changes)
         self.changes.clear()
         vehicle = self.observation.vehicle
         if vehicle is not None:
             lines = [noticed(self.moments[-READ_BACK:], self.marked), *self._driver_line()]
-            told = replace(vehicle, noticed="\n".join(lines))
-            self.observation = replace(self.observation, vehicle=told)
+            vehicle = replace(vehicle, noticed="\n".join(lines))
+        self.observation = replace(self.observation, vehicle=vehicle, on_watch=True)
 
     def _driver_line(self) -> Iterator[str]:
         """What the driver did last after a request, as long as that is news."""

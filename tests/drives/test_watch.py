@@ -299,6 +299,7 @@ def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
     agent = make_agent("asurada", "rules")
     watch = begin(240.0, agent.channels)
     agent.reset(watch.goal)
+    assert watch.observation.on_watch
     asked = []
 
     def count(session: Watch, seen: Sequence[Element]) -> None:
