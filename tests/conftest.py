@@ -57,7 +57,9 @@ _forbidden = False
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--turn", metavar="I/N", help="of the tests marked `sumo`, `slow` or `long`, run the I-th of N parts")
+    parser.addoption(
+        "--turn", metavar="I/N", help="of the tests marked `sumo`, `slow` or `long`, run the I-th of N parts"
+    )
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:

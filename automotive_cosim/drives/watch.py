@@ -20,7 +20,7 @@ from automotive_cosim.drives.acts import acts_of, spoken
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
-from automotive_cosim.drives.order import STANDING_ORDER
+from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
 from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.listener import Listener
@@ -114,7 +114,7 @@ class Watch(Session):
         Raises:
             TrafficError: the traffic simulation failed.
         """
-        begun: dict[str, Any] = beginning(world, STANDING_ORDER, setup, (), listener)
+        begun: dict[str, Any] = beginning(world, STANDING_ORDERS[setup.conditions.language], setup, (), listener)
         watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
         watch._read()
@@ -173,6 +173,9 @@ class Watch(Session):
             left_s = min(longest_s - (self.world.moment.time_s - begun_s), self._left_s())
         passed_s = self.world.moment.time_s - begun_s
         return self._told(FeedbackCode.OK, f"{passed_s:.0f} s passed")
+
+    def _reply(self, question: str) -> str:
+        return ANSWERS[self.setup.conditions.language]
 
     def _told(self, code: FeedbackCode, text: str) -> Feedback:
         self.wakes += self._is_woken
