@@ -53,8 +53,8 @@ TASKS = (
 )
 DRIVES = ("--drives", "grid_january", "--agents", "t3a", "--seeds", "0,1", "--retries", "0")
 STOPPED = "stopped for a second"
-KINDS = ("command", "worker", "warm traffic", "episode's traffic", "nursery", "agent", STOPPED)
-AGENTS_OWN = frozenset(("nursery", "agent"))
+KINDS = ("command", "worker", "warm traffic", "episode's traffic", "fork server", "agent", STOPPED)
+AGENTS_OWN = frozenset(("fork server", "agent"))
 """Processes whose end is the agent's failure: it could have ended them itself."""
 LONGEST_S = 3600.0
 """Wall time of one start of the command, on a busy machine too."""
@@ -168,7 +168,7 @@ def kind_of(pid: int, command: int) -> str:
     if "automotive_cosim.traffic.process" in line:
         return "episode's traffic" if "automotive_cosim.traffic.process" in above else "warm traffic"
     if "automotive_cosim.agents.process" in line:
-        return "agent" if "automotive_cosim.agents.process" in above else "nursery"
+        return "agent" if "automotive_cosim.agents.process" in above else "fork server"
     return "worker" if "forkserver" in line and "forkserver" in above else "other"
 
 
