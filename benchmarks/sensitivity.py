@@ -4,7 +4,7 @@
     python -m benchmarks.sensitivity
 
 The error is the root mean square over factors and seeds of first-order Sobol indices, from Sobol sequences as
-`search` draws them. Without SALib, the columns of its estimators are empty.
+`search` draws them. Without SALib, there is the column `here` alone.
 """
 
 from __future__ import annotations
@@ -95,7 +95,7 @@ def main() -> None:
     parser.add_argument("--delta", action="store_true", help="SALib's delta too, which takes minutes")
     given = parser.parse_args()
     names = (["rbd_fast"] + ["delta"] * given.delta) if find_spec("SALib") else []
-    print(f"| function | points | here | {' | '.join(names)} |\n|---|---:|---:|{'---:|' * len(names)}")
+    print(f"| {' | '.join(['function', 'points', 'here', *names])} |\n|---|---:|---:|{'---:|' * len(names)}")
     for title, (space, function, truth) in CASES.items():
         for count in map(int, given.points.split(",")):
             errors: dict[str, list[list[float]]] = {"here": [], **{name: [] for name in names}}
