@@ -23,10 +23,9 @@ import re
 from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from datetime import UTC, datetime
+from datetime import UTC, datetime, tzinfo
 from pathlib import Path
 from statistics import median
-from zoneinfo import ZoneInfo
 
 from automotive_cosim.errors import CountsError
 from automotive_cosim.formats.files import opened
@@ -106,7 +105,7 @@ class TravelTime:
     """From the end of the one edge to that of the other."""
 
 
-def read_counts(path: Path, zone: ZoneInfo, sites: Path | None = None) -> Counts:
+def read_counts(path: Path, zone: tzinfo, sites: Path | None = None) -> Counts:
     """Reads a file of counts.
 
     Args:
@@ -238,7 +237,7 @@ def _places(path: Path, rows: Sequence[Mapping[str, str]]) -> dict[str, SitePlac
     return found
 
 
-def _paris_hour(path: Path, number: int, row: Mapping[str, str], zone: ZoneInfo) -> int | None:
+def _paris_hour(path: Path, number: int, row: Mapping[str, str], zone: tzinfo) -> int | None:
     """Hour of a row of Open Data Paris; None for weekends."""
     try:
         stamp = datetime.fromisoformat(row[TIME])

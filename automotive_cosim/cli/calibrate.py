@@ -19,7 +19,7 @@ HOURS = re.compile(r"(\d{1,2})(?:-(\d{1,2}))?")
 
 def calibrate_scenario(
     scenario: Annotated[
-        str, typer.Argument(help="A scenario's folder, or a shipped one's name.", show_default=False)
+        str, typer.Argument(help="A scenario's folder, a shipped one's name, or any .sumocfg.", show_default=False)
     ],
     counts: Annotated[
         Path,
@@ -70,10 +70,10 @@ def calibrate_scenario(
     """
     from automotive_cosim.calibration import CalibrationOptions, calibrate
     from automotive_cosim.report.calibration import require_plots, write_page
-    from automotive_cosim.scenarios import load
+    from automotive_cosim.scenery import open_scenario
 
     require_plots()
-    given = load(scenario)
+    given = open_scenario(scenario)
     target = out or (Path() if given.name == scenario else given.folder.parent) / f"{given.folder.name}_calibrated"
     options = CalibrationOptions(sites, times, _span(hours), at, hold_out, rounds, seed)
     found = calibrate(given, counts, target, options, lambda said, _share: typer.echo(said, err=True), force=force)
