@@ -24,14 +24,14 @@ def calibrate_scenario(
     counts: Annotated[
         Path,
         typer.Option(
-            help="Hourly counts: a CSV with site,hour,vehicles_per_hour and edge or lon,lat,bearing; or Open Data"
-            " Paris' (medians over Mondays to Fridays).",
+            help="Hourly counts: a workbook or CSV with site,hour,vehicles_per_hour and edge or lon,lat,bearing;"
+            " or Open Data Paris' (medians over Mondays to Fridays).",
             show_default=False,
         ),
     ],
     sites: Annotated[
         Path | None,
-        typer.Option(help="CSV with site and edge or lon,lat,bearing.", show_default="columns of --counts"),
+        typer.Option(help="Workbook or CSV with site and edge or lon,lat,bearing.", show_default="columns of --counts"),
     ] = None,
     times: Annotated[
         Path | None,
@@ -74,7 +74,8 @@ def calibrate_scenario(
 
     require_plots()
     given = open_scenario(scenario)
-    target = out or (Path() if given.name == scenario else given.folder.parent) / f"{given.folder.name}_calibrated"
+    here = given.folder if Path(scenario).is_dir() else Path(given.name)
+    target = out or here.with_name(f"{here.name}_calibrated")
     options = CalibrationOptions(sites, times, _span(hours), at, hold_out, rounds, seed)
     found = calibrate(given, counts, target, options, lambda said, _share: typer.echo(said, err=True), force=force)
     page = None if found.gridlock else write_page(target)

@@ -132,7 +132,7 @@ def _copied(configuration: Configuration, folder: Path) -> dict[str, str]:
     inputs: dict[str, str] = {}
     for option, paths in ({"net-file": (configuration.net,)} | dict(configuration.files)).items():
         if option != "route-files":
-            names = []
+            names: list[str] = []
             for path in paths:
                 taken = (folder / path.name).exists()
                 names.append(f"{option}{len(names)}-{path.name}" if taken else path.name)
