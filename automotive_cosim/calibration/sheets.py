@@ -2,8 +2,8 @@
 
 Workbooks (.xlsx, .xls, .ods) are read by calamine, from the first visible sheet that has the columns; every cell of
 a merged range has the range's value. Text may be separated by commas, semicolons or tabs, be UTF-8, UTF-16
-("Unicode text") or Windows' Western European (cp1252), and have decimal commas where cells are not separated by commas. Lines
-above the names of the columns are skipped.
+("Unicode text") or Windows' Western European (cp1252), and have decimal commas where cells are not separated by
+commas. Lines above the names of the columns are skipped.
 """
 
 from __future__ import annotations

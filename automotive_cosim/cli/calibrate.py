@@ -31,7 +31,7 @@ def calibrate_scenario(
     ],
     sites: Annotated[
         Path | None,
-        typer.Option(help="Workbook or CSV with site and edge or lon,lat,bearing.", show_default="columns of --counts"),
+        typer.Option(help="Table with site and edge or lon,lat,bearing.", show_default="columns of --counts"),
     ] = None,
     times: Annotated[
         Path | None,
