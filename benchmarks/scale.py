@@ -3,9 +3,9 @@
     python benchmarks/scale.py --streets 50 112              # grids of 9,800 and 49,728 edges, made by netgenerate
     python benchmarks/scale.py --workers 1 2 --ray-nodes 2   # throughput here, and a model for 100 workers
 
-A decision on a grid has a fork, a branch and its share of the kept route's future; some hundred vehicles are on the
-road, whatever the size, so the rows of the table differ by the network. Bare SUMO is as many steps of libsumo that
-read nothing, in a fork of the same instant.
+A decision on a grid has a fork, a branch and its share of the kept route's future; some hundred vehicles are on
+the road, whatever the size, so rows differ by the network. Times but those of forks are processor time.
+Bare SUMO is as many steps of libsumo that read nothing, in a fork of the same instant.
 
 The model has three measured parts: the processor time of a decision in a worker, that of a seed's warm-up, which
 each worker with a drive of that seed spends, and that of the program that hands out drives and writes rows. Workers
@@ -20,9 +20,9 @@ import statistics
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
-from contextlib import closing, contextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -37,6 +37,7 @@ from automotive_cosim.studies.batch import drives, run_study
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.rows import DriveRow
 from automotive_cosim.traffic import sumo_programs
+from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
 
 BLOCK_M = 150
@@ -49,27 +50,38 @@ MANY = 100
 
 
 @dataclass(slots=True)
-class Forks:
-    """Wall time of forks, up to the copy's first answer."""
+class Clock:
+    """What is noted while drives run."""
 
-    seconds: list[float]
+    forks_s: list[float] = field(default_factory=list)
+    """Wall time of each fork, up to the copy's first answer."""
+    warm_s: float = 0.0
+    """Processor time up to the first departure."""
+    vehicles: int = 0
+    """On the road at the first departure."""
 
     @contextmanager
-    def timed(self) -> Iterator[None]:
-        """Times every fork in the meantime."""
-        branch = RemoteTraffic.branch
+    def running(self, spent_s: Callable[[], float]) -> Iterator[None]:
+        """Times forks in the meantime, and notes when the first ego departs."""
+        branch, depart = RemoteTraffic.branch, Forked.depart
 
         def timed(traffic: RemoteTraffic) -> RemoteTraffic:
             begun_s = time.perf_counter()
             copy = branch(traffic)
-            self.seconds.append(time.perf_counter() - begun_s)
+            self.forks_s.append(time.perf_counter() - begun_s)
             return copy
 
-        RemoteTraffic.branch = timed  # type: ignore[method-assign]
+        def noted(simulation: Forked, plan: EgoPlan) -> RemoteTraffic:
+            if not self.warm_s:
+                self.vehicles = simulation.run_on(1.0).running
+                self.warm_s = spent_s()
+            return depart(simulation, plan)
+
+        RemoteTraffic.branch, Forked.depart = timed, noted  # type: ignore[method-assign]
         try:
             yield
         finally:
-            RemoteTraffic.branch = branch  # type: ignore[method-assign]
+            RemoteTraffic.branch, Forked.depart = branch, depart  # type: ignore[method-assign]
 
 
 def grid(streets: int, folder: Path) -> Path:
@@ -98,22 +110,22 @@ def on_network(streets: int, trips: int) -> str:
             warm_up_s=300.0,
         )
         plan = replace(plan, trips=tuple(trip.name for trip in plan.opened.ego.trips[:trips]))
-        begun_s = time.perf_counter()
-        with closing(Forked(plan.scene(0.0), 0, allow_unprojected=True)) as warm:
-            warm.watch()
-            warm_s, vehicles = time.perf_counter() - begun_s, warm.run_on(1.0).running
-        forks, tally = Forks([]), Tally()
-        with Children().counted() as children, forks.timed():
-            begun_s = time.process_time() + children.spent_s
-            count = decisions(plan)
-            spent_s = time.process_time() + children.spent_s - begun_s
-        with counted(tally):
-            decisions(plan)
+        clock, tally = Clock(), Tally()
+        with Children().counted() as children:
+            begun_s = time.process_time()
+
+            def spent_s() -> float:
+                return time.process_time() - begun_s + children.spent_s
+
+            with clock.running(spent_s), counted(tally):
+                count = decisions(plan)
+            all_s = spent_s()
     if not count:
         sys.exit("no decision; give more --trips")
+    decision_s = (all_s - clock.warm_s - tally.bare_s) / count
     return (
-        f"{edges:,} | {vehicles} | {warm_s:.1f} s | {1000 * statistics.median(forks.seconds):.0f} ms | {count} | "
-        f"{spent_s / count:.1f} s | {tally.ours_s / count:.1f} s | {tally.bare_s / count:.1f} s"
+        f"{edges:,} | {clock.vehicles} | {clock.warm_s:.1f} s | {1000 * statistics.median(clock.forks_s):.0f} ms | "
+        f"{count} | {decision_s:.2f} s | {tally.ours_s / count:.2f} s | {tally.bare_s / count:.2f} s"
     )
 
 
