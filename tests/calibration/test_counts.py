@@ -138,6 +138,7 @@ CELLS = """<row r="1"><c r="A1" t="inlineStr"><is><t>Counts of spring</t></is></
 
 def test_a_workbook_is_read_with_its_merged_cells_and_the_lines_above(tmp_path: Path) -> None:
     """The smallest that Excel opens: one sheet whose table begins at B3, with B4 and B5 merged."""
+    pytest.importorskip("python_calamine")
     main, office = (
         f"http://schemas.openxmlformats.org/{each}" for each in ("spreadsheetml/2006/main", "package/2006")
     )
