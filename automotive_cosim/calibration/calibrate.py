@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from zoneinfo import ZoneInfo
 
 import numpy as np
 
@@ -94,7 +93,7 @@ def calibrate(
     configuration = read_configuration(scenario.config)
     variant.check_demand(configuration)
     zone = scenario.start.tzinfo
-    assert isinstance(zone, ZoneInfo)
+    assert zone is not None
     counts = read_counts(counts_file, zone, options.sites)
     measured = read_travel_times(options.times) if options.times else ()
     hours = _hours(counts, options)

@@ -19,19 +19,19 @@ HOURS = re.compile(r"(\d{1,2})(?:-(\d{1,2}))?")
 
 def calibrate_scenario(
     scenario: Annotated[
-        str, typer.Argument(help="A scenario's folder, or a shipped one's name.", show_default=False)
+        str, typer.Argument(help="A scenario's folder, a shipped one's name, or any .sumocfg.", show_default=False)
     ],
     counts: Annotated[
         Path,
         typer.Option(
-            help="Hourly counts: a CSV with site,hour,vehicles_per_hour and edge or lon,lat,bearing; or Open Data"
-            " Paris' (medians over Mondays to Fridays).",
+            help="Hourly counts: a workbook or CSV with site,hour,vehicles_per_hour and edge or lon,lat,bearing;"
+            " or Open Data Paris' (medians over Mondays to Fridays).",
             show_default=False,
         ),
     ],
     sites: Annotated[
         Path | None,
-        typer.Option(help="CSV with site and edge or lon,lat,bearing.", show_default="columns of --counts"),
+        typer.Option(help="Table with site and edge or lon,lat,bearing.", show_default="columns of --counts"),
     ] = None,
     times: Annotated[
         Path | None,
@@ -70,11 +70,12 @@ def calibrate_scenario(
     """
     from automotive_cosim.calibration import CalibrationOptions, calibrate
     from automotive_cosim.report.calibration import require_plots, write_page
-    from automotive_cosim.scenarios import load
+    from automotive_cosim.scenery import open_scenario
 
     require_plots()
-    given = load(scenario)
-    target = out or (Path() if given.name == scenario else given.folder.parent) / f"{given.folder.name}_calibrated"
+    given = open_scenario(scenario)
+    here = given.folder if Path(scenario).is_dir() else Path(given.name)
+    target = out or here.with_name(f"{here.name}_calibrated")
     options = CalibrationOptions(sites, times, _span(hours), at, hold_out, rounds, seed)
     found = calibrate(given, counts, target, options, lambda said, _share: typer.echo(said, err=True), force=force)
     page = None if found.gridlock else write_page(target)

@@ -269,7 +269,7 @@ def import_scenario(
 
 @app.command("equilibrate")
 def equilibrate_scenario(
-    folder: Annotated[Path, typer.Argument(help="Folder of a scenario.", show_default=False)],
+    folder: Annotated[Path, typer.Argument(help="Folder of a scenario, or any .sumocfg.", show_default=False)],
     gap: Annotated[
         float, typer.Option(parser=number(0.0, 1.0), metavar="GAP", help="Relative gap at which to stop.")
     ] = 0.02,
@@ -281,6 +281,15 @@ def equilibrate_scenario(
         typer.Option(parser=whole_number(5, 1440), metavar="M", help="Minutes of departures after the warm-up."),
     ] = 60,
     seed: Annotated[int, typer.Option(help="Seed of the traffic and of the drivers who change routes.")] = 0,
+    warm_up: Annotated[
+        float | None,
+        typer.Option(
+            parser=number(0.0, 86_400.0),
+            metavar="SECONDS",
+            help="Traffic before the departures that count.",
+            show_default="scenario's",
+        ),
+    ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_equilibrium")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier equilibrium.")] = False,
     system_optimum: Annotated[
@@ -308,9 +317,7 @@ def equilibrate_scenario(
     from automotive_cosim.scenery.optimum import OptimumStep, compare
     from automotive_cosim.scenery.variant import check_target
 
-    if not (folder / "scenario.toml").is_file():
-        raise UserError(f"{folder} is not a scenario folder: it has no scenario.toml")
-    target = out or folder.with_name(f"{folder.resolve().name}_equilibrium")
+    target = out or folder.with_name(f"{folder.resolve().name.removesuffix('.sumocfg')}_equilibrium")
 
     def tell(step: AssignmentStep) -> None:
         typer.echo(f"step {step.number}: {step.gap}; {step.changed} change", err=as_json)
@@ -323,7 +330,7 @@ def equilibrate_scenario(
             err=as_json,
         )
 
-    options = Options(steps, gap, minutes * 60.0, seed)
+    options = Options(steps, gap, minutes * 60.0, seed, warm_up)
     optimum = target.with_name(f"{target.name}_optimum")
     driven = [*range(seed + 1, seed + 11)] if seeds is None else seeds_in(seeds)
     if seed in driven or len(set(driven)) < 2:

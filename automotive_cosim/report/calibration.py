@@ -14,8 +14,7 @@ from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
-from automotive_cosim.scenarios import load
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenery.opening import network_of, open_scenario
 from automotive_cosim.traffic.network import Network
 
 if TYPE_CHECKING:
@@ -41,7 +40,7 @@ def write_page(folder: Path) -> Path:
     found = read_calibration(folder)
     several = [by_hour(found)] if len(found.hours) > 1 else []
     tables = [*several, table(found), rounds(found), *([times(found)] if found.times else [])]
-    plots = charts(found, network_of(load(folder)))
+    plots = charts(found, network_of(open_scenario(folder)))
     text = render(
         "report/calibration.html",
         found=found,

@@ -17,9 +17,10 @@ import numpy as np
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Scenario, load
+from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.gap import NOTICED_S, Driven, DrivenTrip, Gap, drive, vehicle_types
+from automotive_cosim.scenery.opening import open_scenario
 from automotive_cosim.traffic.options import Configuration, copied, read_configuration
 
 ROUTES = "equilibrium.rou.xml"
@@ -40,6 +41,8 @@ class Options:
     observe_s: float = 3600.0
     """How long after the warm-up departures count; later ones are left out of the new demand."""
     seed: int = 0
+    warm_up_s: float | None = None
+    """Traffic before the departures that count; None takes the scenario's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +86,7 @@ def equilibrate(
     """Writes a copy of a scenario whose demand is the best step's; returns all steps.
 
     Args:
-        folder: the scenario's.
+        folder: the scenario's, or a ``.sumocfg``.
         target: the copy's, new or empty; it appears once it is complete.
         options: when to end.
         tell: called after every step.
@@ -95,7 +98,7 @@ def equilibrate(
         SetupError: eclipse-sumo is not installed.
     """
     variant.check_target(target, RECORD, force=force)
-    scenario = load(folder)
+    scenario = opened(folder, options)
     configuration = read_configuration(scenario.config)
     variant.check_demand(configuration)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-equilibrium-") as scratch:
@@ -110,6 +113,18 @@ def equilibrate(
     }
     variant.write_variant(target, scenario, configuration, (ROUTES, best.demand), (RECORD, record))
     return steps
+
+
+def opened(folder: Path, options: Options) -> Scenario:
+    """The scenario, with the warm-up of the options.
+
+    Raises:
+        ScenarioError: it cannot be read.
+    """
+    scenario = open_scenario(folder)
+    if options.warm_up_s is None:
+        return scenario
+    return replace(scenario, sumo=replace(scenario.sumo, warm_up_s=options.warm_up_s))
 
 
 def _search(

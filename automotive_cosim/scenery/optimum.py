@@ -25,9 +25,8 @@ import numpy as np
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError
-from automotive_cosim.scenarios import load
 from automotive_cosim.scenery import variant
-from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, Options, changes, is_stuck, rerouted
+from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, Options, changes, is_stuck, opened, rerouted
 from automotive_cosim.scenery.gap import TAIL_S, DrivenTrip, EdgeTimes, drive, run, vehicle_types
 from automotive_cosim.traffic.options import copied, read_configuration
 
@@ -131,7 +130,7 @@ def compare(
     variant.check_target(target, RECORD, force=force)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-optimum-") as scratch:
         path = Path(scratch) / ROUTES
-        begun = _equilibrium(folder, Path(scratch))
+        begun = _equilibrium(folder, options, Path(scratch))
         steps, best = _search(begun, options, tell, path)
         kept = min(steps, key=lambda step: step.total.total_s).number
         own, least = (tuple(_driven(each, path, options, seed) for seed in seeds) for each in (begun, best))
@@ -141,9 +140,9 @@ def compare(
     return found
 
 
-def _equilibrium(folder: Path, scratch: Path) -> Assigned:
+def _equilibrium(folder: Path, options: Options, scratch: Path) -> Assigned:
     """The routes of the folder's demand."""
-    scenario = load(folder)
+    scenario = opened(folder, options)
     configuration = read_configuration(scenario.config)
     types = vehicle_types(copied(configuration, scratch), ["route-files"])
     trips = []

@@ -21,6 +21,9 @@ NOT_TAKEN = re.compile(rb"<(stop|person|personFlow|container|containerFlow|ride|
 
 DEMAND = re.compile(rb"<(vehicle|trip|flow|person|personFlow|container|containerFlow)[\s/>]")
 
+OF_GIVEN_DEMAND = frozenset({"scale", "device.rerouting.probability", "device.rerouting.explicit"})
+"""Options that would change a demand that is complete and keeps its routes."""
+
 
 def check_target(target: Path, record: str, *, force: bool) -> None:
     """Refuses a folder that is not empty, unless it is to be replaced and has the record of such a copy.
@@ -81,6 +84,9 @@ def write_variant(
 ) -> None:
     """Copies a scenario with another demand; the copy appears whole.
 
+    Of a scenario without ``scenario.toml``, the configuration and its files are copied, and nothing else in their
+    folder: the copy is again a folder with one ``.sumocfg``, whose time of day is its own.
+
     Args:
         target: the copy's folder; what is there is replaced.
         scenario: what to copy.
@@ -90,25 +96,49 @@ def write_variant(
         begin_s: when the simulation begins; None keeps it.
         start_hour: local hour of the ego's departure; None keeps it.
     """
-    folder = scenario.folder
     draft = target.with_name(f".{target.name}.part")
     shutil.rmtree(draft, ignore_errors=True)
-    shutil.copytree(folder, draft)
+    described = (scenario.folder / "scenario.toml").is_file()
+    if described:
+        shutil.copytree(scenario.folder, draft)
+        inputs = {name: _local(paths, scenario.config.parent) for name, paths in configuration.files.items()}
+        options = {**inputs, **configuration.options}
+        config = scenario.config.name
+    else:
+        draft.mkdir(parents=True)
+        kept = {name: value for name, value in configuration.options.items() if name not in OF_GIVEN_DEMAND}
+        options = {**_copied(configuration, draft), **kept}
+        config = f"{scenario.name}.sumocfg"
     (draft / routes[0]).write_text(routes[1], encoding="utf-8")
-    inputs = {name: _local(paths, scenario.config.parent) for name, paths in configuration.files.items()}
-    options = {**inputs, **configuration.options, "route-files": routes[0]}
+    options["route-files"] = routes[0]
     if begin_s is not None:
         options["begin"] = f"{begin_s:g}"
     lines = "".join(f"    <{name} value={quoteattr(value)}/>\n" for name, value in options.items())
-    (draft / scenario.config.name).write_text(f"<configuration>\n{lines}</configuration>\n", encoding="utf-8")
-    toml = draft / "scenario.toml"
-    text = settings(toml.read_text(encoding="utf-8"))
-    if start_hour is not None:
-        text = re.sub(r"(?m)^(start = \"?\d{4}-\d\d-\d\dT)\d\d:\d\d(:\d\d)?", rf"\g<1>{start_hour:02}:00:00", text)
-    toml.write_text(text, encoding="utf-8")
+    (draft / config).write_text(f"<configuration>\n{lines}</configuration>\n", encoding="utf-8")
+    if described:
+        toml = draft / "scenario.toml"
+        text = settings(toml.read_text(encoding="utf-8"))
+        if start_hour is not None:
+            start = r"(?m)^(start = \"?\d{4}-\d\d-\d\dT)\d\d:\d\d(:\d\d)?"
+            text = re.sub(start, rf"\g<1>{start_hour:02}:00:00", text)
+        toml.write_text(text, encoding="utf-8")
     (draft / record[0]).write_text(json.dumps(record[1], indent=1, ensure_ascii=False), encoding="utf-8")
     shutil.rmtree(target, ignore_errors=True)
     draft.replace(target)
+
+
+def _copied(configuration: Configuration, folder: Path) -> dict[str, str]:
+    """Copies the files of a configuration, but not its demand; option -> names, separated by commas."""
+    inputs: dict[str, str] = {}
+    for option, paths in ({"net-file": (configuration.net,)} | dict(configuration.files)).items():
+        if option != "route-files":
+            names: list[str] = []
+            for path in paths:
+                taken = (folder / path.name).exists()
+                names.append(f"{option}{len(names)}-{path.name}" if taken else path.name)
+                shutil.copyfile(path, folder / names[-1])
+            inputs[option] = ",".join(names)
+    return inputs
 
 
 def _local(paths: Iterable[Path], folder: Path) -> str:

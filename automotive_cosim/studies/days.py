@@ -34,12 +34,19 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import open_scenario, variant
 from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, rerouted
 from automotive_cosim.scenery.gap import NOTICED_S, TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
+from automotive_cosim.scenery.optimum import POWER
 from automotive_cosim.studies.plan import checked_plan, driven_at, option, plan_of
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Configuration, copied, read_configuration
 
 KIND = "days"
 """Kind of study in the manifest."""
+
+EQUILIBRIUM, OPTIMUM = "user equilibrium", "system optimum"
+"""States of the same trips that are searched for beside the shares."""
+
+Drivers = float | str
+"""The share of the drivers who are advised, or one of these states."""
 
 WEEK = 5
 """Days whose mean is compared with that of as many days before."""
@@ -105,8 +112,16 @@ class DaysPlan:
         )
 
     def jobs(self) -> tuple[DaysJob, ...]:
-        """For every seed, all shares and the user equilibrium."""
-        return tuple(DaysJob(self, share, seed) for seed in self.seeds for share in (*self.shares, None))
+        """For every seed, all shares, the user equilibrium and the system optimum."""
+        return tuple(
+            job
+            for seed in self.seeds
+            for job in (
+                *(DaysJob(self, share, seed) for share in self.shares),
+                DaysJob(self, None, seed),
+                DaysJob(self, None, seed, optimum=True),
+            )
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,13 +130,15 @@ class DaysJob(LoneJob):
 
     plan: DaysPlan
     share: float | None
-    """None for the user equilibrium."""
+    """None for the user equilibrium and the system optimum."""
     seed: int
+    optimum: bool = False
 
     @property
     def id(self) -> str:
         """Its id, which can be a file name."""
-        return f"{'equilibrium' if self.share is None else f'share{self.share:g}'}-seed{self.seed}"
+        state = "optimum" if self.optimum else "equilibrium"
+        return f"{state if self.share is None else f'share{self.share:g}'}-seed{self.seed}"
 
     @property
     def simulation(self) -> tuple[str, int]:
@@ -159,6 +176,14 @@ class DaysRow(JobRow):
     share: float | None
     seed: int
     days: tuple[StudyDay, ...] = ()
+    optimum: bool = False
+
+    @property
+    def drivers(self) -> Drivers:
+        """What these are the days of."""
+        if self.share is not None:
+            return self.share
+        return OPTIMUM if self.optimum else EQUILIBRIUM
 
     @property
     def settled(self) -> int | None:
@@ -170,11 +195,12 @@ class DaysRow(JobRow):
     def last(self, of: Callable[[StudyDay], float | None]) -> float | None:
         """The mean of a figure over the last ``WEEK`` days; None if it is not known.
 
-        Of the user equilibrium, that of the day with the smallest gap, as the search does not approach it evenly.
+        Of the user equilibrium, that of the day with the smallest gap, and of the system optimum, that of the day
+        with the least mean time, as the searches do not approach them evenly.
         """
         days = self.days[-WEEK:]
-        if self.share is None:
-            days = (min(self.days, key=lambda day: day.relative_gap),) if self.days else ()
+        if self.share is None and self.days:
+            days = (min(self.days, key=lambda day: day.mean_s if self.optimum else day.relative_gap),)
         values = [of(day) for day in days]
         known = [value for value in values if value is not None]
         return fmean(known) if known else None
@@ -222,7 +248,7 @@ def run_chain(job: DaysJob, folder: Path) -> DaysRow:
 
 
 def _planned(job: DaysJob) -> DaysRow:
-    return DaysRow(id=job.id, scenario=job.plan.scenario, share=job.share, seed=job.seed)
+    return DaysRow(id=job.id, scenario=job.plan.scenario, share=job.share, seed=job.seed, optimum=job.optimum)
 
 
 def _days(job: DaysJob) -> Iterator[StudyDay]:
@@ -240,6 +266,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
         now = _first(configuration, scenario, types, observe_s, job.seed, scratch)
         advised = {trip.id for trip in now.trips if job.share is None or _draw(job.seed, trip.id) < job.share}
         memories: list[EdgeTimes] = []
+        calm_s: dict[str, float] = {}
         means_s: list[float] = []
         for number in range(plan.days + 1):
             today = _made(scratch / f"day{number}")
@@ -248,6 +275,9 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
             memory = 0.0 if job.share is None else plan.memory
             memories.append(memories[-1].blended(times, memory) if memories else times)
             known = memories[max(0, number - (0 if job.share is None else plan.lag))]
+            if job.optimum:  # by what one more vehicle costs all, as in ``scenery.optimum``
+                calm_s |= {edge: min(least_s, calm_s.get(edge, least_s)) for edge, least_s in times.least_s.items()}
+                known = times.raised(calm_s, POWER)
             counted = [trip for trip in ran.trips if first_s <= trip.departed_s < first_s + observe_s]
             home = [trip for trip in counted if trip.has_arrived and len(trip.edges) > 1]
             best = quickest(home, times, ran.net, ran.types, today)
@@ -338,9 +368,9 @@ class DaysStudy:
         """Those that ended in an infrastructure error."""
         return tuple(row for row in self.rows if row.error is not None)
 
-    def of(self, share: float | None) -> tuple[DaysRow, ...]:
-        """The rows of a share; None for the user equilibrium."""
-        return tuple(row for row in self.rows if row.share == share and row.days)
+    def of(self, drivers: Drivers) -> tuple[DaysRow, ...]:
+        """The rows of a share or state."""
+        return tuple(row for row in self.rows if row.drivers == drivers and row.days)
 
 
 def read_days(folder: Path) -> DaysStudy:

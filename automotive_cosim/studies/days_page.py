@@ -10,7 +10,18 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
 from automotive_cosim.report.tables import Table, TableRow
-from automotive_cosim.studies.days import NEAR, SETTLED, WEEK, DaysRow, DaysStudy, StudyDay, read_days
+from automotive_cosim.studies.days import (
+    EQUILIBRIUM,
+    NEAR,
+    OPTIMUM,
+    SETTLED,
+    WEEK,
+    DaysRow,
+    DaysStudy,
+    Drivers,
+    StudyDay,
+    read_days,
+)
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.shown import ShownStudy, write_shown
 from automotive_cosim.studies.tables import NONE, told, told_mean
@@ -18,10 +29,11 @@ from automotive_cosim.studies.tables import NONE, told, told_mean
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
+LINES: dict[Drivers, str] = {EQUILIBRIUM: "--", OPTIMUM: ":"}
+"""Line styles of plots; shares have solid lines."""
+
 LEAST_SHARE = 0.0005
 """Smaller differences are none in the answer, which has a tenth of a per cent."""
-
-EQUILIBRIUM = "user equilibrium"
 
 
 def write_days(folder: Path) -> Path:
@@ -38,19 +50,25 @@ def write_days(folder: Path) -> Path:
     return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
 
 
-def named(share: float | None) -> str:
-    """What a share is called."""
-    return EQUILIBRIUM if share is None else f"{share:.0%} advised"
+def named(drivers: Drivers) -> str:
+    """What a share or state is called."""
+    return drivers if isinstance(drivers, str) else f"{drivers:.0%} advised"
 
 
-def shares(study: DaysStudy) -> list[float | None]:
-    """The shares that were run, the equilibrium last."""
-    return [share for share in (*study.plan.shares, None) if study.of(share)]
+def states(study: DaysStudy) -> list[Drivers]:
+    """The shares that were run, then the equilibrium and the optimum."""
+    known: tuple[Drivers, ...] = (*study.plan.shares, EQUILIBRIUM, OPTIMUM)
+    return [drivers for drivers in known if study.of(drivers)]
 
 
-def mean_s(study: DaysStudy, share: float | None) -> SeedMean | None:
+def shares(study: DaysStudy) -> list[float]:
+    """The shares that were run."""
+    return [share for share in study.plan.shares if study.of(share)]
+
+
+def mean_s(study: DaysStudy, drivers: Drivers) -> SeedMean | None:
     """Mean travel time per trip once it has settled, over the seeds."""
-    return over_seeds(study.of(share), lambda day: day.mean_s)
+    return over_seeds(study.of(drivers), lambda day: day.mean_s)
 
 
 def over_seeds(rows: Sequence[DaysRow], of: Callable[[StudyDay], float | None]) -> SeedMean | None:
@@ -60,20 +78,21 @@ def over_seeds(rows: Sequence[DaysRow], of: Callable[[StudyDay], float | None]) 
 
 
 def answer(study: DaysStudy) -> str:
-    """The best share in a sentence, beside nobody advised and beside the user equilibrium."""
-    found = {share: mean for share in shares(study) if share is not None and (mean := mean_s(study, share))}
+    """The best share in a sentence, beside nobody advised, the user equilibrium and the system optimum."""
+    found = {share: mean for share in shares(study) if (mean := mean_s(study, share))}
     if not found:
         return "No share was driven to its end."
     best = min(found, key=lambda share: found[share].value)
     least_s = found[best].value
     parts = []
-    others = {"with nobody advised": found.get(0.0) if best else None, f"in the {EQUILIBRIUM}": mean_s(study, None)}
+    others = {"with nobody advised": found.get(0.0) if best else None}
+    others |= {f"in the {state}": mean_s(study, state) for state in (EQUILIBRIUM, OPTIMUM)}
     for what, mean in others.items():
         if mean is not None:
             share = least_s / mean.value - 1
             far = f"{abs(share):.1%} {'less' if share < 0 else 'more'} than"
             parts.append(f"{far if abs(share) >= LEAST_SHARE else 'as long as'} {what}")
-    beside = f", {' and '.join(parts)}" if parts else ""
+    beside = f", {' and '.join(filter(None, [', '.join(parts[:-1]), parts[-1]]))}" if parts else ""
     over = counted(found[best].seeds, "seed")
     return (
         f"A trip is shortest with {best:.0%} of the drivers advised: {least_s:.0f} s{beside}; "
@@ -81,7 +100,7 @@ def answer(study: DaysStudy) -> str:
     )
 
 
-def _settled(study: DaysStudy, share: float | None) -> str:
+def _settled(study: DaysStudy, share: float) -> str:
     days = [row.settled for row in study.of(share)]
     known = [day for day in days if day is not None]
     if known == [0] * len(days):
@@ -97,17 +116,13 @@ def warnings(study: DaysStudy) -> list[str]:
     seeds = len(study.plan.seeds)
     if seeds < LEAST_SEEDS:
         found.append(f"{counted(seeds, 'seed')}: no interval of a mean below {LEAST_SEEDS} seeds.")
-    gap = over_seeds(study.of(None), lambda day: day.relative_gap)
+    gap = over_seeds(study.of(EQUILIBRIUM), lambda day: day.relative_gap)
     if gap is not None and gap.value > NEAR:
         found.append(
             f"The nearest that was found to a user equilibrium has a relative gap of {gap.value:.1%}, more than "
             f"{NEAR:.0%}: differences from it are differences from a guess."
         )
-    unsettled = [
-        named(share)
-        for share in shares(study)
-        if share is not None and any(row.settled is None for row in study.of(share))
-    ]
+    unsettled = [named(share) for share in shares(study) if any(row.settled is None for row in study.of(share))]
     if unsettled:
         found.append(f"Not settled in every seed: {', '.join(unsettled)}; run more --days.")
     late = sum(row.days[-1].unfinished for row in study.rows if row.days)
@@ -122,28 +137,32 @@ def warnings(study: DaysStudy) -> list[str]:
 def tables(study: DaysStudy) -> list[Table]:
     """All tables."""
     rows: list[TableRow] = []
-    nobody = {row.seed: row.last(lambda day: day.mean_s) or 0.0 for row in study.of(0.0)}
-    best = {row.seed: row.last(lambda day: day.mean_s) or 0.0 for row in study.of(None)}
-    for share in shares(study):
-        here = study.of(share)
+    nobody, best, least = (
+        {row.seed: row.last(lambda day: day.mean_s) or 0.0 for row in study.of(drivers)}
+        for drivers in (0.0, EQUILIBRIUM, OPTIMUM)
+    )
+    for drivers in states(study):
+        here = study.of(drivers)
         own = {row.seed: row.last(lambda day: day.mean_s) or 0.0 for row in here}
         against = [
             told_mean(seed_mean((seed, own[seed] - other[seed]) for seed in own.keys() & other.keys()), "+.1f")
-            for other in (nobody, best)
+            for other in (nobody, best, least)
         ]
         settled = [row.settled for row in here]
+        is_searched = isinstance(drivers, str)
         rows.append(
             (
-                named(share),
+                named(drivers),
                 str(len(here)),
                 NONE
-                if share is None or None in settled
+                if is_searched or None in settled
                 else f"{fmean(day for day in settled if day is not None):.0f}",
-                told_mean(mean_s(study, share), ".1f"),
+                told_mean(mean_s(study, drivers), ".1f"),
                 told_mean(over_seeds(here, lambda day: day.advised_s), ".1f"),
                 told_mean(over_seeds(here, lambda day: day.others_s), ".1f"),
-                NONE if share == 0 else against[0],
-                NONE if share is None else against[1],
+                NONE if drivers == 0 else against[0],
+                NONE if drivers == EQUILIBRIUM else against[1],
+                NONE if drivers == OPTIMUM else against[2],
                 _per_cent(over_seeds(here, lambda day: day.relative_gap)),
             )
         )
@@ -156,12 +175,14 @@ def tables(study: DaysStudy) -> list[Table]:
         "Others, s",
         "Against nobody, s",
         "Against equilibrium, s",
+        "Against optimum, s",
         "Relative gap",
     )
     note = (
         f"Means of the last {WEEK} days, from the planned departure to the arrival. Settled: the mean of {WEEK} "
         f"days differs by less than {SETTLED:.0%} from that of the {WEEK} days before. User equilibrium: the day "
-        "with the smallest gap. Differences: seed by seed. "
+        "with the smallest gap. System optimum: the day with the least time, which may not be the least there is. "
+        "Differences: seed by seed. "
         "Relative gap: what all drivers lost against the routes that were quickest that day; 0 is a user "
         "equilibrium."
     )
@@ -190,23 +211,23 @@ def charts(study: DaysStudy) -> dict[str, tuple[str, str, str]]:
 
 
 def _days(study: DaysStudy) -> Drawing | None:
-    found = shares(study)
+    found = states(study)
     if not found:
         return None
 
     def draw(axes: Axes) -> None:
-        for number, share in enumerate(found):
-            rows = study.of(share)
+        for number, drivers in enumerate(found):
+            rows = study.of(drivers)
             shortest = min(len(row.days) for row in rows)
             means_s = [fmean(row.days[day].mean_s for row in rows) for day in range(shortest)]
             axes.plot(
                 range(shortest),
                 means_s,
-                marker=None if share is None else MARKERS[number % len(MARKERS)],
-                linestyle="--" if share is None else "-",
-                color=INK if share is None else PALETTE[number % len(PALETTE)],
+                marker=None if isinstance(drivers, str) else MARKERS[number % len(MARKERS)],
+                linestyle=LINES.get(drivers, "-"),
+                color=INK if isinstance(drivers, str) else PALETTE[number % len(PALETTE)],
                 markersize=5,
-                label=named(share),
+                label=named(drivers),
             )
         axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
         axes.locator_params(axis="x", integer=True)
@@ -218,7 +239,7 @@ def _days(study: DaysStudy) -> Drawing | None:
 
 
 def _shares(study: DaysStudy) -> Drawing | None:
-    advised = [share for share in shares(study) if share is not None]
+    advised = shares(study)
     if len(advised) < 2:
         return None
     lines: dict[str, Callable[[StudyDay], float | None]] = {
@@ -240,9 +261,10 @@ def _shares(study: DaysStudy) -> Drawing | None:
                 markersize=6,
                 label=name,
             )
-        equal = mean_s(study, None)
-        if equal is not None:
-            axes.axhline(equal.value, color=INK, linestyle="--", linewidth=1, label=EQUILIBRIUM)
+        for state in (EQUILIBRIUM, OPTIMUM):
+            mean = mean_s(study, state)
+            if mean is not None:
+                axes.axhline(mean.value, color=INK, linestyle=LINES[state], linewidth=1, label=state)
         axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
         axes.set_xlabel("% of the drivers advised")
         axes.set_ylabel("mean travel time of the last days, s")

@@ -67,6 +67,7 @@ CASES = {
     "pages": Smallest(("1",), needs=("playwright",), program="chromium"),
     "peers": Smallest(("grid", "--seconds", "5", "--repeats", "1")),
     "ppo_flat": Smallest(("--steps", "64", "--rounds", "1"), needs=("torch", "stable_baselines3")),
+    "scale": Smallest(("--streets", "4", "--trips", "1")),
     "search": Smallest(("--seeds", "1", "--most", "20")),
     "sensitivity": Smallest(("--seeds", "1", "--points", "16")),
     "studies": Smallest(("--studies", "2")),

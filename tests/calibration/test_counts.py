@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gzip
+import zipfile
 from collections.abc import Callable, Sequence
 from datetime import datetime, timedelta
 from pathlib import Path
@@ -95,10 +96,10 @@ def test_what_cannot_be_used_is_said_in_one_line(tmp_path: Path, lines: list[str
 
 
 def test_no_file_a_picture_and_a_cut_off_archive_are_refused(tmp_path: Path) -> None:
-    (tmp_path / "picture").write_bytes(b"\x89PNG\xff\xfe")
+    (tmp_path / "picture").write_bytes(b"\x89PNG\r\n\x1a\n")
     (tmp_path / "cut.gz").write_bytes(gzip.compress(b"site,hour,vehicles_per_hour\n" * 100)[:-12])
     for name in ("nowhere", "picture", "cut.gz"):
-        with pytest.raises(CountsError, match=r"give a CSV file of counts|save it as CSV UTF-8"):
+        with pytest.raises(CountsError, match=r"give a table of counts|save it as CSV UTF-8"):
             read_counts(tmp_path / name, PARIS)
 
 
@@ -112,13 +113,60 @@ def test_no_file_a_picture_and_a_cut_off_archive_are_refused(tmp_path: Path) -> 
         "site,hour,vehicles_per_hour\nloop,8,515\n,,\n\n",
         "\ufeffsite;hour;vehicles_per_hour\r\nloop;8;515\r\n",
         '"site","hour","vehicles_per_hour"\n"loop","8","515"\n',
+        "Comptages;;\nRue de l\u2019Étoile, été;;\n\nsite;hour;vehicles_per_hour\nloop;08:00-09:00;515\n",
+        "sep=;\nsite;hour;vehicles per hour\nloop;8h;515\n;8;\n;08:00;515,0\n",
     ],
 )
-@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16", "cp1252"])
 def test_counts_are_read_as_spreadsheets_save_them(tmp_path: Path, text: str, encoding: str) -> None:
     file = tmp_path / "counts.csv"
     file.write_bytes((text if encoding == "utf-8" else text.removeprefix("\ufeff")).encode(encoding))
     assert dict(read_counts(file, PARIS).flows_per_h) == {("loop", 8): 515.0}
+
+
+def test_decimal_commas_and_spaces_of_thousands(tmp_path: Path) -> None:
+    file = _file(tmp_path, ["site;hour;vehicles_per_hour", "a;8;1 234,5", "b;8;1\u00a0234"])
+    assert dict(read_counts(file, PARIS).flows_per_h) == {("a", 8): 1234.5, ("b", 8): 1234.0}
+
+
+CELLS = """<row r="1"><c r="A1" t="inlineStr"><is><t>Counts of spring</t></is></c></row>
+<row r="3"><c r="B3" t="inlineStr"><is><t>Site</t></is></c><c r="C3" t="inlineStr"><is><t>Hour</t></is></c>
+<c r="D3" t="inlineStr"><is><t>Vehicles per hour</t></is></c></row>
+<row r="4"><c r="B4" t="inlineStr"><is><t>loop</t></is></c><c r="C4"><v>8</v></c><c r="D4"><v>515.5</v></c></row>
+<row r="5"><c r="B5"/><c r="C5"><v>9</v></c><c r="D5"><v>600</v></c></row>"""
+
+
+def test_a_workbook_is_read_with_its_merged_cells_and_the_lines_above(tmp_path: Path) -> None:
+    """The smallest that Excel opens: one sheet whose table begins at B3, with B4 and B5 merged."""
+    pytest.importorskip("python_calamine")
+    main, office = (
+        f"http://schemas.openxmlformats.org/{each}" for each in ("spreadsheetml/2006/main", "package/2006")
+    )
+    types = "application/vnd.openxmlformats-officedocument.spreadsheetml"
+    documents = "http://schemas.openxmlformats.org/officeDocument/2006/relationships"
+    parts = {
+        "[Content_Types].xml": f'<Types xmlns="{office}/content-types"><Default Extension="xml" '
+        'ContentType="application/xml"/><Default Extension="rels" '
+        'ContentType="application/vnd.openxmlformats-package.relationships+xml"/>'
+        f'<Override PartName="/xl/workbook.xml" ContentType="{types}.sheet.main+xml"/>'
+        f'<Override PartName="/xl/worksheets/sheet1.xml" ContentType="{types}.worksheet+xml"/></Types>',
+        "_rels/.rels": f'<Relationships xmlns="{office}/relationships"><Relationship Id="r1" '
+        f'Type="{documents}/officeDocument" Target="xl/workbook.xml"/></Relationships>',
+        "xl/workbook.xml": f'<workbook xmlns="{main}" xmlns:r="{documents}"><sheets><sheet name="Counts" '
+        'sheetId="1" r:id="r1"/></sheets></workbook>',
+        "xl/_rels/workbook.xml.rels": f'<Relationships xmlns="{office}/relationships"><Relationship Id="r1" '
+        f'Type="{documents}/worksheet" Target="worksheets/sheet1.xml"/></Relationships>',
+        "xl/worksheets/sheet1.xml": f'<worksheet xmlns="{main}"><sheetData>{CELLS}</sheetData>'
+        '<mergeCells count="1"><mergeCell ref="B4:B5"/></mergeCells></worksheet>',
+    }
+    with zipfile.ZipFile(tmp_path / "counts.xlsx", "w") as book:
+        for name, text in parts.items():
+            book.writestr(name, text)
+    counts = read_counts(tmp_path / "counts.xlsx", PARIS)
+    assert dict(counts.flows_per_h) == {("loop", 8): 515.5, ("loop", 9): 600.0}
+    (tmp_path / "cut.xlsx").write_bytes((tmp_path / "counts.xlsx").read_bytes()[:400])
+    with pytest.raises(CountsError, match="not a workbook that can be read"):
+        read_counts(tmp_path / "cut.xlsx", PARIS)
 
 
 def test_travel_times_are_read(tmp_path: Path) -> None:

@@ -136,6 +136,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"(serve|mcp|a2a)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
     (r"scenarios (check|download)", HELP, "takes minutes or the network; tests/osm has them"),
+    (r"scenarios calibrate", HELP, "takes minutes; tests/calibration try it on the grid"),
     (r"scenarios equilibrate", HELP, "takes minutes; tests/scenery/test_equilibrium.py tries it"),
     (r"scenarios import pass", HELP, "needs a scenario of the reader's; tests/exchange has one"),
     (r"scenarios import city", HELP, "needs a map of the reader's; the hamlet is imported"),

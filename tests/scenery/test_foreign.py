@@ -18,9 +18,11 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.scenery.routes import LONG_M, chosen_trips, edges_at
+from automotive_cosim.scenery.variant import write_variant
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.traffic.options import read_configuration
 from automotive_cosim.traffic.ways import way_through
 
 GRID = scenarios.load("grid").folder
@@ -304,3 +306,24 @@ def test_real_scenarios_run_with_their_own_demand(name: str, simulations, data_o
         assert scenario.start.hour == 16
     env.close()
     assert _listing(path.parent) == before
+
+
+def test_a_copy_with_another_demand_has_the_configurations_files_and_no_others(tmp_path: Path) -> None:
+    """Without ``scenario.toml``; its scale and share of rerouting cars were those of the old demand."""
+    here, there = tmp_path / "here", tmp_path / "there"
+    shutil.copytree(GRID, here)
+    (here / "scenario.toml").unlink()
+    (here / "diary.txt").touch()
+    config = here / "grid.sumocfg"
+    options = '<scale value="2"/><device.rerouting.probability value="0.5"/>'
+    config.write_text(config.read_text().replace("</configuration>", f"{options}</configuration>"))
+    given = open_scenario(config)
+    assert (given.sumo.scale, given.sumo.background_rerouting) == (2.0, 0.5)
+    routes = ("mine.rou.xml", '<routes><trip id="a" depart="0" from="c0c1" to="c2c3"/></routes>')
+    write_variant(there, given, read_configuration(config), routes, ("record.json", {}))
+    made = open_scenario(there)
+    assert (made.sumo.scale, made.sumo.background_rerouting) == (1.0, 0.0)
+    files = read_configuration(made.config).files
+    assert [path.name for path in files["route-files"]] == ["mine.rou.xml"]
+    named = {path.name for paths in files.values() for path in paths}
+    assert {path.name for path in there.iterdir()} == named | {"grid.sumocfg", "record.json"}

@@ -49,6 +49,7 @@ def study() -> DaysStudy:
             replace(row(0.0, seed), days=(day(200.0, changed=0),)),
             row(1.0, seed, *down),
             replace(row(None, seed), days=(day(190.0), day(145.6, relative_gap=0.01), day(150.0))),
+            replace(row(None, seed, 190.0, 120.0, 130.0), optimum=True),
         )
     ]
     return DaysStudy(Path(), {}, PLAN, tuple(rows))
@@ -59,7 +60,7 @@ def test_it_settles_when_a_week_is_as_the_week_before() -> None:
     assert has_settled([100.0] * 2 * WEEK)
     assert not has_settled([100.0] * WEEK + [98.0] * WEEK)
     assert has_settled([100.0] * WEEK + [99.5] * WEEK)
-    nobody, advised, _ = study().rows[:3]
+    nobody, advised, *_ = study().rows
     assert nobody.settled == 0, "nobody changes anything"
     assert advised.settled == 12, "two even weeks after three days of change"
 
@@ -68,17 +69,22 @@ def test_it_settles_when_a_week_is_as_the_week_before() -> None:
 def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
     found = study()
     assert answer(found) == (
-        "A trip is shortest with 100% of the drivers advised: 150 s, 25.0% less than with nobody advised and 3.0% "
-        "more than in the user equilibrium; traffic settles by day 12, over 2 seeds."
+        "A trip is shortest with 100% of the drivers advised: 150 s, 25.0% less than with nobody advised, 3.0% "
+        "more than in the user equilibrium and 25.0% more than in the system optimum; traffic settles by "
+        "day 12, over 2 seeds."
     )
     (table,) = tables(found)
-    assert [str(each[0]) for each in table.rows] == ["0% advised", "100% advised", "user equilibrium"]
-    assert [str(each[6]) for each in table.rows] == ["–", "−50.0", "−54.4"]
+    assert [str(each[0]) for each in table.rows] == [
+        *("0% advised", "100% advised"),
+        *("user equilibrium", "system optimum"),
+    ]
+    assert [str(each[6]) for each in table.rows] == ["–", "−50.0", "−54.4", "−80.0"]
+    assert [str(each[8]) for each in table.rows] == ["+80.0", "+30.0", "+25.6", "–"]
     assert set(charts(found)) == {"days", "shares"}
     assert warnings(found) == ["2 seeds: no interval of a mean below 10 seeds."]
-    far = replace(found, rows=(*found.rows[:2], row(None, 0, 150.0), *found.rows[3:5], row(None, 1, 150.0)))
+    far = replace(found, rows=(*found.rows[:2], row(None, 0, 150.0), *found.rows[4:6], row(None, 1, 150.0)))
     assert any("relative gap of 10.0%, more than 2%" in each for each in warnings(far))
-    restless = replace(found, rows=(*found.rows[:4], row(1.0, 1, 200.0, 100.0), found.rows[5]))
+    restless = replace(found, rows=(*found.rows[:5], row(1.0, 1, 200.0, 100.0), found.rows[6]))
     assert any("Not settled in every seed: 100% advised" in each for each in warnings(restless))
 
 
