@@ -113,7 +113,7 @@ class Caller:
             pictures = (png(seen.screenshot),)
         now = self._situation(seen, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, now)
-        reply, asked = self._asking.converse([*self._conversation(), ChatMessage("user", now, pictures)])
+        reply, asked = self._asking.converse([*self._conversation(seen.policy), ChatMessage("user", now, pictures)])
         say, calls = _read(reply)
         self._left.extend(
             ToolCall(f"call{self._count + at:05d}", name, arguments) for at, (name, arguments) in enumerate(calls)
@@ -129,11 +129,11 @@ class Caller:
             self._asking.note(StageName.ACT, seen, told)
             raise ActionError(told)
 
-    def _conversation(self) -> Iterator[ChatMessage]:
+    def _conversation(self, policy: str | None) -> Iterator[ChatMessage]:
         """What it is to do, and each earlier answer with its results."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self.channels else ""
         name = "caller_watch" if self._keeps_watch else "caller"
-        yield ChatMessage("system", prompt.fill(name, {"weigh": weigh, "words": WORDS}))
+        yield ChatMessage("system", prompt.fill(name, {"weigh": weigh, "words": WORDS, "policy": policy}))
         for answer, results in self._told[-REMEMBERED:] if self._keeps_watch else self._told:
             yield answer
             known = {result.call_id for result in results}

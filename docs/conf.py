@@ -23,6 +23,7 @@ from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.wakes import WAKES
 from automotive_cosim.interface import spaces
+from automotive_cosim.interface.policy import HOUSE
 from automotive_cosim.tasking.task import Dimension, Module
 from automotive_cosim.tasks import CATALOGUE
 
@@ -70,6 +71,7 @@ def setup(sphinx: Sphinx) -> None:
     _gallery()
     _commands()
     _drives()
+    _table("policy.md", ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE])
     for name in ("plan", "scenario"):
         _fields(name)
     _write("functions.md", "```text", _printed("show", "functions"), "```")

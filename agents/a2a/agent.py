@@ -130,7 +130,7 @@ class A2AAgent:
         now = self._situation(seen)
         self._note(StageName.PERCEIVE, seen, now)
         if self._is_new:
-            system = f"{self._told()}\n\n{self._situation(seen, is_spoken=False)}"
+            system = f"{self._told(seen.policy)}\n\n{self._situation(seen, is_spoken=False)}"
             answer = self._say(seen, opening(system, prompt.driver_words(seen), self._tools.values()), USER)
         elif self._asked:
             contents = [self._results.get(call.id, NOT_DONE) for call in self._asked]
@@ -203,11 +203,11 @@ class A2AAgent:
             self._profile, seen, pictures=False, on_watch=self._keeps_watch, is_spoken=is_spoken
         )
 
-    def _told(self) -> str:
+    def _told(self, policy: str | None) -> str:
         """What it is to do."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self._profile.channels else ""
         name = "caller_watch" if self._keeps_watch else "caller"
-        return prompt.fill(name, {"weigh": weigh, "words": SPOKEN})
+        return prompt.fill(name, {"weigh": weigh, "words": SPOKEN, "policy": policy})
 
     def _note(self, name: StageName, seen: Observation, text: str, reply: ModelReply | None = None) -> None:
         self.stages.append(Stage(name, text, seen.time_s, reply))
