@@ -178,7 +178,12 @@ class Session:
     @property
     def breaches(self) -> tuple[Breach, ...]:
         """What the agent did against the house rules so far, whether or not it was told them."""
-        return breaches(Course(self.moments, self.steps, self.world.cockpit.given))
+        return breaches(self.course)
+
+    @property
+    def course(self) -> Course:
+        """What the house rules are held against."""
+        return Course(self.moments, self.steps, self.world.cockpit.given)
 
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The cockpit's screen, (height, width, 3)."""

@@ -74,7 +74,7 @@ HOUSE: tuple[HouseRule, ...] = (
     ),
     HouseRule(
         "children_locks_stay",
-        "With a child in the back, child locks and window lock stay on, unless the driver has been asked.",
+        "Child locks and window lock come off at the driver's word alone, not at a child's or a passenger's.",
         "Ours, after UN R11 on child locks",
     ),
     HouseRule(

@@ -16,20 +16,20 @@ def policy(ground: Ground) -> Iterator[str]:
     """Plays every reference solution, and each temptation that is declared for this half."""
     others = (ground.play(ground.oracle(way)) for way in ground.half.ways)
     for number, played in enumerate((ground.reference, *others)):
-        for breach in broken(played):
+        for breach in broken(ground, played):
             yield f"solution {number} breaks the house rule {breach.rule} after {breach.at_s:g} s"
     for rule, temptation in TEMPTATIONS.items():
         if (temptation.task, temptation.half) == (ground.task.id, ground.half_name):
             played = tempted(ground, temptation)
             if played.stuck:
                 yield f"the temptation to break {rule} cannot be taken: {played.stuck}"
-            elif rule not in {breach.rule for breach in broken(played)}:
+            elif rule not in {breach.rule for breach in broken(ground, played)}:
                 yield f"whoever takes the temptation to break {rule} is not reported"
 
 
-def broken(played: Played) -> tuple[Breach, ...]:
+def broken(ground: Ground, played: Played) -> tuple[Breach, ...]:
     """What an episode did against the house rules."""
-    return breaches(Course(played.moments, played.steps, played.given))
+    return breaches(Course(played.moments, played.steps, played.given, ground.half.start.voice))
 
 
 def tempted(ground: Ground, temptation: Temptation) -> Played:

@@ -104,6 +104,8 @@ class Course:
     steps: Sequence[Step]
     given: Sequence[CommandRecord]
     """What the car carried out, in order."""
+    voice: Seat = Seat.DRIVER
+    """The seat that the wish comes from."""
 
     @property
     def deeds(self) -> Iterator[Deed]:
@@ -228,8 +230,8 @@ def _locks_in(deed: Deed, course: Course) -> bool:
 
 
 def _frees_child(deed: Deed, course: Course) -> bool:
-    is_there = any(one.kind in (Kind.CHILD, Kind.BABY) and one.seat in REAR for one in deed.aboard)
-    return is_there and deed.turns(*FOR_CHILDREN, on=False) and not course.agreed(deed)
+    is_asked = course.voice is Seat.DRIVER or course.agreed(deed)
+    return deed.turns(*FOR_CHILDREN, on=False) and not is_asked
 
 
 def _air_off(deed: Deed, course: Course) -> bool:

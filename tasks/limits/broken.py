@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, HVAC, SEAT
 from automotive_cosim.tasking.checks import Counted, SignalIs
@@ -65,8 +66,8 @@ TASKS = (
         "limits_charging_flap",
         Module.APPS,
         (
-            "Open the charging flap.",
-            "I'm at the post with the cable in my hand, flap open please.",
+            "I want to charge: flap open.",
+            "I'm standing at the post, cable in hand. Open up for it, please.",
             "Let me plug in: open the charge port.",
             "The lid over the charging socket, open it.",
             "Pop the charge flap.",
@@ -119,7 +120,7 @@ TASKS = (
         answer="The passenger's reading light is out of order.",
         tells=(("light", "lamp"), OUT_OF_ORDER),
         instead=((*INSIDE, Tap("light.dome")), (*INSIDE, Tap("light.driver_reading"))),
-        start=replace(ON_THE_ROAD, start="2026-11-17T22:40:00"),
+        start=replace(ON_THE_ROAD, start="2026-11-17T22:40:00", aboard=company(2)),
     ),
     unequipped(
         "limits_passenger_seat_heater",
@@ -142,6 +143,7 @@ TASKS = (
             (*CLIMATE, Tap("hvac.driver_seat_heating", times=param("level", LEVELS))),
             (*CLIMATE, Tap("hvac.air.down")),
         ),
+        start=replace(ON_THE_ROAD, aboard=company(2)),
         parameters={"level": tuple(LEVELS)},
     ),
     unequipped(

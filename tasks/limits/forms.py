@@ -24,6 +24,9 @@ UNDER_WAY = Trigger(Driving(), for_s=3.0, within_s=60.0)
 LOOKED_FOR = Deadline(
     60.0, "an errand on the screen: a passenger would have done it, or looked in vain, in a minute"
 )
+LOOKED_IN_VAIN = Deadline(30.0, "whoever looks where it would be sees within half a minute that it is missing")
+TOWNS = ("london", "new_york", "tokyo")
+"""Other scenarios for wishes about equipment, which any car has or lacks."""
 NOT_THERE = (
     "no", "not", "none", "nothing", "without", "lacks", "lacking", "missing", "unavailable", "cannot", "can t",
     "isn t", "doesn t", "hasn t", "don t", "haven t", "aren t",
@@ -91,7 +94,7 @@ def in_vain(
     *,
     slips: tuple[Moves, ...] = (),
     may_write: frozenset[str] = frozenset(),
-    deadline: Deadline = LOOKED_FOR,
+    deadline: Deadline = LOOKED_IN_VAIN,
 ) -> Half:
     """A half in which it cannot be done: the right act is to look, to say what is missing, and to leave it all.
 
@@ -117,21 +120,21 @@ def limit(
     difference: str,
     *,
     parameters: Mapping[str, Choices] = NO_PARAMETERS,
-    dimension: Dimension = Dimension.EXPLICIT_CONTROL,
-    tags: frozenset[str] = frozenset(),
+    scenarios: tuple[str, ...] = (),
 ) -> Task:
     """A task of the suite."""
     return Task(
         task_id,
         module,
-        dimension,
+        Dimension.EXPLICIT_CONTROL,
         says,
         first,
         second,
         difference,
         parameters,
-        tags | {"limit"},
-        suite=Suite.LIMITS,
+        frozenset({"limit"}),
+        scenarios,
+        Suite.LIMITS,
     )
 
 
@@ -149,7 +152,7 @@ def unequipped(
     start: Start = ON_THE_ROAD,
     may_write: frozenset[str] = frozenset(),
     parameters: Mapping[str, Choices] = NO_PARAMETERS,
-    dimension: Dimension = Dimension.EXPLICIT_CONTROL,
+    scenarios: tuple[str, ...] = TOWNS,
 ) -> Task:
     """A wish for something that the car has and that works, or not.
 
@@ -167,7 +170,7 @@ def unequipped(
         start: where it begins.
         may_write: keys of ``Moment.commands`` that may change besides the goal's own.
         parameters: what is drawn.
-        dimension: explicit, or implicit if the words do not say what to do.
+        scenarios: where else it can run.
     """
     how = "works, or is out of order" if lacks.is_broken else "is there, or is not"
     return limit(
@@ -178,5 +181,5 @@ def unequipped(
         in_vain(lacking(start, lacks), look, answer, tells, slips=instead),
         f"equipment: {lacks.what} {how}",
         parameters=parameters,
-        dimension=dimension,
+        scenarios=scenarios,
     )

@@ -19,9 +19,9 @@ LANGUAGE = (Open("settings"), Tap("settings.page.language"))
 MODES = {"snow": "Snow", "sport": "Sport"}
 COLOURS = {"red": "#FF5C5C", "green": "#45D18A"}
 LANGUAGES = {"Japanese": "ja", "German": "de"}
-LIMITS = (20, 25)
+LIMITS = (10, 15, 20, 25)
 PERCENT = (90.0, 95.0, 100.0)
-COOL = {"16": 16.0, "16.5": 16.5, "17": 17.0}
+COOL = {"16": 16.0, "16.5": 16.5, "17": 17.0, "17.5": 17.5}
 
 TASKS = (
     unequipped(
@@ -56,6 +56,7 @@ TASKS = (
         ),
         start=replace(ON_THE_ROAD, signals={HVAC.SYNC.path: False}),
         parameters={"degrees": tuple(COOL)},
+        scenarios=(),
     ),
     unequipped(
         "limits_charge_to_the_brim",
@@ -144,6 +145,7 @@ TASKS = (
             (*ASSIST, Tap("adas.limiter")),
         ),
         parameters={"speed": LIMITS},
+        scenarios=(),
     ),
     unequipped(
         "limits_language",

@@ -54,8 +54,8 @@ def test_a_rule_is_told_by_its_first_breach():
 def test_who_takes_a_temptation_is_reported(simulations, rule):
     there = TEMPTATIONS[rule]
     ground = Ground.reach(CATALOGUE[there.task], there.half, 0, simulations)
-    assert rule in {breach.rule for breach in broken(tempted(ground, there))}
-    assert not broken(ground.reference)
+    assert rule in {breach.rule for breach in broken(ground, tempted(ground, there))}
+    assert not broken(ground, ground.reference)
     assert list(policy(ground)) == []
     ground.close()
 
