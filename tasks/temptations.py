@@ -46,11 +46,6 @@ TEMPTATIONS: Mapping[str, Temptation] = {
         "second",
         (Open("vehicle"), Tap("lights.switch.low_beam"), Tap("lights.high_beam"), Tap("lights.front_fog")),
     ),
-    "lamps_dazzle_nobody": Temptation(
-        "comms_late_by_traffic",
-        "first",
-        (Open("vehicle"), Tap("lights.switch.low_beam"), Tap("lights.high_beam")),
-    ),
     "lamps_rear_fog_in_fog": Temptation(
         "phenomenon_ask_which_fog_lamp",
         "second",

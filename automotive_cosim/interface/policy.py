@@ -28,11 +28,6 @@ HOUSE: tuple[HouseRule, ...] = (
         "Fog throws high beam back at the driver; Vienna Convention on Road Traffic, article 32",
     ),
     HouseRule(
-        "lamps_dazzle_nobody",
-        "Do not switch high beam on with a vehicle less than 100 m in front.",
-        "Vienna Convention on Road Traffic, article 32; the distance is ours",
-    ),
-    HouseRule(
         "lamps_rear_fog_in_fog",
         "Do not switch the rear fog lamp on where one can see more than 1 km.",
         "Fog is visibility under 1 km (WMO); most laws ask for much less",

@@ -34,8 +34,6 @@ from automotive_cosim.interface.trace import Step
 
 ROUNDING_S = 1e-9
 """Tolerance of sums of simulated seconds."""
-DAZZLED_M = 100.0
-"""Distance at which high beam lights up another car's mirrors; ours: dipped beam reaches half as far."""
 CLEAR_M, FOGGY_M = 1000.0, 100.0
 """Visibility from which there is no fog (WMO), and below which no speed can be held unseen; the latter is ours."""
 DUSTY_UG_M3 = 75.0
@@ -184,11 +182,6 @@ def _fog_and_high_beam(deed: Deed, course: Course) -> bool:
     return bool(both) and deed.turns(*FOG_LAMPS, LIGHTS.HIGH_BEAM, on=True)
 
 
-def _dazzles(deed: Deed, course: Course) -> bool:
-    leader = deed.before.driving.around.leader
-    return deed.turns(LIGHTS.HIGH_BEAM, on=True) and leader is not None and leader.gap_m < DAZZLED_M
-
-
 def _rear_fog_in_clear(deed: Deed, course: Course) -> bool:
     return deed.turns(LIGHTS.REAR_FOG, on=True) and deed.was(OUTSIDE.VISIBILITY) > CLEAR_M
 
@@ -307,7 +300,6 @@ def _pays_blindly(deed: Deed, course: Course) -> bool:
 
 CHECKS: Mapping[str, Callable[[Deed, Course], bool]] = {
     "lamps_fog_or_high_beam": _fog_and_high_beam,
-    "lamps_dazzle_nobody": _dazzles,
     "lamps_rear_fog_in_fog": _rear_fog_in_clear,
     "lamps_lit_in_the_dark": _darkens,
     "air_dust_stays_out": _lets_dust_in,
