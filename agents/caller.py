@@ -21,7 +21,6 @@ from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.marks import png
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.contracts import UNCALLED, Action, Observation
-from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.errors import ActionError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import Function, action_of, offered
@@ -75,7 +74,6 @@ class Caller:
     def reset(self, goal: str) -> None:
         """Forgets the previous episode."""
         self._asking.reset()
-        self._keeps_watch = goal == STANDING_ORDER
         self._told: list[tuple[ChatMessage, list[ChatMessage]]] = []
         self._left: deque[ToolCall] = deque()
         self._waiting: ToolCall | None = None
@@ -113,7 +111,7 @@ class Caller:
             pictures = (png(seen.screenshot),)
         now = self._situation(seen, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, now)
-        reply, asked = self._asking.converse([*self._conversation(seen.policy), ChatMessage("user", now, pictures)])
+        reply, asked = self._asking.converse([*self._conversation(seen), ChatMessage("user", now, pictures)])
         say, calls = _read(reply)
         self._left.extend(
             ToolCall(f"call{self._count + at:05d}", name, arguments) for at, (name, arguments) in enumerate(calls)
@@ -129,12 +127,12 @@ class Caller:
             self._asking.note(StageName.ACT, seen, told)
             raise ActionError(told)
 
-    def _conversation(self, policy: str | None) -> Iterator[ChatMessage]:
+    def _conversation(self, seen: Observation) -> Iterator[ChatMessage]:
         """What it is to do, and each earlier answer with its results."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self.channels else ""
-        name = "caller_watch" if self._keeps_watch else "caller"
-        yield ChatMessage("system", prompt.fill(name, {"weigh": weigh, "words": WORDS, "policy": policy}))
-        for answer, results in self._told[-REMEMBERED:] if self._keeps_watch else self._told:
+        name = "caller_watch" if seen.on_watch else "caller"
+        yield ChatMessage("system", prompt.fill(name, {"weigh": weigh, "words": WORDS, "policy": seen.policy}))
+        for answer, results in self._told[-REMEMBERED:] if seen.on_watch else self._told:
             yield answer
             known = {result.call_id for result in results}
             yield from results
@@ -142,7 +140,7 @@ class Caller:
             yield from (ChatMessage("tool", "not done", call_id=call.id) for call in left)
 
     def _situation(self, seen: Observation, pictures: bool) -> str:
-        return prompt.situation(self._profile, seen, pictures=pictures, on_watch=self._keeps_watch)
+        return prompt.situation(self._profile, seen, pictures=pictures)
 
 
 def _read(reply: ModelReply) -> tuple[str, list[tuple[str, object]]]:

@@ -17,7 +17,6 @@ from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.cockpit.actions import schema_of
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.contracts.given import PromptLength
-from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.errors import ActionError, UserError
 from automotive_cosim.interface.observe import Channel, See
 from automotive_cosim.models.base import ChatModel
@@ -89,7 +88,6 @@ class ModelAgent:
     def reset(self, goal: str) -> None:
         """Forgets the previous episode, except for what the memory keeps."""
         self._asking.reset()
-        self._keeps_watch = goal == STANDING_ORDER
         self._history: list[str] = []
         self._done: list[str] = []
         self._recalled: tuple[str, ...] = ()
@@ -136,7 +134,7 @@ class ModelAgent:
         self._asking.note(StageName.REMEMBER, observation, "\n".join(self._recalled) or "nothing of this place")
 
     def _look_back(self, last: _Turn, now: Observation) -> None:
-        has_waited = self._keeps_watch and last.action is not None and last.action.action_type is ActionType.WAIT
+        has_waited = now.on_watch and last.action is not None and last.action.action_type is ActionType.WAIT
         lesson = self._reflect(last, now) if self._profile.reflects and not has_waited else ""
         done = prompt.action_words(last.action, last.seen)
         number = len(self._history) + 1
@@ -163,13 +161,11 @@ class ModelAgent:
         if self._sees and seen.screenshot is not None:
             with_marks = _marked(seen)
             pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
-        last = WATCH_HISTORY if self._keeps_watch else len(self._history)
+        last = WATCH_HISTORY if seen.on_watch else len(self._history)
         if self._profile.length is PromptLength.SHORT:
             last = SHORT_HISTORY
         history = self._history[len(self._history) - last :] if last < len(self._history) else self._history
-        text = prompt.turn(
-            self._profile, seen, history, plan, self._recalled, bool(pictures), on_watch=self._keeps_watch
-        )
+        text = prompt.turn(self._profile, seen, history, plan, self._recalled, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, text)
         action = schema_of(self._profile.actions, None if seen.elements is None else brief.indices(seen.elements))
         reply, asked = self._asking.ask(text, pictures, answer.schema(action))

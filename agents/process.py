@@ -1,19 +1,19 @@
 """The processes in which an evaluation's agents live: ``python -m automotive_cosim.agents.process DESCRIPTOR``.
 
-One process per worker, the *nursery*, imports this package and nothing of an agent's, and knows nothing of any
+One process per worker, the *fork server*, imports this package and nothing of an agent's, and knows nothing of any
 episode. For each episode it forks a process, which makes one agent, is told what the driver says and what there is
-to see, and answers with actions. ``run.nursery`` and ``run.outside`` are the other side.
+to see, and answers with actions. ``run.fork_server`` and ``run.outside`` are the other side.
 
-    worker --------------- nursery                  ("start" or "become", request), ("end", grace)   pickled
-      |                       | fork
-      '------------------- agent's process          ("goal", words), ("seen", observation), ("reply", reply)
+    worker ------------ fork server                 ("start" or "become", request), ("end", grace)   pickled
+      |                    | forks
+      '---------------- agent's process             ("goal", words), ("seen", observation), ("reply", reply)
                                                     -> channels, action, refused, spent, ask, failed      JSON
 
 What an agent asks its model goes to the worker, which asks the model: only what the worker's own client reports is
 a model's error.
 
 The process has a session and an empty working folder of its own and no open file but the connection; what it starts
-ends with it. Where processes are not forked, the nursery becomes the agent's process, for one episode.
+ends with it. Where processes are not forked, the fork server becomes the agent's process, for one episode.
 """
 
 from __future__ import annotations
@@ -111,13 +111,13 @@ class AgentServer:
     def _start(self, request: AgentRequest) -> None:
         self._end()
         connection = self._wire.receive_socket()
-        nursery, self._folder = os.getpid(), request.folder
+        fork_server, self._folder = os.getpid(), request.folder
         self._child = os.fork()
         if not self._child:
             self._wire.close()
             os.setsid()
             _prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
-            if os.getppid() != nursery:  # it ended before this one could be told
+            if os.getppid() != fork_server:  # it ended before this one could be told
                 os._exit(1)
             with suppress(OSError):  # should memory run out, this goes first, and not the traffic or the worker
                 Path("/proc/self/oom_score_adj").write_text("500")

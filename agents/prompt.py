@@ -58,7 +58,6 @@ def turn(
     plan: str = "",
     recalled: Sequence[str] = (),
     pictures: bool = False,
-    on_watch: bool = False,
 ) -> str:
     """The prompt of one turn of an agent.
 
@@ -69,14 +68,13 @@ def turn(
         plan: what it intended to do next when it last acted.
         recalled: what it remembers of earlier episodes, one line each.
         pictures: whether the screen is sent along, and the marked screen if there is a list.
-        on_watch: whether it watches over a drive, for which every agent has the same words.
     """
     given = profile.channels
     is_listed, is_told = Channel.ELEMENTS in given, Channel.CONTEXT in given
     return fill(
-        WATCH if on_watch else profile.name if profile.length is PromptLength.LONG else profile.length,
+        WATCH if observation.on_watch else profile.name if profile.length is PromptLength.LONG else profile.length,
         {
-            "grammar": _grammar(profile, by_point=not is_listed, on_watch=on_watch),
+            "grammar": _grammar(profile, by_point=not is_listed, on_watch=observation.on_watch),
             "policy": observation.policy,
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
@@ -88,23 +86,20 @@ def turn(
             "vehicle": _vehicle(observation.vehicle, profile.length) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
-            "context": _context(profile, observation, on_watch=on_watch) if is_told else None,
+            "context": _context(profile, observation) if is_told else None,
             "weigh": PLACE_COUNTS if is_told else "",
             "memory": "\n".join(map(one_line, recalled)) or None,
         },
     )
 
 
-def situation(
-    profile: AgentProfile, observation: Observation, *, pictures: bool, on_watch: bool, is_spoken: bool = True
-) -> str:
+def situation(profile: AgentProfile, observation: Observation, *, pictures: bool, is_spoken: bool = True) -> str:
     """The situation alone, for an agent whose protocol carries the rest: the functions and what was called.
 
     Args:
         profile: what the agent is given.
         observation: what it sees.
         pictures: whether the picture comes with it.
-        on_watch: whether it watches over a drive.
         is_spoken: whether it has what the driver said.
     """
     given = profile.channels
@@ -119,7 +114,7 @@ def situation(
             "vehicle": _vehicle(observation.vehicle, profile.length) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
-            "context": _context(profile, observation, on_watch=on_watch) if Channel.CONTEXT in given else None,
+            "context": _context(profile, observation) if Channel.CONTEXT in given else None,
         },
     )
 
@@ -129,7 +124,7 @@ PLACE_COUNTS = (
     "wrong in another."
 )
 WATCH = "drive"
-"""The prompt of a watch over a drive."""
+"""The prompt of a watch over a drive, the same for every agent."""
 UNASKED = frozenset({ActionType.STATUS})
 """Actions that a watch has no use for."""
 WAITS = "wait until something changes, or for up to 60 seconds"
@@ -221,10 +216,10 @@ def _elements(profile: AgentProfile, observation: Observation) -> str:
     return elements(observation) if is_long else brief.told(observation.elements or ())
 
 
-def _context(profile: AgentProfile, observation: Observation, *, on_watch: bool) -> str:
+def _context(profile: AgentProfile, observation: Observation) -> str:
     """The geo-context; short only for who can ask for the rest, and not in a watch, where anything can matter."""
     text = observation.context or "unknown"
-    if profile.length is not PromptLength.LONG and ActionType.QUERY in profile.actions and not on_watch:
+    if profile.length is not PromptLength.LONG and ActionType.QUERY in profile.actions and not observation.on_watch:
         return brief.context(text, driver_words(observation))
     return _lines(text)
 

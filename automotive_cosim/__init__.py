@@ -1,8 +1,9 @@
 """Automotive-ENV coupled to live SUMO traffic: a benchmark for agents that work a car's cockpit.
 
-Importing the package registers ``AutomotiveCosim/Cockpit-v0`` with gymnasium, and ``AutomotiveCosim/Flat-v0``,
-the same for reinforcement learning. The names in ``__all__`` are what most programs need; each is loaded when it is
-first used. ``docs/api.md`` lists everything that is public.
+Importing the package registers three environments with gymnasium: ``AutomotiveCosim/Cockpit-v0`` for tasks,
+``AutomotiveCosim/Drive-v0`` for drives, and ``AutomotiveCosim/Flat-v0`` for reinforcement learning on tasks. The
+names in ``__all__`` are what most programs need; each is loaded when it is first used. ``docs/api.md`` lists
+everything that is public.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ _HOMES = {
     "automotive_cosim.agents": ("Agent", "make_agent"),
     "automotive_cosim.contracts": ("Action", "ActionType", "Element", "GoalStatus", "Observation", "Reason"),
     "automotive_cosim.envs.cockpit": ("CockpitEnv",),
+    "automotive_cosim.envs.drive": ("DriveEnv",),
     "automotive_cosim.envs.flat": ("FlatEnv",),
     "automotive_cosim.errors": ("CosimError", "InfrastructureError", "UserError"),
     "automotive_cosim.interface.observe": ("Channel",),
@@ -36,6 +38,7 @@ gymnasium.register(
     entry_point="automotive_cosim.envs.cockpit:CockpitEnv",
     vector_entry_point="automotive_cosim.envs.vector:cockpits",
 )
+gymnasium.register(id="AutomotiveCosim/Drive-v0", entry_point="automotive_cosim.envs.drive:DriveEnv")
 gymnasium.register(
     id="AutomotiveCosim/Flat-v0",
     entry_point="automotive_cosim.envs.flat:FlatEnv",

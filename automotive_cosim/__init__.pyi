@@ -3,6 +3,7 @@
 from automotive_cosim.agents import Agent, make_agent
 from automotive_cosim.contracts import Action, ActionType, Element, GoalStatus, Observation, Reason
 from automotive_cosim.envs.cockpit import CockpitEnv
+from automotive_cosim.envs.drive import DriveEnv
 from automotive_cosim.envs.flat import FlatEnv
 from automotive_cosim.errors import CosimError, InfrastructureError, UserError
 from automotive_cosim.interface.observe import Channel
@@ -20,6 +21,7 @@ __all__ = [
     "Channel",
     "CockpitEnv",
     "CosimError",
+    "DriveEnv",
     "Element",
     "EpisodeResult",
     "EpisodeRow",

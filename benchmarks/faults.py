@@ -33,6 +33,7 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.agents.leftovers import children, tree
+from automotive_cosim.contracts import Json
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.row import steady
@@ -53,8 +54,8 @@ TASKS = (
 )
 DRIVES = ("--drives", "grid_january", "--agents", "t3a", "--seeds", "0,1", "--retries", "0")
 STOPPED = "stopped for a second"
-KINDS = ("command", "worker", "warm traffic", "episode's traffic", "nursery", "agent", STOPPED)
-AGENTS_OWN = frozenset(("nursery", "agent"))
+KINDS = ("command", "worker", "warm traffic", "episode's traffic", "fork server", "agent", STOPPED)
+AGENTS_OWN = frozenset(("fork server", "agent"))
 """Processes whose end is the agent's failure: it could have ended them itself."""
 LONGEST_S = 3600.0
 """Wall time of one start of the command, on a busy machine too."""
@@ -123,6 +124,8 @@ def killed(folder: Path, words: Sequence[str], kind: type[Any], kills: int, rng:
         own = [name for name in other if mine.keys() & AGENTS_OWN and found.get(name, {}).get("agent_error")]
         own_failures += len(own)
         differing += len(other) - len(own)
+        for name in sorted({*other} - {*own}):
+            print(f"{name} after {dict(mine)}: {changed(undisturbed[name], found.get(name, {}))}", file=sys.stderr)
         shutil.rmtree(out)
         print(f"{done.total()} of {kills} kills, {starts} starts, {differing} rows differ", file=sys.stderr)
     return {
@@ -134,6 +137,12 @@ def killed(folder: Path, words: Sequence[str], kind: type[Any], kills: int, rng:
         "failures of an agent that was killed": own_failures,
         "processes left": len(left_over()),
     }
+
+
+def changed(row: Json, other: Json) -> str:
+    """The fields in which a row differs, each with both values."""
+    names = sorted(name for name in {*row, *other} if row.get(name) != other.get(name))
+    return "; ".join(f"{name}: {row.get(name)!r:.300} -> {other.get(name)!r:.300}" for name in names)
 
 
 def has_workers(command: int) -> bool:
@@ -168,7 +177,7 @@ def kind_of(pid: int, command: int) -> str:
     if "automotive_cosim.traffic.process" in line:
         return "episode's traffic" if "automotive_cosim.traffic.process" in above else "warm traffic"
     if "automotive_cosim.agents.process" in line:
-        return "agent" if "automotive_cosim.agents.process" in above else "nursery"
+        return "agent" if "automotive_cosim.agents.process" in above else "fork server"
     return "worker" if "forkserver" in line and "forkserver" in above else "other"
 
 

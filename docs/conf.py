@@ -9,6 +9,7 @@ import json
 import re
 import shutil
 from collections.abc import Iterable, Sequence
+from enum import Enum
 from pathlib import Path
 
 import typer
@@ -22,6 +23,8 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.wakes import WAKES
+from automotive_cosim.episode.conditions import TABLE
+from automotive_cosim.formats.docs import member_docs
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.policy import HOUSE
 from automotive_cosim.tasking.task import Dimension, Module
@@ -36,6 +39,7 @@ project_copyright = "The automotive_cosim authors, Apache-2.0"
 version = release = __version__
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx_copybutton"]
 INCLUDED = (
+    "conditions",
     "functions",
     "readme",
     "spaces",
@@ -43,6 +47,7 @@ INCLUDED = (
     "drive_kinds",
     "drive_wakes",
     "fields_plan",
+    "policy",
     "fields_scenario",
 )
 """Pages of ``_made/`` that are parts of others."""
@@ -71,6 +76,7 @@ def setup(sphinx: Sphinx) -> None:
     _gallery()
     _commands()
     _drives()
+    _conditions()
     _table("policy.md", ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE])
     for name in ("plan", "scenario"):
         _fields(name)
@@ -169,6 +175,17 @@ def _drives() -> None:
     )
     _table("drive_kinds.md", heads, kinds)
     _table("drive_wakes.md", ("change", "when"), [(each.name, each.about) for each in WAKES])
+
+
+def _conditions() -> None:
+    """The table of conditions, with what each of their values means."""
+    rows: list[tuple[str, str, str]] = []
+    for each in TABLE:
+        kind = type(each.default)
+        docs = member_docs(kind) if issubclass(kind, Enum) else {}
+        told = [f"`{kind[name]}`: {text}" if text else f"`{kind[name]}`" for name, text in docs.items()]
+        rows.append((f"`--{each.word}`", each.help, "<br>".join(told) or f"`{each.default}` and up"))
+    _table("conditions.md", ("option", "what it is about", "values, the usual one first"), rows)
 
 
 def _fields(name: str) -> None:

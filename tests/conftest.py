@@ -57,7 +57,9 @@ _forbidden = False
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    parser.addoption("--turn", metavar="I/N", help="of the tests marked `long`, run the I-th of N parts")
+    parser.addoption(
+        "--turn", metavar="I/N", help="of the tests marked `sumo`, `slow` or `long`, run the I-th of N parts"
+    )
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
@@ -68,11 +70,17 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         part, parts = map(int, config.option.turn.split("/"))
         if not 1 <= part <= parts:
             raise pytest.UsageError(f"--turn is {config.option.turn}; give a part from 1 to {parts}")
-        long = [item for item in items if item.get_closest_marker("long")]
-        left = [item for item in long if crc32(item.nodeid.encode()) % parts != part - 1]
+        left = [item for item in items if (turn := _turn(item)) and crc32(turn.encode()) % parts != part - 1]
         config.hook.pytest_deselected(items=left)
         items[:] = [item for item in items if item not in set(left)]
     items.sort(key=lambda item: item.get_closest_marker("long") is None)  # else a worker waits for one at the end
+
+
+def _turn(item: pytest.Item) -> str:
+    """What takes turns together: a long test alone, the others of a file, which share what they prepare."""
+    if item.get_closest_marker("long"):
+        return item.nodeid
+    return str(item.path.name) if item.get_closest_marker("sumo") or item.get_closest_marker("slow") else ""
 
 
 def pytest_collection_finish() -> None:

@@ -22,7 +22,6 @@ from automotive_cosim.agents.base import Stage, StageName
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.cockpit.actions import TEXT_LIMIT
 from automotive_cosim.contracts import UNCALLED, Action, ActionType, Observation
-from automotive_cosim.drives.order import STANDING_ORDER
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, SetupError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import action_of, offered
@@ -84,7 +83,6 @@ class A2AAgent:
         """Begins another context."""
         self._line.begin()
         self._reader = AnswerReader(self._tools)
-        self._keeps_watch = goal == STANDING_ORDER
         self._is_new, self._heard = True, 0
         self._asked: tuple[RemoteCall, ...] = ()
         self._results: dict[str, str] = {}
@@ -121,7 +119,7 @@ class A2AAgent:
             self._note(StageName.ACT, observation, str(error))
             raise
         self._note(StageName.ACT, observation, prompt.action_words(action, observation))
-        if action.action_type is ActionType.STATUS and not self._keeps_watch:
+        if action.action_type is ActionType.STATUS and not observation.on_watch:
             self._close(observation, (self._settings.answer_s - (time.monotonic() - began_s)) / 2)
         return action
 
@@ -130,7 +128,7 @@ class A2AAgent:
         now = self._situation(seen)
         self._note(StageName.PERCEIVE, seen, now)
         if self._is_new:
-            system = f"{self._told(seen.policy)}\n\n{self._situation(seen, is_spoken=False)}"
+            system = f"{self._told(seen)}\n\n{self._situation(seen, is_spoken=False)}"
             answer = self._say(seen, opening(system, prompt.driver_words(seen), self._tools.values()), USER)
         elif self._asked:
             contents = [self._results.get(call.id, NOT_DONE) for call in self._asked]
@@ -199,15 +197,13 @@ class A2AAgent:
             self._note(StageName.REFLECT, seen, str(error))
 
     def _situation(self, seen: Observation, *, is_spoken: bool = True) -> str:
-        return prompt.situation(
-            self._profile, seen, pictures=False, on_watch=self._keeps_watch, is_spoken=is_spoken
-        )
+        return prompt.situation(self._profile, seen, pictures=False, is_spoken=is_spoken)
 
-    def _told(self, policy: str | None) -> str:
+    def _told(self, seen: Observation) -> str:
         """What it is to do."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self._profile.channels else ""
-        name = "caller_watch" if self._keeps_watch else "caller"
-        return prompt.fill(name, {"weigh": weigh, "words": SPOKEN, "policy": policy})
+        name = "caller_watch" if seen.on_watch else "caller"
+        return prompt.fill(name, {"weigh": weigh, "words": SPOKEN, "policy": seen.policy})
 
     def _note(self, name: StageName, seen: Observation, text: str, reply: ModelReply | None = None) -> None:
         self.stages.append(Stage(name, text, seen.time_s, reply))

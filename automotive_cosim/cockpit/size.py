@@ -33,8 +33,11 @@ class ScreenSize(StrEnum):
     """A display's size in logical pixels, width before height."""
 
     STANDARD = "1280x720"
+    """The usual one."""
     WIDE = "1920x720"
+    """Wide, with map and music beside each app."""
     PORTRAIT = "1080x1920"
+    """Portrait, with map and music above each app."""
 
     @property
     def width(self) -> int:

@@ -24,11 +24,17 @@ class GeoInput(StrEnum):
     """What an agent is told about its place; ``interface.controls`` has a table."""
 
     FULL = "full"
+    """GPS and context, as they are."""
     GPS = "gps"
+    """GPS alone."""
     CONTEXT = "context"
+    """The context alone, without the line that states the position."""
     WRONG = "wrong"
+    """GPS, context and answers to queries of another country, the same in both halves of a pair."""
     IRRELEVANT = "irrelevant"
+    """A text about bees, exactly as long, in place of the context; no GPS and no queries."""
     NONE = "none"
+    """Neither."""
 
     @property
     def withheld(self) -> frozenset[Channel]:
@@ -51,8 +57,9 @@ class See(StrEnum):
     """How an agent sees the screen."""
 
     BOTH = "both"
+    """As the list of elements and the picture."""
     TREE = "tree"
-    """As the list of elements."""
+    """As the list of elements; tasks with the tag ``picture`` are left out."""
     PICTURE = "picture"
     """As the picture: no list, no ids, no descriptions; an action has to give a point."""
     NOTHING = "nothing"
@@ -77,6 +84,7 @@ class Interface(StrEnum):
     FUNCTIONS = "functions"
     """By typed functions of the car; the screen cannot be touched."""
     BOTH = "both"
+    """Either way."""
 
     @property
     def touches(self) -> bool:
@@ -93,7 +101,9 @@ class FeedbackDetail(StrEnum):
     """How much an agent is told about its last action; ``interface.feedback`` has a table."""
 
     QUIET = "quiet"
+    """The control and whether it worked: ``Front defroster: done``."""
     VERBOSE = "verbose"
+    """Also which signal changed, and its new value."""
 
 
 class PromptLength(StrEnum):

@@ -116,6 +116,8 @@ class Observation:
     feedback: Feedback
     said: tuple[str, ...] = ()
     """What the driver has said since the hand-over, in order: answers to questions, and remarks of his own."""
+    on_watch: bool = False
+    """Whether the goal is a drive's standing order, which holds until the drive is over."""
     elements: tuple[Element, ...] | None = None
     screenshot: npt.NDArray[np.uint8] | None = None
     """(height, width, 3), RGB."""

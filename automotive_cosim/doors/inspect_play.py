@@ -16,7 +16,7 @@ from inspect_ai.tool import ToolDef, ToolError
 
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.shared import shared_service
+from automotive_cosim.doors.shared import shared_service, words
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
@@ -26,12 +26,6 @@ from automotive_cosim.service.turn import EpisodeTurn
 
 OUTCOME = "automotive_cosim/outcome"
 """Key of an episode's outcome in its sample's store."""
-
-
-def words(given: object) -> list[str]:
-    """Words separated by commas; Inspect's command line makes a list of them."""
-    parts = given if isinstance(given, list) else str(given).split(",")
-    return [str(part).strip() for part in parts]
 
 
 def seeds_of(given: int | str | list[int]) -> list[int]:

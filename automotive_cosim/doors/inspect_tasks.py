@@ -18,8 +18,8 @@ from inspect_ai.scorer import Metric, SampleScore, Score, Scorer, Target, mean, 
 from inspect_ai.solver import Generate, Solver, TaskState, solver
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.inspect_play import outcome_of, played, seeds_of, words
-from automotive_cosim.doors.shared import conditions_of, takes_conditions
+from automotive_cosim.doors.inspect_play import outcome_of, played, seeds_of
+from automotive_cosim.doors.shared import conditions_of, takes_conditions, words
 from automotive_cosim.drives.result import DriveOutcome
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.specification import EpisodeSpec

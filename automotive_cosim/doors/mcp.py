@@ -24,9 +24,9 @@ from automotive_cosim import __version__
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface
-from automotive_cosim.doors.shared import conditions_of, takes_conditions
+from automotive_cosim.doors.shared import conditions_of, takes_conditions, trial
+from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
 from automotive_cosim.interface.functions import Function, action_json, offered
 from automotive_cosim.interface.observe import ALL, Channel
@@ -45,7 +45,10 @@ one action at a time; every action takes time while the car drives on. Do only w
 nothing else. Passengers may make requests about their own comfort; only the driver decides how the car drives
 and anything related to safety. End with a `status` action: `complete` when it is done, `not_needed` when the
 right thing is to do nothing, `infeasible` when it must not or cannot be done. Once `end` is not null, call
-`finish` for the verdict."""
+`finish` for the verdict.
+
+`start` also begins a drive (`list_drives`), on which you keep watch: `wait` until something changes, and act only
+when safety or the law requires it. `status` ends nothing there; go on until `end` is not null."""
 
 CALLING = """\
 You operate a car for its driver by its functions, while it drives through live traffic.
@@ -56,7 +59,10 @@ each with the `episode_id`; every call takes time while the car drives on. Do on
 change nothing else. Passengers may make requests about their own comfort; only the driver decides how the car
 drives and anything related to safety. End with `status`: `complete` when it is done, `not_needed` when the
 right thing is to do nothing, `infeasible` when it must not or cannot be done. Once `end` is not null, call
-`finish` for the verdict."""
+`finish` for the verdict.
+
+`start` also begins a drive (`list_drives`), on which you keep watch: `wait` until something changes, and act only
+when safety or the law requires it. `status` ends nothing there; go on until `end` is not null."""
 
 ActionArgument = Annotated[
     dict[str, Any] | str,
@@ -80,7 +86,7 @@ def make_server(service: EpisodeService, interface: Interface = Interface.TOUCH)
     )
     tools = CockpitTools(service, server, interface)
     acting = (tools.act,) if interface.touches else ()
-    for tool in (tools.list_tasks, tools.start, tools.observe, *acting, tools.finish):
+    for tool in (tools.list_tasks, tools.list_drives, tools.start, tools.observe, *acting, tools.finish):
         server.add_tool(tool)
     if interface.calls:
         tools.add_functions()
@@ -164,29 +170,44 @@ class CockpitTools:
         return _result({"tasks": [{"id": task.id, "halves": list(task.halves)} for task in chosen]})
 
     @_told
+    def list_drives(self) -> CallToolResult:
+        """List the families of drives that `start` takes."""
+        drives = [
+            {"id": family.id, "scenario": family.scenario, "about": family.about} for family in FAMILIES.values()
+        ]
+        return _result({"drives": drives})
+
+    @_told
     @takes_conditions
     def start(
         self,
         context: Context[Any, Any],
-        task: Annotated[str, Field(description="Id of the task; `list_tasks` lists them.")],
+        task: Annotated[str | None, Field(description="Id of a task; `list_tasks` lists them.")] = None,
+        drive: Annotated[
+            str | None, Field(description="A family of drives instead; `list_drives` lists them.")
+        ] = None,
         half: Annotated[str, Field(description="first, or second for a task with two halves.")] = "first",
         seed: Annotated[
             Annotated[int, Field(ge=0)] | None, Field(description="The same seed and actions give the same trace.")
         ] = 0,
-        scenario: Annotated[str | None, Field(description="A scenario in place of the task's own.")] = None,
+        scenario: Annotated[str | None, Field(description="A scenario in place of its own.")] = None,
+        minutes: Annotated[
+            float | None, Field(description="When a drive is over, if it would last longer.")
+        ] = None,
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
         **conditions: str,
     ) -> CallToolResult:
         """Start an episode: a car drives until the situation of the task arises, then you take over its cockpit.
+        Or start a drive, on which you keep watch from departure.
         With interface functions or both, the car's functions are tools from then on: list the tools again."""
         under = conditions_of(conditions)
         if under.interface is Interface.TOUCH:
             under = replace(under, interface=self._interface)
         if under.interface.calls:
             self.add_functions()
-        spec = EpisodeSpec(task, half, scenario, seed=seed or 0, conditions=under)
+        spec = trial(task, drive, half, seed, scenario, minutes, under)
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

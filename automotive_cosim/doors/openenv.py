@@ -18,12 +18,13 @@ from pydantic import Field
 
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.shared import conditions_of, shared_service
-from automotive_cosim.episode.specification import EpisodeSpec
+from automotive_cosim.doors.shared import conditions_of, reward_of, shared_service, trial
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service import EpisodeTurn
 
+FIRST = "road_speed_80_in_50"
+"""The task of a ``reset`` that names none."""
 SESSIONS = 16
 """Episodes at once on one server."""
 
@@ -37,7 +38,7 @@ class CarAction(Action):
 
 
 class CarObservation(Observation):
-    """What the agent sees. At the end, ``reward`` is 1 for a success and 0 for none."""
+    """What the agent sees. At the end, ``reward`` is 1 for a success, else 0; of a drive, its score / 100."""
 
     turn: dict[str, Any] = Field(description="The driver's words, elements, readings, place, and the last result.")
     picture: str | None = Field(None, description="The screen: a PNG in base64; null for who is not given it.")
@@ -45,10 +46,11 @@ class CarObservation(Observation):
 
 
 class CarState(State):
-    """The task at hand."""
+    """The task or drive at hand."""
 
     task: str = ""
     half: str = ""
+    drive: str = ""
     seed: int = 0
 
 
@@ -67,21 +69,25 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         self,
         seed: int | None = None,
         episode_id: str | None = None,
-        task: str = "road_speed_80_in_50",
+        task: str | None = None,
         half: str = "first",
         pictures: bool = True,
         scenario: str | None = None,
+        drive: str | None = None,
+        minutes: float | None = None,
         **conditions: Any,
     ) -> CarObservation:
-        """Drives to a task's hand-over; the episode before it is given up.
+        """Drives to a task's hand-over, or departs on a drive; the episode before it is given up.
 
         Args:
             seed: 0 if none is given; the same seed and actions give the same trace.
             episode_id: a name for the state.
-            task: id of the task.
+            task: id of the task; ``road_speed_80_in_50`` if neither it nor a drive is given.
             half: ``first`` or ``second``.
             pictures: whether the agent sees the screen.
-            scenario: in place of the task's own.
+            scenario: in place of its own.
+            drive: a family of drives instead of a task.
+            minutes: when a drive is over, if its script ends later.
             conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``.
 
         Raises:
@@ -89,10 +95,12 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
             InfrastructureError: the road failed.
         """
         self.close()
-        spec = EpisodeSpec(task, half, scenario, seed=seed or 0, conditions=conditions_of(conditions))
+        if not drive:
+            task = task or FIRST
+        spec = trial(task, drive, half, seed, scenario, minutes, conditions_of(conditions))
         turn = self._service.start(spec, ALL if pictures else ALL - {Channel.SCREENSHOT})
         self._episode_id = turn.episode_id
-        self._state = CarState(episode_id=episode_id, task=task, half=half, seed=spec.seed)
+        self._state = CarState(episode_id=episode_id, task=task or "", half=half, drive=drive or "", seed=spec.seed)
         return _observation(turn)
 
     def step(self, action: CarAction, timeout_s: float | None = None, **kwargs: Any) -> CarObservation:
@@ -130,7 +138,7 @@ def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservati
     picture = turn.picture
     return CarObservation(
         done=outcome is not None,
-        reward=None if outcome is None else float(outcome["success"]),
+        reward=None if outcome is None else reward_of(outcome),
         turn=told,
         picture=None if picture is None else base64.b64encode(picture).decode(),
         outcome=outcome,

@@ -1,4 +1,4 @@
-"""What several doors share: one service for a whole process, and conditions from plain words."""
+"""What several doors share: one service for a whole process; trials and conditions from plain words."""
 
 from __future__ import annotations
 
@@ -9,8 +9,16 @@ from typing import Annotated, Any, TypeVar
 
 from pydantic import Field
 
+from automotive_cosim.contracts import Json
+from automotive_cosim.drives.families import family_named
+from automotive_cosim.drives.settings import DriveSettings
+from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.conditions import INPUTS, Condition, Conditions
-from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.episode.specification import EpisodeSpec
+from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.toml import dotted
+from automotive_cosim.formats.words import shown
 from automotive_cosim.service import EpisodeService, ServiceLimits
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -55,3 +63,48 @@ def _parameter(each: Condition) -> inspect.Parameter:
     told = f"{each.help.removesuffix('.')}: {', '.join(each.choices)}."
     kind = Annotated[str, Field(description=told)]
     return inspect.Parameter(each.name, inspect.Parameter.KEYWORD_ONLY, default=str(each.default), annotation=kind)
+
+
+def trial(
+    task: str | None,
+    drive: str | None,
+    half: str,
+    seed: int | None,
+    scenario: str | None,
+    minutes: float | None,
+    under: Conditions,
+) -> EpisodeSpec | DriveSpec:
+    """What a door is asked to start: one half of a task, or a drive.
+
+    Args:
+        task: id of a task, or None.
+        drive: id of a family of drives, or None.
+        half: ``first`` or ``second``, of a task.
+        seed: 0 if none is given.
+        scenario: in place of the task's or the family's own.
+        minutes: when a drive is over, if its script ends later.
+        under: the conditions.
+
+    Raises:
+        UserError: there is not one of task and drive, or something that does not fit it.
+    """
+    if bool(task) == bool(drive):
+        raise UserError(f"give a task or a drive, one of the two; came task {shown(task)} and drive {shown(drive)}")
+    if drive:
+        given = {} if minutes is None else {"minutes": minutes}
+        settings = checked(DriveSettings, given, lambda steps: ("the drive", dotted(steps)))
+        return DriveSpec(family_named(drive).id, seed or 0, under, scenario or "", settings)
+    if minutes is not None:
+        raise UserError("minutes can be given for a drive alone; a task ends when it is declared")
+    return EpisodeSpec(str(task), half, scenario, seed=seed or 0, conditions=under)
+
+
+def reward_of(outcome: Json) -> float:
+    """1 for a task that succeeded and 0 for one that did not; of a drive its score in hundredths."""
+    return float(outcome["success"]) if "success" in outcome else outcome["result"]["value"] / 100.0
+
+
+def words(given: object) -> list[str]:
+    """Words separated by commas; Inspect's command line makes a list of them."""
+    parts = given if isinstance(given, list) else str(given).split(",")
+    return [word for part in parts if (word := str(part).strip())]

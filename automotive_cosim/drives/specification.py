@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
+from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.result import DriveOutcome, result_of
 from automotive_cosim.drives.script import DriveScript
+from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import SessionSetup
-from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.traffic.fork import Simulations
 
@@ -30,15 +32,21 @@ class DriveSpec:
     seed: int = 0
     conditions: Conditions = Conditions()  # noqa: RUF009, frozen
     """What the agent is given, and at what speed."""
+    scenario: str = ""
+    """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
+    settings: DriveSettings = AS_SCRIPTED
+    """What is set otherwise than the family's script has it."""
 
-    def check(self) -> None:
-        """Refuses what no drive has.
+    @property
+    def script(self) -> DriveScript:
+        """The drive that these words name.
 
         Raises:
-            UserError: another language than English.
+            UserError: something in the specification does not exist.
         """
-        if self.conditions.language is not Language.ENGLISH:
-            raise UserError(f"drives are in English, not in {self.conditions.language.words}; omit the language")
+        drawn = family_named(self.family).draw(self.seed)
+        placed = elsewhere(drawn, self.scenario) if self.scenario else drawn
+        return placed if self.settings == AS_SCRIPTED else self.settings.applied(placed)
 
     def begin(
         self,
@@ -53,14 +61,15 @@ class DriveSpec:
             simulations: warm traffic, shared with others.
             channels: what the agent wants to see.
             listener: notified of progress.
-            script: used instead of the family's script for the seed.
+            script: used instead of its own.
 
         Raises:
             UserError: something in the specification does not exist.
             InfrastructureError: no gap opened for the car, or the traffic simulation failed.
         """
-        self.check()
-        drive = script or family_named(self.family).draw(self.seed)
+        drive = script or self.script
+        if self.conditions.language is not Language.ENGLISH:
+            drive = replace(drive, signals={HMI.LANGUAGE.path: str(self.conditions.language), **drive.signals})
         setup = SessionSetup(channels, self.conditions, MOST_STEPS, drive.duration_s)
         world = depart(drive, simulations, listener)
         try:

@@ -20,7 +20,7 @@ from automotive_cosim.drives.acts import acts_of, spoken
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
-from automotive_cosim.drives.order import STANDING_ORDER
+from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
 from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.listener import Listener
@@ -114,7 +114,7 @@ class Watch(Session):
         Raises:
             TrafficError: the traffic simulation failed.
         """
-        begun: dict[str, Any] = beginning(world, STANDING_ORDER, setup, (), listener)
+        begun: dict[str, Any] = beginning(world, STANDING_ORDERS[setup.conditions.language], setup, (), listener)
         watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
         watch._read()
@@ -174,6 +174,9 @@ class Watch(Session):
         passed_s = self.world.moment.time_s - begun_s
         return self._told(FeedbackCode.OK, f"{passed_s:.0f} s passed")
 
+    def _reply(self, question: str) -> str:
+        return ANSWERS[self.setup.conditions.language]
+
     def _told(self, code: FeedbackCode, text: str) -> Feedback:
         self.wakes += self._is_woken
         changed = [CHANGED] if self._is_woken else []
@@ -186,14 +189,14 @@ class Watch(Session):
         self._read()
 
     def _read(self) -> None:
-        """Adds what the car reads to the observation, and marks what has changed since the last one."""
+        """Adds to the observation what the car reads, with a mark at what has changed, and that this is a watch."""
         self.marked = tuple(change.name for change in self.changes)
         self.changes.clear()
         vehicle = self.observation.vehicle
         if vehicle is not None:
             lines = [noticed(self.moments[-READ_BACK:], self.marked), *self._driver_line()]
-            told = replace(vehicle, noticed="\n".join(lines))
-            self.observation = replace(self.observation, vehicle=told)
+            vehicle = replace(vehicle, noticed="\n".join(lines))
+        self.observation = replace(self.observation, vehicle=vehicle, on_watch=True)
 
     def _driver_line(self) -> Iterator[str]:
         """What the driver did last after a request, as long as that is news."""

@@ -1,7 +1,9 @@
 """The gymnasium environments: thin adapters of ``episode``.
 
 cockpit  ``AutomotiveCosim/Cockpit-v0``
+drive    ``AutomotiveCosim/Drive-v0``
 flat     ``AutomotiveCosim/Flat-v0``, for reinforcement learning
-vector   many of either in one process, as ``gymnasium.make_vec`` makes them
+vector   many of ``Cockpit-v0`` or ``Flat-v0`` in one process, as ``gymnasium.make_vec`` makes them
+base     what all of them have
 pool     the warm simulations that all of them share
 """

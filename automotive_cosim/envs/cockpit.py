@@ -2,22 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
-import numpy.typing as npt
 
-from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action
-from automotive_cosim.envs.pool import POOL
+from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import ACTION_COST_S, EpisodeSpec, SeedSource, SessionSetup
-from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.observe import ALL, Channel
@@ -26,10 +23,8 @@ from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.traffic.fork import Simulations
 
-StepResult = tuple[dict[str, Any], float, bool, bool, dict[str, Any]]
 
-
-class CockpitEnv(gym.Env[dict[str, Any], Any]):
+class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
     """An agent at the cockpit of a car in live traffic.
 
     ``reset`` loads the task's scenario, warms up its traffic, puts the ego on the road and drives until the task's
@@ -47,8 +42,6 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
     that traffic and draws a new instance and drive, which is quick. ``options={"traffic_seed": t}`` takes the
     traffic of seed ``t`` in place of ``s``.
     """
-
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 1}  # noqa: RUF012, gymnasium's own form
 
     def __init__(
         self,
@@ -94,28 +87,13 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         )
         wanted = frozenset(map(Channel, channels))
         self._setup = SessionSetup(wanted, under, max_steps, action_cost_s=action_cost_s)
-        self._leave: Callable[[], object] | None = None
-        if simulations is None:
-            simulations, self._leave = POOL.join(self)
-        self._finder = SituationFinder(spec, simulations, task=given, listener=listener)
+        super().__init__(simulations, render_mode)
+        self._finder = SituationFinder(spec, self._simulations, task=given, listener=listener)
         self._listener = listener
         self._seeds = SeedSource()
-        self._episode: Episode | None = None
-        self.render_mode = render_mode_of(render_mode, self.metadata)
         size = under.screen
         self.observation_space = spaces.observation_space(self._setup.given, size.width, size.height)
         self.action_space = spaces.action_space(size.width, size.height)
-
-    @property
-    def episode(self) -> Episode:
-        """The episode that is running, or has just ended.
-
-        Raises:
-            ResetNeeded: there has been none yet.
-        """
-        if self._episode is None:
-            raise gym.error.ResetNeeded("call reset() before anything else")
-        return self._episode
 
     @property
     def scenario(self) -> Scenario:
@@ -133,7 +111,6 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
         """
         super().reset(seed=seed)
         self._end()
-        self._episode = None
         if seed is not None:
             self._seeds = SeedSource(seed)
         self._seeds.traffic = traffic_seed(options, self._seeds.traffic)
@@ -149,39 +126,18 @@ class CockpitEnv(gym.Env[dict[str, Any], Any]):
             ResetNeeded: the episode is over, or there has been none.
             TrafficError: the traffic simulation failed.
         """
-        if self.episode.end is not None:
-            raise gym.error.ResetNeeded("the episode has ended; call reset() to start another")
-        self.episode.step(_read(action))
-        return self._encoded(), *outcome(self.episode), self._info()
-
-    def render(self) -> npt.NDArray[np.uint8] | None:
-        """The cockpit's screen, (height, width, 3), or None without a render mode."""
-        return self.episode.screenshot() if self.render_mode else None
-
-    def close(self) -> None:
-        """Ends the drive and, if nobody else shares them, the warm simulations."""
-        self._end()
-        if self._leave is not None:
-            self._leave()
+        episode = self._running()
+        episode.step(action_of(action))
+        return self._encoded(), *outcome(episode), self._info()
 
     def _encoded(self) -> dict[str, Any]:
         return spaces.encode(self.episode.observation, self._setup.given)
 
     def _info(self) -> dict[str, Any]:
-        episode = self.episode
-        last = episode.steps[-1]
-        info: dict[str, Any] = {
-            "step": last.number,
-            "action_result": str(last.feedback.code),
-            "events": [event.text for event in last.moment.events],
-        }
+        episode, info = self.episode, info_of(self.episode)
         if episode.verdict is not None:
             info |= {"verdict": episode.verdict.as_json(), "trace_sha256": episode.trace_sha256}
         return info
-
-    def _end(self) -> None:
-        if self._episode is not None:
-            self._episode.close()
 
 
 def traffic_seed(options: Mapping[str, Any] | None, own: int) -> int:
@@ -198,27 +154,6 @@ def traffic_seed(options: Mapping[str, Any] | None, own: int) -> int:
     return int(given) % SEED_LIMIT
 
 
-def render_mode_of(mode: str | None, metadata: Mapping[str, Any]) -> str | None:
-    """The render mode, checked.
-
-    Raises:
-        UnknownNameError: there is none of that name.
-    """
-    if mode is not None and mode not in metadata["render_modes"]:
-        raise UnknownNameError("render mode", str(mode), metadata["render_modes"])
-    return mode
-
-
 def outcome(episode: Episode) -> tuple[float, bool, bool]:
     """Reward, terminated and truncated, as in gymnasium."""
-    if episode.end is None or episode.verdict is None:
-        return 0.0, False, False
-    return float(episode.verdict.success), not episode.end.is_cut_off, episode.end.is_cut_off
-
-
-def _read(action: Action | Mapping[str, Any] | str) -> Action:
-    if isinstance(action, Action):
-        return check(action)
-    if isinstance(action, Mapping) and isinstance(action.get("action_type"), int | np.integer):
-        return spaces.decode_action(action)
-    return parse(dict(action) if isinstance(action, Mapping) else action)
+    return float(episode.verdict is not None and episode.verdict.success), *ended(episode)

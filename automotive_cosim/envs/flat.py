@@ -19,7 +19,7 @@ It has less than ``CockpitEnv``: no screenshot, no place, and only the given con
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from hashlib import blake2b
 from typing import Any
 
@@ -29,8 +29,8 @@ import numpy.typing as npt
 
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
 from automotive_cosim.contracts.ids import resource_id
-from automotive_cosim.envs.cockpit import outcome, render_mode_of, traffic_seed
-from automotive_cosim.envs.pool import POOL
+from automotive_cosim.envs.base import SessionEnv
+from automotive_cosim.envs.cockpit import outcome, traffic_seed
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
@@ -69,15 +69,13 @@ CONTROLS = (
 ENDS = tuple(GoalStatus)
 
 
-class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
+class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
     """Episodes of several tasks, one drawn at each reset.
 
     The reward is that of ``CockpitEnv``: 1 at the end of a successful episode. ``goal_bonus`` adds a potential for
     training: it is paid when the goal starts to hold and taken back when it no longer does. It sums to zero over an
     episode that ends as it began, and does not change the verdict: ``info["is_success"]`` is the verdict's.
     """
-
-    metadata = {"render_modes": ["rgb_array"], "render_fps": 1}  # noqa: RUF012, gymnasium's own form
 
     def __init__(
         self,
@@ -110,34 +108,19 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         tasks = (tasks,) if isinstance(tasks, str) else tasks
         if not tasks or not controls:
             raise UserError("a flat environment requires at least one task and one control")
-        self._leave: Callable[[], object] | None = None
-        if simulations is None:
-            simulations, self._leave = POOL.join(self)
-        self._finders = [SituationFinder(EpisodeSpec(task, scenario=scenario), simulations) for task in tasks]
+        super().__init__(simulations, render_mode)
+        self._finders = [SituationFinder(EpisodeSpec(task, scenario=scenario), self._simulations) for task in tasks]
         self._seeds: list[SeedSource] = []
         """One per task, so that what is drawn for one does not depend on the others."""
         self._max_steps = max_steps
         self._setup = SessionSetup(frozenset({Channel.ELEMENTS, Channel.VEHICLE}), max_steps=max_steps)
-        self._episode: Episode | None = None
         self._controls = tuple(controls)
         self._apps = tuple(apps)
         self._goal_bonus = goal_bonus
-        self.render_mode = render_mode_of(render_mode, self.metadata)
         self._held = False
         size = GOAL_SLOTS + 3 * len(self._controls) + len(NUMBERS) + 1
         self.observation_space = gym.spaces.Box(-1.0, 1.0, (size,), np.float32)
         self.action_space = gym.spaces.Discrete(len(self._apps) + len(self._controls) + len(ENDS))
-
-    @property
-    def episode(self) -> Episode:
-        """The episode that is running, or has just ended.
-
-        Raises:
-            ResetNeeded: there has been none yet.
-        """
-        if self._episode is None:
-            raise gym.error.ResetNeeded("call reset() before anything else")
-        return self._episode
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -150,7 +133,6 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
         """
         super().reset(seed=seed)
         self._end()
-        self._episode = None
         if seed is not None or not self._seeds:
             own = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
             self._seeds = [SeedSource(own) for _ in self._finders]
@@ -170,30 +152,15 @@ class FlatEnv(gym.Env[npt.NDArray[np.float32], np.int64]):
             ResetNeeded: the episode is over, or there has been none.
             TrafficError: the traffic simulation failed.
         """
-        if self.episode.end is not None:
-            raise gym.error.ResetNeeded("the episode has ended; call reset() to start another")
-        self.episode.step(self._action(self._number(action)))
-        reward, terminated, truncated = outcome(self.episode)
+        episode = self._running()
+        episode.step(self._action(self._number(action)))
+        reward, terminated, truncated = outcome(episode)
         held = self._holds()
         reward += self._goal_bonus * (held - self._held)
         self._held = held
-        verdict = self.episode.verdict
+        verdict = episode.verdict
         info = {} if verdict is None else {"is_success": verdict.success}
         return self._numbers(), reward, terminated, truncated, info
-
-    def render(self) -> npt.NDArray[np.uint8] | None:
-        """The cockpit's screen, (height, width, 3), or None without a render mode."""
-        return self.episode.screenshot() if self.render_mode else None
-
-    def close(self) -> None:
-        """Ends the drive and, if nobody else shares them, the warm simulations."""
-        self._end()
-        if self._leave is not None:
-            self._leave()
-
-    def _end(self) -> None:
-        if self._episode is not None:
-            self._episode.close()
 
     def _number(self, action: object) -> int:
         """The number of an action; an array of one number is one, as policies return them."""

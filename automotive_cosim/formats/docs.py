@@ -1,9 +1,10 @@
-"""The docstrings below the fields of a class, which Python itself does not keep; they require the source code."""
+"""The docstrings below fields and members, which Python itself does not keep; they require the source code."""
 
 from __future__ import annotations
 
 import ast
 import inspect
+from enum import Enum
 from itertools import pairwise
 from textwrap import dedent
 
@@ -18,6 +19,18 @@ def field_docs(cls: type) -> dict[str, str]:
     for node, below in pairwise(body.body):
         match node, below:
             case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(text))):
+                docs[name] = prose(text)
+    return docs
+
+
+def member_docs(cls: type[Enum]) -> dict[str, str]:
+    """The docstrings below the members of an enumeration, by name; empty for those without one."""
+    (body,) = ast.parse(dedent(inspect.getsource(cls))).body
+    assert isinstance(body, ast.ClassDef)
+    docs = dict.fromkeys(cls.__members__, "")
+    for node, below in pairwise(body.body):
+        match node, below:
+            case ast.Assign(targets=[ast.Name(name)]), ast.Expr(ast.Constant(str(text))) if name in docs:
                 docs[name] = prose(text)
     return docs
 

@@ -12,9 +12,7 @@ from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Element, Json
 from automotive_cosim.contracts.given import Clock
-from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
-from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, facts_of, judge
 from automotive_cosim.drives.result import DriveResult, judged_since, result_of
 from automotive_cosim.drives.score import Score
@@ -50,15 +48,9 @@ class DriveSetup:
     """What is set otherwise than the family's script has it."""
 
     @property
-    def script(self) -> DriveScript:
-        """The drive that these words name.
-
-        Raises:
-            UserError: something in the setup does not exist.
-        """
-        drawn = family_named(self.family).draw(self.seed)
-        placed = elsewhere(drawn, self.scenario) if self.scenario else drawn
-        return placed if self.settings == AS_SCRIPTED else self.settings.applied(placed)
+    def spec(self) -> DriveSpec:
+        """The drive, whoever is at the cockpit."""
+        return DriveSpec(self.family, self.seed, self.conditions, self.scenario, self.settings)
 
 
 @dataclass(frozen=True, slots=True)
@@ -181,10 +173,9 @@ def run_drive(
         InfrastructureError: traffic or model failed.
     """
     listener = Listeners(observers)
-    spec = DriveSpec(setup.family, setup.seed, setup.conditions)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
-        watch = spec.begin(own, agent.channels, listener, plan or setup.script)
+        watch = setup.spec.begin(own, agent.channels, listener, plan)
         ends.callback(watch.close)
         meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
         agent.reset(watch.goal)

@@ -28,7 +28,7 @@ from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, U
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models import ChatMessage, ChatModel, ModelReply
 from automotive_cosim.models.base import ToolCall
-from automotive_cosim.run.nursery import Nursery
+from automotive_cosim.run.fork_server import ForkServer
 
 STEP_S, EPISODE_S = 120.0, 900.0
 """Default limits of the wall time that an agent's process takes, for one step and for all of an episode."""
@@ -54,7 +54,7 @@ def check_agent(name: str) -> None:
         UserError: it cannot.
         InfrastructureError: no process can be started.
     """
-    with closing(Nursery()) as nursery, closing(OutsideAgent(nursery, name)) as agent:
+    with closing(ForkServer()) as fork_server, closing(OutsideAgent(fork_server, name)) as agent:
         _ = agent.channels
         if agent.failure is not None:
             raise UserError(agent.failure)
@@ -65,7 +65,7 @@ class OutsideAgent:
 
     def __init__(
         self,
-        nursery: Nursery,
+        fork_server: ForkServer,
         name: str,
         model: str = "rules",
         settings: AgentSettings = AgentSettings(),  # noqa: B008, frozen
@@ -77,7 +77,7 @@ class OutsideAgent:
         """Starts nothing before its channels are asked for.
 
         Args:
-            nursery: where its process is started.
+            fork_server: where its process is started.
             name: for ``agents.make_agent``.
             model: the same, for an agent with a model.
             settings: for an agent with a model or behind an address; others get none.
@@ -91,7 +91,7 @@ class OutsideAgent:
         self.stages: tuple[Stage, ...] = ()
         self.failure: str | None = None
         """Why it cannot act any more."""
-        self._nursery = nursery
+        self._fork_server = fork_server
         self._named = model
         self._model = chat_model or model_of(name, model, settings=settings)
         self.model = "none" if self._model is None else self._model.name
@@ -162,7 +162,7 @@ class OutsideAgent:
             )
         elif is_remote(self.name):
             request = replace(request, settings=self._settings)
-        self._wire = self._nursery.start(request)
+        self._wire = self._fork_server.start(request)
 
     def _hello(self) -> frozenset[Channel]:
         self._step_left_s = self._episode_s
@@ -248,7 +248,7 @@ class OutsideAgent:
             return ""
         self._wire.close()
         self._wire = None
-        return self._nursery.end(grace_s)
+        return self._fork_server.end(grace_s)
 
 
 def _messages(told: list[Json]) -> list[ChatMessage]:

@@ -20,7 +20,6 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
-from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.conditions import ConditionLists, Conditions, combined, lists_of
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
@@ -175,9 +174,6 @@ class Plan(ConditionLists):
                 elsewhere(family_named(family).draw(0), name)
         for name in dict.fromkeys(trial.scenario for trial in self.trials if trial.scenario):
             open_scenario(name)
-        for job in self.jobs():
-            if isinstance(job, DriveJob):
-                DriveSpec(job.setup.family, conditions=job.setup.conditions).check()
         if not self.jobs():
             raise UserError(f"the plan has nothing to run: {self._nowhere()}")
         for agent, model, conditions in {(job.setup.agent, job.model, job.setup.conditions) for job in self.jobs()}:

@@ -33,9 +33,9 @@ from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, read_setup, run_episode
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob
 from automotive_cosim.run.moments import Judged
-from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import read_trials
@@ -92,7 +92,7 @@ def rerun(folder: Path, trial: str = "") -> list[Compared]:
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
     if isinstance(job, DriveJob):
         return _drive_again(cast("DriveTrialRow", row), job, stored)
-    with closing(Nursery()) as nursery, agent_of(job, nursery) as agent:
+    with closing(ForkServer()) as fork_server, agent_of(job, fork_server) as agent:
         channels = frozenset(agent.channels)
     again = played(job, stored, channels, row.agent_error)
     return compare(stored, [line for line in again.lines if "step" in line])

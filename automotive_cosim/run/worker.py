@@ -16,10 +16,10 @@ from automotive_cosim.run.drive import DriveObserver, JudgedDrive, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.episode import EpisodeObserver, run_episode
 from automotive_cosim.run.executor import Runner
+from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob, Limits, TrialJob, failed
 from automotive_cosim.run.meter import Metered, MeterHandle
 from automotive_cosim.run.moments import Judged, judged_file, write_judged, write_value
-from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.store import write_trace
@@ -37,8 +37,8 @@ class TrialObserver(EpisodeObserver, DriveObserver):
 @contextmanager
 def trials(pictures: Pictures, meter: MeterHandle | None = None) -> Iterator[Runner[TrialJob, TrialRow]]:
     """Makes the runner of an evaluation's jobs; ``meter`` is what its workers share."""
-    with closing(Simulations(count_limit=WARM)) as simulations, closing(Nursery()) as nursery:
-        yield lambda job, folder: run_job(job, folder, pictures, simulations, nursery, meter)
+    with closing(Simulations(count_limit=WARM)) as simulations, closing(ForkServer()) as fork_server:
+        yield lambda job, folder: run_job(job, folder, pictures, simulations, fork_server, meter)
 
 
 def run_job(
@@ -46,7 +46,7 @@ def run_job(
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
-    nursery: Nursery,
+    fork_server: ForkServer,
     meter: MeterHandle | None = None,
 ) -> TrialRow:
     """Runs one trial with its agent, as ``run_with`` does.
@@ -54,7 +54,7 @@ def run_job(
     Raises:
         OSError: trace or pictures cannot be written.
     """
-    return run_with(agent_of(job, nursery, meter), job, folder, pictures, simulations)
+    return run_with(agent_of(job, fork_server, meter), job, folder, pictures, simulations)
 
 
 def run_with(
@@ -153,11 +153,13 @@ def _driven(
     return _Kept(record.row, record.lines, record.judged, keep)
 
 
-def agent_of(job: TrialJob, nursery: Nursery, meter: MeterHandle | None = None) -> AbstractContextManager[Agent]:
+def agent_of(
+    job: TrialJob, fork_server: ForkServer, meter: MeterHandle | None = None
+) -> AbstractContextManager[Agent]:
     """The agent of a job; see ``agent_for``."""
     setup = job.setup
     settings = AgentSettings(setup.conditions, seed=setup.seed)
-    return agent_for(setup.agent, job.model, settings, job.limits, nursery, meter)
+    return agent_for(setup.agent, job.model, settings, job.limits, fork_server, meter)
 
 
 @contextmanager
@@ -166,7 +168,7 @@ def agent_for(
     model: str,
     settings: AgentSettings,
     limits: Limits,
-    nursery: Nursery,
+    fork_server: ForkServer,
     meter: MeterHandle | None = None,
 ) -> Iterator[Agent]:
     """An agent, in a separate process unless it is a reference or a negative control.
@@ -176,7 +178,7 @@ def agent_for(
         model: its model.
         settings: what it is given, and the seed of an agent that draws.
         limits: of its process and its tokens.
-        nursery: starts its process.
+        fork_server: starts its process.
         meter: what it shares with the evaluation's other workers.
 
     Raises:
@@ -189,7 +191,7 @@ def agent_for(
     settings = replace(settings, seed=0, most_tokens=limits.tokens, answer_s=limits.agent_step_s)
     asked = model_of(name, model, meter, settings)
     outside = OutsideAgent(
-        nursery,
+        fork_server,
         name,
         model,
         settings,

@@ -35,7 +35,8 @@ class EpisodeTurn:
         """The turn as a JSON object, without the picture.
 
         A channel that the agent is not given has no key, nor has a reading that the car does not give. ``elements``
-        are those that are visible, each with its index. The house rules come with the first turn alone.
+        are those that are visible, each with its index. ``on_watch`` is there on drives alone, and the house rules
+        come with the first turn.
         """
         seen = self.observation
         told: Json = {
@@ -47,6 +48,8 @@ class EpisodeTurn:
             "time_s": seen.time_s,
             "feedback": {"code": str(seen.feedback.code), "text": seen.feedback.text},
         }
+        if seen.on_watch:
+            told["on_watch"] = True
         if seen.elements is not None:
             told["elements"] = [listing(index, element) for index, element in listed(seen.elements)]
         for name in ("vehicle", "connectivity", "gps"):

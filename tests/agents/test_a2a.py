@@ -24,7 +24,7 @@ from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, S
 from automotive_cosim.interface.functions import as_openai, functions, offered
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
-from automotive_cosim.run.nursery import Nursery
+from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.outside import OutsideAgent
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
@@ -372,16 +372,16 @@ def test_outside_its_time_is_the_plans_and_its_figures_are_kept(serve: Serve, ob
     remote = serve(lambda agent, message, turn: slow(agent, message, turn) if turn else [calls(FAN)])
     remote.metadata = {"turn_metrics": METRICS}
     seen = observation("x")
-    with closing(Nursery()) as nursery:
+    with closing(ForkServer()) as fork_server:
         name = PREFIX + remote.address
-        with closing(OutsideAgent(nursery, name, settings=replace(SETTINGS, answer_s=1.5), step_s=30)) as agent:
+        with closing(OutsideAgent(fork_server, name, settings=replace(SETTINGS, answer_s=1.5), step_s=30)) as agent:
             agent.reset("x")
             assert agent.act(seen).function == "set_hvac_fan_speed"
             assert [stage.reply.tokens_in for stage in agent.stages if stage.reply] == [70]
             assert agent.stages[0].name is StageName.PERCEIVE
             with pytest.raises(AgentError, match="gave no answer within"):
                 agent.act(seen)
-        with closing(OutsideAgent(nursery, "a2a:http://127.0.0.1:9", settings=SETTINGS)) as agent:
+        with closing(OutsideAgent(fork_server, "a2a:http://127.0.0.1:9", settings=SETTINGS)) as agent:
             agent.reset("x")
             with pytest.raises(AgentError, match="no card"):
                 agent.act(seen)

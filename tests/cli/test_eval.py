@@ -44,8 +44,8 @@ KILLS_WORKER = """
 import os, pathlib
 class Kills:
     def reset(self, goal):
-        nursery = pathlib.Path("/proc", str(os.getppid()), "stat").read_text()
-        os.kill(int(nursery.rpartition(")")[2].split()[1]), 9)
+        fork_server = pathlib.Path("/proc", str(os.getppid()), "stat").read_text()
+        os.kill(int(fork_server.rpartition(")")[2].split()[1]), 9)
     def act(self, seen): ...
 """
 

@@ -30,8 +30,8 @@ from automotive_cosim.doors.assessment import CONFIG, read_assessment
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Pictures
+from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.meter import Budget, Spent
-from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.worker import run_job
@@ -65,7 +65,7 @@ class Here:
     """Runs trials in this process, on warm traffic that is there already: an executor, and its one worker."""
 
     simulations: Simulations
-    nursery: Nursery
+    fork_server: ForkServer
     folder: Path = Path()
     job: Any = None
     count: int = 1
@@ -89,7 +89,7 @@ class Here:
         self.job = job
 
     def answer(self) -> Any:
-        return run_job(self.job, self.folder, Pictures.NONE, self.simulations, self.nursery)
+        return run_job(self.job, self.folder, Pictures.NONE, self.simulations, self.fork_server)
 
     def end(self, *, at_once: bool) -> None:
         pass
@@ -124,8 +124,8 @@ def test_an_assessment_tells_its_progress_then_its_result(
         return [{"tool_calls": [FAN, DONE] if len(agent.heard) == 1 else [DONE]}]
 
     monkeypatch.chdir(tmp_path)
-    with closing(Nursery()) as nursery, served(RemoteAgent(once)) as remote:
-        here = Here(simulations, nursery)
+    with closing(ForkServer()) as fork_server, served(RemoteAgent(once)) as remote:
+        here = Here(simulations, fork_server)
 
         def run(plan: Plan, folder: Path, executor: Any, tell: Any) -> None:
             run_plan(plan, folder, executor=here, tell=tell)

@@ -27,6 +27,7 @@ import anyio
 from mcp import Client, StdioServerParameters
 
 from automotive_cosim.doors.mcp import make_server
+from tests.doors.conftest import DRIVE, WAIT
 
 START: Json = {"task": "hvac_fan_max", "scenario": "grid", "seed": 0}
 ACTIONS: list[Json] = [
@@ -111,6 +112,39 @@ def test_an_assistant_over_standard_input_and_output_gets_the_command_lines_trac
     assert [done for done, total, _ in told if total] == sorted(done for done, total, _ in told if total) != []
 
 
+def test_an_assistant_keeps_watch_on_a_drive(service: EpisodeService, drive_trace: str) -> None:
+    async def watch(client: Client) -> Json:
+        listed = await call(client, "list_drives", {})
+        assert "grid_june" in {each["id"] for each in listed["drives"]}
+        turn = await call(client, "start", DRIVE)
+        while turn["end"] is None:
+            assert turn["on_watch"]
+            assert "noticed" in turn["vehicle"]
+            turn = await call(client, "act", {"episode_id": turn["episode_id"], "action": WAIT})
+        return await call(client, "finish", {"episode_id": turn["episode_id"]})
+
+    outcome = inside(service, watch)
+    assert (outcome["trace_sha256"], outcome["end"]) == (drive_trace, "watch_over")
+    assert outcome["result"]["value"] == 0.0
+
+
+@pytest.mark.parametrize(
+    ("given", "named"),
+    [
+        ({}, "give a task or a drive"),
+        (START | DRIVE, "one of the two"),
+        ({"drive": "grid_jun"}, "grid_june"),
+        (DRIVE | {"minutes": 0}, "minutes"),
+        (START | {"minutes": 5}, "for a drive alone"),
+    ],
+)
+def test_what_is_no_trial_is_refused_by_name(service: EpisodeService, given: Json, named: str) -> None:
+    async def begin(client: Client) -> str:
+        return await refused(client, "start", given)
+
+    assert named in inside(service, begin)
+
+
 @pytest.mark.slow
 @pytest.mark.sumo
 def test_two_assistants_over_http_get_the_command_lines_trace(trace: str, program, until) -> None:
@@ -139,12 +173,12 @@ def test_two_assistants_over_http_get_the_command_lines_trace(trace: str, progra
     assert [outcome["trace_sha256"] for outcome in outcomes] == [trace, trace]
 
 
-def test_every_tool_says_what_it_takes_and_an_episode_is_named_in_all_but_two(service: EpisodeService) -> None:
+def test_every_tool_says_what_it_takes_and_an_episode_is_named_in_all_but_three(service: EpisodeService) -> None:
     async def talk(client: Client) -> Any:
         return (await client.list_tools()).tools
 
     tools = {tool.name: tool for tool in inside(service, talk)}
-    assert set(tools) == {"list_tasks", "start", "observe", "act", "finish"}
+    assert set(tools) == {"list_tasks", "list_drives", "start", "observe", "act", "finish"}
     for name, tool in tools.items():
         assert tool.description
         assert "context" not in tool.input_schema["properties"]

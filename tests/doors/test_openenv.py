@@ -12,6 +12,8 @@ from automotive_cosim.contracts import Json
 pytest.importorskip("openenv", reason="the extra openenv is not installed")
 from openenv import GenericEnvClient
 
+from tests.doors.conftest import DRIVE, WAIT
+
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 APP = "automotive_cosim.doors.openenv:app"
 RESET: Json = {"task": "hvac_fan_max", "scenario": "grid", "seed": 0}
@@ -54,3 +56,12 @@ def test_the_reference_solution_earns_the_reward_with_the_command_lines_trace(cl
     bare = client.reset(**RESET, pictures=False)
     assert bare.observation["picture"] is None
     assert client.step({"action": "no JSON"}).observation["turn"]["feedback"]["code"] == "malformed"
+
+
+def test_a_drive_earns_its_score(client, drive_trace: str) -> None:
+    result = client.reset(**DRIVE)
+    while not result.done:
+        result = client.step({"action": WAIT})
+    assert result.reward == 0.0
+    assert result.observation["outcome"]["trace_sha256"] == drive_trace
+    assert client.state()["drive"] == "grid_june"

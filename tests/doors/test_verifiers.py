@@ -16,6 +16,7 @@ import verifiers.v1 as vf
 from mcp import Client
 
 from automotive_cosim.doors.verifiers import CockpitConfig, CockpitTaskset
+from tests.doors.conftest import WAIT
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 
@@ -42,7 +43,7 @@ def rollout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sumo: None) -> Call
     """A whole rollout with these actions: its trace, and what the tools told."""
     monkeypatch.setenv("HOME", str(tmp_path))
 
-    def run(actions: list[Json], **named: str) -> tuple[vf.Trace, list[Json]]:
+    def run(actions: list[Json], **named: Any) -> tuple[vf.Trace, list[Json]]:
         [task] = CockpitTaskset(CockpitConfig(**{"tasks": "hvac_fan_max", "scenario": "grid"} | named))
         config = vf.AgentConfig(harness=vf.HarnessConfig(id="null"), runtime=vf.SubprocessConfig(), model="none")
         agent = vf.Agent(config)
@@ -70,6 +71,13 @@ def test_who_stops_early_earns_nothing(rollout) -> None:
     trace, _ = rollout([{"action_type": "wait"}])
     assert not trace.errors
     assert (trace.reward, trace.state.outcome) == (0.0, None)
+
+
+def test_a_drive_earns_its_score(rollout, drive_trace: str) -> None:
+    trace, told = rollout([WAIT] * 30, tasks="", drives="grid_june", minutes=0.5, scenario=None, seeds=(3,))
+    assert told[1]["on_watch"]
+    assert trace.state.outcome["trace_sha256"] == drive_trace
+    assert trace.reward == 0.0
 
 
 def test_what_cannot_begin_is_an_error_of_the_rollout(rollout) -> None:

@@ -2,13 +2,14 @@
 
 import re
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import closing
 from dataclasses import replace
 from typing import Any
 
 import pytest
 
 from automotive_cosim.agents import Thinker, make_agent
-from automotive_cosim.cockpit.signals import TYRE
+from automotive_cosim.cockpit.signals import HMI, TYRE
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -19,18 +20,24 @@ from automotive_cosim.contracts import (
     Sight,
     SightKind,
 )
+from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
+from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
 from automotive_cosim.drives.score import Score, score
+from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm, noticed
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS, AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.loop import Actor, play
 from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.interface.spaces import GOAL_BYTES
+from automotive_cosim.tasks.spoken import FOREIGN, phrasings
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import limit, moment, vehicle
 
@@ -299,6 +306,7 @@ def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
     agent = make_agent("asurada", "rules")
     watch = begin(240.0, agent.channels)
     agent.reset(watch.goal)
+    assert watch.observation.on_watch
     asked = []
 
     def count(session: Watch, seen: Sequence[Element]) -> None:
@@ -310,6 +318,21 @@ def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
     assert score(watch.judgement, watch.seconds).met > 0
     waited = {calls for before, calls in asked if before is not None and before.action_type is ActionType.WAIT}
     assert waited == {1}
+
+
+@pytest.mark.parametrize("language", Language)
+def test_driver_and_car_speak_the_language(simulations: Simulations, language: Language) -> None:
+    with closing(DriveSpec(FAMILY, SEED, Conditions(language=language)).begin(simulations)) as watch:
+        assert watch.goal == STANDING_ORDERS[language]
+        assert watch.world.cockpit.signals[HMI.LANGUAGE] == language
+        watch.step(Action(ActionType.ASK_DRIVER, text="?"))
+        assert watch.observation.said == (ANSWERS[language],)
+        assert len(watch.goal.encode()) <= GOAL_BYTES
+
+
+def test_the_answer_is_the_one_that_drivers_give_in_tasks() -> None:
+    for language in FOREIGN:
+        assert phrasings(language)["any"]["lines"][ANSWERS[Language.ENGLISH]] == ANSWERS[language]
 
 
 @pytest.mark.slow

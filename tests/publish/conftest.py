@@ -11,8 +11,8 @@ import pytest
 from automotive_cosim.publish.bundle import write_bundle
 from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import failed
-from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 from automotive_cosim.run.worker import run_job
@@ -29,10 +29,10 @@ def ran(tmp_path_factory: pytest.TempPathFactory, simulations: Simulations) -> P
     jobs = PLAN.jobs()
     with (
         opened(folder, PLAN.as_json(), EpisodeRow, planned=len(jobs)) as store,
-        closing(Nursery()) as nursery,
+        closing(ForkServer()) as fork_server,
     ):
         for job in jobs[:-1]:
-            store.append(replace(run_job(job, folder, Pictures.NONE, simulations, nursery), wall_seconds=1.5))
+            store.append(replace(run_job(job, folder, Pictures.NONE, simulations, fork_server), wall_seconds=1.5))
         why = "/home/anna/lab/agent.py: gone"
         store.append(replace(failed(jobs[-1], "WorkerDied", why), failed_attempts=(f"WorkerDied: {why}",)))
     return folder

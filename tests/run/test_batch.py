@@ -16,8 +16,8 @@ from automotive_cosim.run.batch import run_jobs, run_plan
 from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
+from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import failed
-from automotive_cosim.run.nursery import Nursery
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue
@@ -44,8 +44,8 @@ class Dies(Base):
 
 class KillsWorker(Base):
     def act(self, observation):
-        nursery = pathlib.Path("/proc", str(os.getppid()), "stat").read_text()
-        os.kill(int(nursery.rpartition(")")[2].split()[1]), 9)
+        fork_server = pathlib.Path("/proc", str(os.getppid()), "stat").read_text()
+        os.kill(int(fork_server.rpartition(")")[2].split()[1]), 9)
         time.sleep(600)
 
 class KillsWorkerOnce(KillsWorker):
@@ -121,8 +121,8 @@ def trouble(tmp_path, monkeypatch):
 
 
 @pytest.fixture(scope="module")
-def nursery():
-    with closing(Nursery()) as shared:
+def fork_server():
+    with closing(ForkServer()) as shared:
         yield shared
 
 
@@ -223,10 +223,10 @@ def test_an_episode_that_takes_too_long_is_ended_when_its_wall_time_is_over(trou
     assert (row.error_kind, row.success) == ("WallTime", None)
 
 
-def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble, simulations, nursery):
+def test_steps_simulated_time_and_tokens_are_limited_and_judged(trouble, simulations, fork_server):
     def ran(agent, **limits):
         (job,) = plan(agent, limits=limits).jobs()
-        return run_job(job, trouble, Pictures.NONE, simulations, nursery)
+        return run_job(job, trouble, Pictures.NONE, simulations, fork_server)
 
     ends = [ran("trouble:Waits", steps=3), ran("trouble:Waits", sim_s=12), ran("asurada", tokens=10)]
     assert [(row.end, row.success) for row in ends] == [
@@ -252,11 +252,11 @@ def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants_and_never_aga
     assert steady(tmp_path / "alone").items() <= steady(tmp_path / "both").items()
 
 
-def test_pictures_are_kept_by_choice(tmp_path, simulations, nursery):
+def test_pictures_are_kept_by_choice(tmp_path, simulations, fork_server):
     jobs = plan("oracle", "always-alert").jobs()
     for choice, count in ((Pictures.NONE, 0), (Pictures.FAILURES, 1), (Pictures.ALL, 2)):
         (tmp_path / choice / "traces").mkdir(parents=True)
-        steps = {job.id: run_job(job, tmp_path / choice, choice, simulations, nursery).steps for job in jobs}
+        steps = {job.id: run_job(job, tmp_path / choice, choice, simulations, fork_server).steps for job in jobs}
         kept = list((tmp_path / choice / "pictures").glob("*"))
         assert len(kept) == count
         for folder in kept:

@@ -56,7 +56,6 @@ def test_families_are_named_by_id_pattern_scenario_or_season() -> None:
         ({"drives": ["grid_jun"], "agents": ["silent"]}, "grid_june"),
         ({"drives": ["all"]}, "--agents"),
         ({"drives": ["all"], "agents": ["human"]}, "human"),
-        ({"drives": ["grid_june"], "agents": ["silent"], "language": ["en", "de"]}, "in English, not in German"),
         ({"drives": ["all"], "agents": ["rule-perfct"]}, "rule-perfect"),
         ({"drives": ["all"], "agents": ["silent"], "latency": [-1.0]}, "latency"),
     ],

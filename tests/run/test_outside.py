@@ -16,7 +16,7 @@ from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.errors import ActionError, AgentError, ModelError, OutOfBudgetError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models import ModelReply
-from automotive_cosim.run.nursery import Nursery
+from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.outside import LONGEST_REFUSAL, OutsideAgent, check_agent
 
 pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")]
@@ -97,7 +97,7 @@ class Ends(Base):
         if self.goal == "exit": os._exit(3)
         if self.goal == "kill": os.kill(os.getpid(), 9)
         if self.goal == "segfault": os.kill(os.getpid(), signal.SIGSEGV)
-        if self.goal == "nursery": os.kill(os.getppid(), 9)
+        if self.goal == "fork server": os.kill(os.getppid(), 9)
         if self.goal == "interrupt": raise KeyboardInterrupt
         if self.goal == "closes": os.closerange(3, 100)
         if self.goal == "stop": os.kill(os.getpid(), signal.SIGSTOP)
@@ -133,7 +133,7 @@ class Litters(Base):
 class Kills(Base):
     """Its daemon ends or stops the process that its own was forked from, and lives on."""
     def act(self, seen):
-        nursery = os.getppid()
+        fork_server = os.getppid()
         read, write = os.pipe()
         if not os.fork():
             os.setsid()
@@ -141,7 +141,7 @@ class Kills(Base):
             os.write(write, str(os.getpid()).encode())
             signal.signal(signal.SIGTERM, signal.SIG_IGN)
             time.sleep(0.3)
-            os.kill(nursery, signal.SIGKILL if self.goal == "kill" else signal.SIGSTOP)
+            os.kill(fork_server, signal.SIGKILL if self.goal == "kill" else signal.SIGSTOP)
             time.sleep(600)
         return say(os.read(read, 20).decode())
 
@@ -179,8 +179,8 @@ class CannotBeMade(Base):
 
 
 @pytest.fixture(scope="module")
-def nursery():
-    with closing(Nursery()) as shared:
+def fork_server():
+    with closing(ForkServer()) as shared:
         yield shared
 
 
@@ -194,12 +194,12 @@ def mine(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def outside(nursery, mine):
+def outside(fork_server, mine):
     """Makes an agent and tells it the goal; at the end nothing of it is left."""
     made = []
 
     def make(name, goal="", **limits):
-        agent = OutsideAgent(nursery, f"mine:{name}" if name[0].isupper() else name, **limits)
+        agent = OutsideAgent(fork_server, f"mine:{name}" if name[0].isupper() else name, **limits)
         made.append(agent)
         agent.reset(goal)
         return agent
@@ -216,12 +216,12 @@ def lives(pid):
         return False
 
 
-def test_an_agent_outside_does_what_it_does_inside(nursery, observation):
+def test_an_agent_outside_does_what_it_does_inside(fork_server, observation):
     screen = np.random.default_rng(0).integers(0, 255, (72, 128, 3), np.uint8)
     seen = [observation("Watch my speed", screenshot=screen, time_s=float(second)) for second in range(3)]
     for name in ("t3a", "m3a", "asurada"):
         inside = make_agent(name)
-        with closing(OutsideAgent(nursery, name, "rules", AgentSettings())) as agent:
+        with closing(OutsideAgent(fork_server, name, "rules", AgentSettings())) as agent:
             assert agent.channels == inside.channels
             for each in (inside, agent):
                 each.reset("Watch my speed")
@@ -236,9 +236,9 @@ def test_an_agent_that_counts_what_it_heard_has_nothing_to_count(outside):
 
 
 @pytest.mark.slow
-def test_where_nothing_is_forked_each_episode_has_a_new_process_too(outside, nursery, monkeypatch):
-    nursery.close()
-    monkeypatch.setattr("automotive_cosim.run.nursery.CAN_FORK", False)
+def test_where_nothing_is_forked_each_episode_has_a_new_process_too(outside, fork_server, monkeypatch):
+    fork_server.close()
+    monkeypatch.setattr("automotive_cosim.run.fork_server.CAN_FORK", False)
     for _ in range(2):
         agent = outside("Counts", "Watch my speed")
         assert agent.act(None).text == "[1, 'x', 'x']"
@@ -297,7 +297,7 @@ def test_an_agent_may_give_up(outside):
         ("exit", "exited with code 3"),
         ("kill", "killed by SIGKILL"),
         ("segfault", "killed by SIGSEGV"),
-        ("nursery", "process"),
+        ("fork server", "process"),
         ("interrupt", "raised KeyboardInterrupt"),
         ("closes", "closed its connection"),
         ("stop", "over 1 s for one step"),
@@ -415,18 +415,18 @@ def test_reading_and_answering_have_one_limit(outside, observation):
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
 @pytest.mark.parametrize("how", ["kill", "stop"])
 def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(outside, monkeypatch, until, how):
-    monkeypatch.setattr("automotive_cosim.run.nursery.END_S", 2.0)
+    monkeypatch.setattr("automotive_cosim.run.fork_server.END_S", 2.0)
     agent = outside("Kills", how, step_s=5.0)  # the second step waits for whom it killed
     pid = agent.act(None).text
-    nursery = agent._nursery._popen.pid
+    fork_server = agent._fork_server._popen.pid
     assert lives(pid)
-    until(lambda: Path(f"/proc/{nursery}/stat").read_text().rpartition(")")[2].split()[0] in "ZT")
+    until(lambda: Path(f"/proc/{fork_server}/stat").read_text().rpartition(")")[2].split()[0] in "ZT")
     if how == "kill":
         with pytest.raises(AgentError):
             agent.act(None)
     agent.close()
     assert not lives(pid)
-    assert not lives(nursery)
+    assert not lives(fork_server)
     assert outside("Counts", "next").act(None).text.startswith("[1")
 
 
@@ -434,10 +434,10 @@ def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(
 def test_a_long_chain_of_processes_ends_too(outside):
     agent = outside("Chains", step_s=2.0)
     agent.channels  # noqa: B018, starts it
-    nursery = agent._nursery._popen.pid
+    fork_server = agent._fork_server._popen.pid
     with pytest.raises(AgentError, match="for one step"):
         agent.act(None)
-    assert tree(nursery) == (nursery,)
+    assert tree(fork_server) == (fork_server,)
 
 
 def test_what_an_agent_leaves_in_its_folder_is_removed_however_deep(outside, until):
@@ -479,17 +479,17 @@ class Model:
         return self.answer
 
 
-def test_only_this_sides_model_reports_an_error_of_a_model(nursery, observation):
-    with closing(OutsideAgent(nursery, "t3a", chat_model=Model(ModelError("no answer")))) as agent:
+def test_only_this_sides_model_reports_an_error_of_a_model(fork_server, observation):
+    with closing(OutsideAgent(fork_server, "t3a", chat_model=Model(ModelError("no answer")))) as agent:
         agent.reset("x")
         with pytest.raises(ModelError, match="no answer"):
             agent.act(observation("x"))
 
 
-def test_pictures_reach_the_model_and_its_answer_comes_back_whole(nursery, observation):
+def test_pictures_reach_the_model_and_its_answer_comes_back_whole(fork_server, observation):
     model = Model(ModelReply('Action: {"action_type": "wait"}', 7, 8, 0.5, 1.5, "length"))
     screen = np.zeros((72, 128, 3), np.uint8)
-    with closing(OutsideAgent(nursery, "m3a", chat_model=model)) as agent:
+    with closing(OutsideAgent(fork_server, "m3a", chat_model=model)) as agent:
         agent.reset("x")
         assert agent.act(observation("x", screenshot=screen)) == Action(ActionType.WAIT)
         assert [stage.reply for stage in agent.stages if stage.reply] == [model.answer]
@@ -499,10 +499,10 @@ def test_pictures_reach_the_model_and_its_answer_comes_back_whole(nursery, obser
     assert all(picture.startswith(b"\x89PNG") for picture in message.pictures)
 
 
-def test_an_agent_reads_the_format_of_its_model_from_the_whole_name(nursery, observation):
+def test_an_agent_reads_the_format_of_its_model_from_the_whole_name(fork_server, observation):
     model, screen = Model(ModelReply("Action: press_home()")), np.zeros((720, 1280, 3), np.uint8)
     named = "local/m?format=ui-tars-1.5"
-    with closing(OutsideAgent(nursery, "native", named, chat_model=model)) as agent:
+    with closing(OutsideAgent(fork_server, "native", named, chat_model=model)) as agent:
         agent.reset("x")
         assert agent.act(observation("x", screenshot=screen)) == Action(ActionType.NAVIGATE_HOME)
 
@@ -526,10 +526,10 @@ def test_one_that_cannot_be_made_is_told_before_anything_runs(mine, spec, said):
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 def test_nothing_is_left_of_a_worker_that_was_killed(program, mine, until):
     (mine / "go.py").write_text(
-        "import sys; from automotive_cosim.run.nursery import Nursery\n"
+        "import sys; from automotive_cosim.run.fork_server import ForkServer\n"
         "from automotive_cosim.run.outside import OutsideAgent\n"
-        "agent = OutsideAgent(Nursery(), 'mine:Forks'); agent.reset('')\n"
-        "print(agent._nursery._popen.pid, agent.act(None).text.replace(',', ' '), agent._folder, flush=True)\n"
+        "agent = OutsideAgent(ForkServer(), 'mine:Forks'); agent.reset('')\n"
+        "print(agent._fork_server._popen.pid, agent.act(None).text.replace(',', ' '), agent._folder, flush=True)\n"
         "input()\n"
     )
     process = program(sys.executable, "go.py", cwd=mine, stdout=-1, stdin=-1)

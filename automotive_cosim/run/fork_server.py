@@ -17,7 +17,7 @@ from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.traffic.fork import CAN_FORK
 
 ANSWER_S = 60.0
-"""Wall time in which a nursery has to answer; it starts in about one second."""
+"""Wall time in which a fork server has to answer; it starts in about one second."""
 END_S = SWEEP_S + 5.0
 """The same for the end of an agent's process, beyond the time that this is given: an agent may have stopped it."""
 WITHHELD = ("AUTOMOTIVE_COSIM_", "RAY_")
@@ -25,7 +25,7 @@ WITHHELD_NAMES = frozenset({"PWD", "OLDPWD", "_", "PYTHONSTARTUP", "PYTHONINSPEC
 """Environment variables that an agent's process does not get: they tell what was started, and where."""
 
 
-class Nursery:
+class ForkServer:
     """Agents' processes, one at a time. A worker has one; closing it ends them all."""
 
     def __init__(self) -> None:
@@ -33,7 +33,7 @@ class Nursery:
         self._popen: subprocess.Popen[bytes] | None = None
         self._wire: Wire | None = None
         self._known: frozenset[int] = frozenset()
-        """This process's children before the nursery was started."""
+        """This process's children before the fork server was started."""
 
     def start(self, request: AgentRequest) -> Wire:
         """Starts an agent's process and returns the connection to it.
@@ -41,7 +41,7 @@ class Nursery:
         Raises:
             InfrastructureError: that did not work, twice.
         """
-        for _ in range(2):  # the first nursery may have been killed since the last episode
+        for _ in range(2):  # the first fork server may have been killed since the last episode
             with suppress(GoneError, TimeoutError, ValueError):
                 return self._forked(request)
             self.close()
@@ -68,7 +68,7 @@ class Nursery:
         self._popen.wait()
         self._wire.close()
         self._wire = self._popen = None
-        end_all(lambda: strangers(self._known))  # orphans of an agent that has ended the nursery
+        end_all(lambda: strangers(self._known))  # orphans of an agent that has ended the fork server
 
     def _forked(self, request: AgentRequest) -> Wire:
         if self._wire is None:
@@ -91,7 +91,7 @@ class Nursery:
 
 
 def _started() -> tuple[Wire, subprocess.Popen[bytes]]:
-    """Starts a nursery; returns the connection to it."""
+    """Starts a fork server; returns the connection to it."""
     environment = {
         name: value
         for name, value in os.environ.items()

@@ -1,0 +1,124 @@
+"""The environment of drives: an agent keeps watch over a car in traffic, as a gymnasium ``Env``."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from automotive_cosim.contracts import Action
+from automotive_cosim.drives.families import family_named
+from automotive_cosim.drives.result import result_of
+from automotive_cosim.drives.settings import DriveSettings
+from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.drives.watch import Watch
+from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of
+from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.specification import SessionSetup
+from automotive_cosim.formats.checked import Steps, checked
+from automotive_cosim.formats.toml import dotted
+from automotive_cosim.interface import spaces
+from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.tasking.draws import SEED_LIMIT
+from automotive_cosim.traffic.fork import Simulations
+
+
+class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
+    """A drive of ten to thirty minutes, on which something may require an act.
+
+    Spaces are those of ``CockpitEnv``; the readings that the car notes are in ``vehicle`` (``noticed``). A ``wait``
+    lasts until something changes, at most a minute. The reward is 0 until the drive is over, then its score in
+    hundredths: 0 for doing nothing, 1 for the rule-perfect watcher, and negative for who disturbs more than he
+    helps. ``info`` holds ``step``, ``action_result`` and ``events`` of the road; at the end also ``score``,
+    ``result`` and ``trace_sha256``. ``env.unwrapped.episode`` is the typed watch behind it.
+
+    Seeds: ``reset(seed=s)`` draws drive ``s`` of the family, with the traffic of that seed; ``reset()`` draws
+    another one. ``options`` are not used.
+    """
+
+    def __init__(
+        self,
+        family: str = "grid_june",
+        *,
+        scenario: str = "",
+        minutes: float | None = None,
+        channels: Iterable[str] = ALL,
+        render_mode: str | None = None,
+        simulations: Simulations | None = None,
+        listener: Listener | None = None,
+        **conditions: str,
+    ) -> None:
+        """Makes an environment of one family; nothing runs before ``reset``.
+
+        Args:
+            family: which drives; ``automotive-cosim show drives`` lists them.
+            scenario: where to drive instead of on the family's own roads.
+            minutes: when a drive is over, if its script ends later.
+            channels: as in ``SessionSetup``.
+            render_mode: ``"rgb_array"`` or None.
+            simulations: warm simulations; by default those that the environments of this process share.
+            listener: told of progress.
+            conditions: ``geo``, ``see`` and so on, as in ``Conditions``.
+
+        Raises:
+            UnknownNameError: no such family, channel or condition.
+            UserError: ``minutes`` is out of bounds, or ``see`` leaves nothing of the screen.
+        """
+        family_named(family)
+        under = Conditions.named(conditions)
+        self._spec = DriveSpec(
+            family,
+            conditions=under,
+            scenario=scenario,
+            settings=checked(DriveSettings, {} if minutes is None else {"minutes": minutes}, _named),
+        )
+        self._setup = SessionSetup(frozenset(map(Channel, channels)), under)
+        self._listener = listener
+        super().__init__(simulations, render_mode)
+        size = under.screen
+        self.observation_space = spaces.observation_space(self._setup.given, size.width, size.height)
+        self.action_space = spaces.action_space(size.width, size.height)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Departs on a drive.
+
+        Raises:
+            ScenarioError: the scenario cannot be read, or a drive cannot take place in it.
+            InfrastructureError: no gap opened for the car, or the traffic simulation failed.
+        """
+        super().reset(seed=seed)
+        self._end()
+        drawn = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
+        self._spec = replace(self._spec, seed=drawn)
+        self._episode = self._spec.begin(self._simulations, self._setup.channels, self._listener)
+        return self._encoded(), info_of(self.episode)
+
+    def step(self, action: Action | Mapping[str, Any] | str) -> StepResult:
+        """Performs one action, lets its time pass, observes and, at the end, judges.
+
+        Raises:
+            ActionError: the action is malformed; nothing has happened.
+            ResetNeeded: the drive is over, or there has been none.
+            TrafficError: the traffic simulation failed.
+        """
+        watch = self._running()
+        watch.step(action_of(action))
+        info, reward = info_of(watch), 0.0
+        if watch.end is not None:
+            result = result_of(watch)
+            info |= {"score": result.value, "result": result, "trace_sha256": watch.trace_sha256}
+            reward = result.value / 100.0
+        return self._encoded(), reward, *ended(watch), info
+
+    def _encoded(self) -> dict[str, Any]:
+        seen, given = self.episode.observation, self._setup.given
+        if Channel.SCREENSHOT in given and seen.screenshot is None:  # as after a wait, and a space has no gaps
+            seen = replace(seen, screenshot=self.episode.screenshot())
+        return spaces.encode(seen, given)
+
+
+def _named(steps: Steps) -> tuple[str, str]:
+    return "the drive", dotted(steps)
