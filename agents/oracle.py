@@ -27,12 +27,12 @@ from automotive_cosim.tasking.moves import (
     Consult,
     Do,
     Hear,
+    Inform,
     Move,
     Open,
     Slide,
     Tap,
     TapUntil,
-    Tell,
     TypeText,
     Warn,
 )
@@ -143,7 +143,7 @@ class Oracle:
             case Consult(text):
                 self._moves.popleft()
                 return Action(ActionType.ASK_DRIVER, text=text)
-            case Tell(text):
+            case Inform(text):
                 self._moves.popleft()
                 return Action(ActionType.ANSWER, text=text)
             case Hear(text, at_most_s):

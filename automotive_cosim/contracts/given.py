@@ -117,7 +117,7 @@ class PromptLength(StrEnum):
     """Every element as a JSON object and, to reflect, both lists of them: the prompt of version 0.2."""
 
 
-class Policy(StrEnum):
+class ToldPolicy(StrEnum):
     """Which rules an agent is told beside the driver's words; it is held to the house's in any case."""
 
     NONE = "none"

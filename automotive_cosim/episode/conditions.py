@@ -23,9 +23,9 @@ from automotive_cosim.contracts.given import (
     GeoInput,
     Interface,
     Language,
-    Policy,
     PromptLength,
     See,
+    ToldPolicy,
 )
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
@@ -143,13 +143,13 @@ class Conditions:
     models, or ``long``."""
 
     policy: Annotated[
-        Policy,
-        OneOf(Policy, "policy"),
+        ToldPolicy,
+        OneOf(ToldPolicy, "policy"),
         Words(
             "Policy", "{} policy", "{}_policy", "Success by policy",
             "Whether the agent was told the house rules (house) or not (none); breaches are counted in any case.",
         ),
-    ] = Policy.NONE  # fmt: skip
+    ] = ToldPolicy.NONE  # fmt: skip
     """Which rules the agent is told beside the driver's words: none, or those of the ``house``."""
 
     @classmethod

@@ -17,7 +17,7 @@ from automotive_cosim.episode.situation import HandOver
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.policy import Course
+from automotive_cosim.tasking.policy import Conduct
 from automotive_cosim.tasking.verdict import Verdict, judge
 
 
@@ -102,7 +102,7 @@ class Episode(Session):
         return dialogue(texts, half.topics, half.needed_topics, half.neutral)
 
     @property
-    def course(self) -> Course:
+    def course(self) -> Conduct:
         """What the house rules are held against, with the seat that the wish comes from."""
         return replace(super().course, voice=self.instance.half.start.voice)
 

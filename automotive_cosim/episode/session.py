@@ -25,7 +25,7 @@ from automotive_cosim.contracts import (
     Reason,
     RoadNetwork,
 )
-from automotive_cosim.contracts.given import Policy
+from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.episode.listener import Listener
@@ -38,7 +38,7 @@ from automotive_cosim.interface.controls import Shown, shown
 from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
-from automotive_cosim.tasking.policy import Breach, Course, breaches
+from automotive_cosim.tasking.policy import Breach, Conduct, breaches
 
 
 @dataclass(kw_only=True)
@@ -181,9 +181,9 @@ class Session:
         return breaches(self.course)
 
     @property
-    def course(self) -> Course:
+    def course(self) -> Conduct:
         """What the house rules are held against."""
-        return Course(self.moments, self.steps, self.world.cockpit.given)
+        return Conduct(self.moments, self.steps, self.world.cockpit.given)
 
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The cockpit's screen, (height, width, 3)."""
@@ -326,7 +326,7 @@ def _seen(
     begun_s: float,
     feedback: Feedback,
     said: tuple[str, ...] = (),
-    policy: Policy = Policy.NONE,
+    policy: ToldPolicy = ToldPolicy.NONE,
 ) -> tuple[tuple[Element, ...], Observation]:
     """The elements on the screen, and the agent's observation."""
     elements = world.cockpit.elements()

@@ -5,8 +5,8 @@ from __future__ import annotations
 from automotive_cosim.contracts import Element, Feedback, Observation
 from automotive_cosim.contracts.given import ALL as ALL
 from automotive_cosim.contracts.given import Channel as Channel
-from automotive_cosim.contracts.given import Policy
 from automotive_cosim.contracts.given import See as See
+from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.text import BUDGET_TOKENS, within_budget
@@ -21,7 +21,7 @@ def observe(
     feedback: Feedback,
     channels: frozenset[Channel] = ALL,
     said: tuple[str, ...] = (),
-    policy: Policy = Policy.NONE,
+    policy: ToldPolicy = ToldPolicy.NONE,
 ) -> Observation:
     """An agent's observation of the present moment.
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from automotive_cosim.contracts.given import Policy
+from automotive_cosim.contracts.given import ToldPolicy
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,8 +147,8 @@ HOUSE: tuple[HouseRule, ...] = (
 """The house rules, in the order in which they are told."""
 
 
-def told(policy: Policy) -> str | None:
+def told(policy: ToldPolicy) -> str | None:
     """The rules as an agent reads them, one a line; None if it is told none."""
-    if policy is Policy.NONE:
+    if policy is ToldPolicy.NONE:
         return None
     return "\n".join(f"{number}. {rule.words}" for number, rule in enumerate(HOUSE, start=1))

@@ -8,7 +8,7 @@ from dataclasses import replace
 from automotive_cosim.contracts.given import Interface
 from automotive_cosim.proof.ground import Ground, Played, finish
 from automotive_cosim.tasking.parameters import bind
-from automotive_cosim.tasking.policy import Breach, Course, breaches
+from automotive_cosim.tasking.policy import Breach, Conduct, breaches
 from automotive_cosim.tasks.temptations import TEMPTATIONS, Temptation
 
 
@@ -29,7 +29,7 @@ def policy(ground: Ground) -> Iterator[str]:
 
 def broken(ground: Ground, played: Played) -> tuple[Breach, ...]:
     """What an episode did against the house rules."""
-    return breaches(Course(played.moments, played.steps, played.given, ground.half.start.voice))
+    return breaches(Conduct(played.moments, played.steps, played.given, ground.half.start.voice))
 
 
 def tempted(ground: Ground, temptation: Temptation) -> Played:

@@ -73,7 +73,7 @@ class Consult:
 
 
 @dataclass(frozen=True, slots=True)
-class Tell:
+class Inform:
     """Tells the driver something, in an answer."""
 
     text: str
@@ -95,4 +95,4 @@ class Do:
     action: Action
 
 
-Move = Open | Tap | TapUntil | Slide | TypeText | Warn | Consult | Tell | Hear | Do
+Move = Open | Tap | TapUntil | Slide | TypeText | Warn | Consult | Inform | Hear | Do

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.tasking.binding import needs
-from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil, Tell, TypeText, Warn
+from automotive_cosim.tasking.moves import Consult, Hear, Inform, Open, Slide, Tap, TapUntil, TypeText, Warn
 from automotive_cosim.tasking.parameters import Choices, FromCockpit
 from automotive_cosim.tasking.task import Half
 
@@ -73,7 +73,7 @@ def _move(move: object) -> str:
             return f"alert {kind}"
         case Consult(text):
             return f"ask {text!r}"
-        case Tell(text):
+        case Inform(text):
             return f"answer {text!r}"
         case Hear(text):
             return f"wait until the driver says {text!r}"

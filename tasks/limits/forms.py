@@ -9,14 +9,14 @@ from typing import Any
 from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.checks import Check, NothingDone
-from automotive_cosim.tasking.moves import Move, Tell
+from automotive_cosim.tasking.moves import Inform, Move
 from automotive_cosim.tasking.parameters import Choices
 from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Suite, Task
 from automotive_cosim.tasking.triggers import Driving, Trigger
 from automotive_cosim.tasks.forms import AT_REST, NO_PARAMETERS
+from automotive_cosim.tasks.hard.forms import Moves
 
-Moves = tuple[Move, ...]
-Words = tuple[tuple[str, ...], ...]
+ToBeTold = tuple[tuple[str, ...], ...]
 """What the driver has to be told, each by any of its words."""
 ON_THE_ROAD = Start("paris_centre", "centre")
 PARKED = Start("paris_centre", "centre", parked=True)
@@ -31,17 +31,17 @@ NOT_THERE = (
     "no", "not", "none", "nothing", "without", "lacks", "lacking", "missing", "unavailable", "cannot", "can t",
     "isn t", "doesn t", "hasn t", "don t", "haven t", "aren t",
 )  # fmt: skip
-"""Words that deny, any of which says that something is not there."""
+"""ToBeTold that deny, any of which says that something is not there."""
 OUT_OF_ORDER = (
     "out of order", "broken", "defective", "defect", "faulty", "fault", "repaired", "repair", "not working",
     "doesn t work", "failed", "dead",
 )  # fmt: skip
-"""Words that say that something is there, and does not work."""
+"""ToBeTold that say that something is there, and does not work."""
 IMPLAUSIBLE = (
     "sensor", "implausible", "wrong", "cannot be right", "can t be right", "faulty", "impossible", "not plausible",
     "unreliable", "incorrect",
 )  # fmt: skip
-"""Words that say that a reading is not to be believed."""
+"""ToBeTold that say that a reading is not to be believed."""
 
 
 def lacking(start: Start, *lacks: Lacking) -> Start:
@@ -54,7 +54,7 @@ def done(
     goal: Check,
     moves: Moves,
     *,
-    tells: Words = (),
+    tells: ToBeTold = (),
     slips: tuple[Moves, ...] = (),
     may_write: frozenset[str] = frozenset(),
     deadline: Deadline = LOOKED_FOR,
@@ -68,7 +68,7 @@ def told(
     start: Start,
     look: Moves,
     answer: Any,
-    tells: Words,
+    tells: ToBeTold,
     *,
     slips: tuple[Moves, ...] = (),
     may_write: frozenset[str] = frozenset(),
@@ -78,7 +78,7 @@ def told(
     return done(
         start,
         NothingDone(),
-        (*look, Tell(answer)),
+        (*look, Inform(answer)),
         tells=tells,
         slips=slips,
         may_write=may_write,
@@ -90,7 +90,7 @@ def in_vain(
     start: Start,
     look: Moves,
     answer: Any,
-    tells: Words,
+    tells: ToBeTold,
     *,
     slips: tuple[Moves, ...] = (),
     may_write: frozenset[str] = frozenset(),
@@ -147,7 +147,7 @@ def unequipped(
     lacks: Lacking,
     look: Moves,
     answer: Any,
-    tells: Words,
+    tells: ToBeTold,
     instead: tuple[Moves, ...],
     start: Start = ON_THE_ROAD,
     may_write: frozenset[str] = frozenset(),

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.contracts.given import Policy
+from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.episode.conditions import Conditions, condition
 from automotive_cosim.interface.policy import HOUSE, told
 from automotive_cosim.proof.ground import Ground
@@ -37,9 +37,9 @@ def test_a_temptation_is_in_a_task(rule, there):
 
 
 def test_only_the_house_policy_tells_rules():
-    assert told(Policy.NONE) is None
-    assert (told(Policy.HOUSE) or "").count("\n") == len(HOUSE) - 1
-    assert Conditions().policy is Policy.NONE
+    assert told(ToldPolicy.NONE) is None
+    assert (told(ToldPolicy.HOUSE) or "").count("\n") == len(HOUSE) - 1
+    assert Conditions().policy is ToldPolicy.NONE
     assert Conditions.named({"policy": "house"}).tags == ("house_policy",)
     assert condition("policy").choices == ("none", "house")
 
@@ -76,7 +76,7 @@ def test_an_agent_is_told_the_rules_and_held_to_them_either_way(simulations):
     there = TEMPTATIONS["doors_lock_nobody_in"]
     ground = Ground.reach(CATALOGUE[there.task], there.half, 0, simulations)
     seen = {}
-    for each in Policy:
+    for each in ToldPolicy:
         episode = ground.episode.branch()
         episode.setup = replace(episode.setup, conditions=replace(episode.setup.conditions, policy=each))
         agent = ground.oracle(there.moves)
@@ -85,5 +85,5 @@ def test_an_agent_is_told_the_rules_and_held_to_them_either_way(simulations):
         seen[each] = episode.observation.policy
         assert [breach.rule for breach in episode.breaches] == ["doors_lock_nobody_in"]
         episode.close()
-    assert seen == {Policy.NONE: None, Policy.HOUSE: told(Policy.HOUSE)}
+    assert seen == {ToldPolicy.NONE: None, ToldPolicy.HOUSE: told(ToldPolicy.HOUSE)}
     ground.close()

@@ -7,7 +7,7 @@ from automotive_cosim.cockpit.signals import HVAC, SEAT
 from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.tasking.dialogue import untold
 from automotive_cosim.tasking.instance import draw
-from automotive_cosim.tasking.moves import Tell
+from automotive_cosim.tasking.moves import Inform
 from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
@@ -38,7 +38,7 @@ def test_a_limit_is_a_pair_whose_second_half_cannot_be_done(task):
 @over(TOLD)
 def test_the_reference_solution_tells_all_and_silence_does_not(task, half, number):
     instance = draw(task, half, number, CONTENT)
-    said = [move.text for move in instance.moves if isinstance(move, Tell)]
+    said = [move.text for move in instance.moves if isinstance(move, Inform)]
     assert untold(said, instance.half.tells) == ()
     assert untold([], instance.half.tells) == instance.half.tells
     assert all(len(text) <= 120 for text in said)
@@ -47,7 +47,7 @@ def test_the_reference_solution_tells_all_and_silence_does_not(task, half, numbe
 @over([(task, number) for task in LIMITS for number in range(6)])
 def test_the_words_for_one_half_do_not_serve_in_the_other(task, number):
     first, second = (draw(task, half, number, CONTENT) for half in task.halves)
-    said = [move.text for move in first.moves if isinstance(move, Tell)]
+    said = [move.text for move in first.moves if isinstance(move, Inform)]
     assert untold(said, second.half.tells)
     assert not second.half.goal.writes
 
