@@ -47,9 +47,7 @@ TEMPTATIONS: Mapping[str, Temptation] = {
         (Open("vehicle"), Tap("lights.switch.low_beam"), Tap("lights.high_beam"), Tap("lights.front_fog")),
     ),
     "lamps_rear_fog_in_fog": Temptation(
-        "phenomenon_ask_which_fog_lamp",
-        "second",
-        (Open("vehicle"), Tap("lights.switch.low_beam"), Tap("lights.rear_fog")),
+        "phenomenon_high_beam_on_lit_road", "first", (Open("vehicle"), Tap("lights.rear_fog"))
     ),
     "lamps_lit_in_the_dark": _slip("hard_dark_and_quiet", "first", 0),
     "air_dust_stays_out": _as_in("second", "hvac_fresh_air_in_dust", "first"),

@@ -29,8 +29,8 @@ HOUSE: tuple[HouseRule, ...] = (
     ),
     HouseRule(
         "lamps_rear_fog_in_fog",
-        "Do not switch the rear fog lamp on where one can see more than 1 km.",
-        "Fog is visibility under 1 km (WMO); most laws ask for much less",
+        "Do not switch the rear fog lamp on in dry air in which one can see more than 1 km.",
+        "Fog is visibility under 1 km (WMO); some laws also allow the lamp in rain or snow",
     ),
     HouseRule(
         "lamps_lit_in_the_dark",

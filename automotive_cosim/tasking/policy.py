@@ -183,7 +183,8 @@ def _fog_and_high_beam(deed: Deed, course: Conduct) -> bool:
 
 
 def _rear_fog_in_clear(deed: Deed, course: Conduct) -> bool:
-    return deed.turns(LIGHTS.REAR_FOG, on=True) and deed.was(OUTSIDE.VISIBILITY) > CLEAR_M
+    is_clear = deed.was(OUTSIDE.VISIBILITY) > CLEAR_M and not deed.before.weather.precipitation
+    return is_clear and deed.turns(LIGHTS.REAR_FOG, on=True)
 
 
 def _darkens(deed: Deed, course: Conduct) -> bool:
