@@ -21,6 +21,7 @@ from automotive_cosim.agents import Agent
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
 from automotive_cosim.drives.watchers import RulePerfect
+from automotive_cosim.errors import BudgetSpentError
 from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.jobs import TrialJob
 from automotive_cosim.run.plan import make_plan
@@ -229,13 +230,18 @@ def real(name: str, budget: int, folder: Path) -> None:
         plan = make_plan({"agents": ["oracle"], "models": ["rules"], "trials": [as_json(trial_of(space.nominal))]})
         with trying(space, plan, folder / name.replace(" ", "_"), run) as tries:
             found: list[Hunt] = []
+
+            def tried_once(point: SearchPoint, repeat: int) -> TriedOutcome:
+                if found and (found[-1].minimal or found[-1].not_reduced):
+                    raise BudgetSpentError("found")
+                return tries(point, repeat)
+
             made = hunt(
                 space,
-                tries,
+                tried_once,
                 make_sampler("climb", space, budget, 0),
                 budget,
                 most_failures=int(space is TASKS),
-                goes_on=lambda: not (found and (found[-1].minimal or found[-1].not_reduced)),
                 tell=found.append,
             )
     words = [f"{each.words(space)} [{each.why}]" for each in made.minimal]

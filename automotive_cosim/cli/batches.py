@@ -131,7 +131,8 @@ def check_prices(models: Iterable[str], budget: Budget) -> None:
     for name in models:
         if not name.startswith(("rules", "replay/")) and "usd_per_million_" not in name:
             raise UserError(
-                f"--budget-usd needs the price of {name}; add ?usd_per_million_in=...&usd_per_million_out=... to it"
+                f"a budget in dollars needs the price of {name}; add "
+                "?usd_per_million_in=...&usd_per_million_out=... to it"
             )
 
 

@@ -63,6 +63,7 @@ EXTRAS = {
     "local": Extra("xllamacpp", "--model local"),
     "mcp": Extra("mcp", "mcp"),
     "openenv": Extra("openenv", "doors.openenv"),
+    "osi": Extra("osi_utilities", "export --osi"),
     "parquet": Extra("pyarrow", "studies and trajectories as Parquet"),
     "pdf": Extra("typst", "report --safety as a PDF"),
     "ray": Extra("ray", "eval and study on a cluster"),

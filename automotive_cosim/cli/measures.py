@@ -41,11 +41,18 @@ def measures(
     reach: Annotated[
         float, typer.Option("--range", help="How far other vehicles are looked at.", metavar="M", parser=Above)
     ] = DEFAULT_THRESHOLDS.range_m,
-    out: Annotated[Path | None, typer.Option(help="File for the table.", show_default="standard output")] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            help="File for the table: Parquet if its name ends in .parquet, else CSV.",
+            show_default="standard output",
+        ),
+    ] = None,
 ) -> None:
-    """Print the encounters of a recorded trial with their surrogate measures of safety, as CSV."""
+    """Print the encounters of a recorded trial with their surrogate measures of safety, as CSV or Parquet."""
+    from automotive_cosim.exchange.trajectories import write_frame
     from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
-    from automotive_cosim.measures.encounters import as_csv
+    from automotive_cosim.measures.encounters import as_csv, as_frame
     from automotive_cosim.run.record import write_whole
     from automotive_cosim.run.road import NAME, read_record
 
@@ -55,12 +62,13 @@ def measures(
     scenes = [(second.at_s, second.vehicles) for second in read_record(path).seconds]
     thresholds = Thresholds(ttc, drac, DEFAULT_THRESHOLDS.mdrac_mps2, pet, reach)
     ego = None if everyone else "ego"
-    if readings:
-        text = as_csv(pair_readings(scenes, ego, thresholds), PairReading)
-    else:
-        text = as_csv(encounters(scenes, ego, thresholds), Encounter)
+    kind = PairReading if readings else Encounter
+    rows = list(pair_readings(scenes, ego, thresholds)) if readings else encounters(scenes, ego, thresholds)
     if out is None:
-        typer.echo(text, nl=False)
+        typer.echo(as_csv(rows, kind), nl=False)
+        return
+    if out.suffix == ".parquet":
+        write_frame(as_frame(rows, kind), out)
     else:
-        write_whole(out, text)
-        typer.echo(f"{counted(len(text.splitlines()) - 1, 'line')} in {out}")
+        write_whole(out, as_csv(rows, kind))
+    typer.echo(f"{counted(len(rows), 'line')} in {out}")

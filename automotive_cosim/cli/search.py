@@ -3,20 +3,32 @@
 from __future__ import annotations
 
 import json
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom, number, whole_number
+from automotive_cosim.cli.batches import (
+    ExecutorName,
+    RayAddress,
+    RaySend,
+    Workers,
+    check_prices,
+    executor_of,
+)
+from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
     from automotive_cosim.contracts import Json
+    from automotive_cosim.run.trial_row import TrialRow
     from automotive_cosim.safety.hunt import Hunt
 
+CAREFUL = ("rule-perfect", "oracle")
+"""The references on drives and on tasks."""
+CAREFUL_FOLDER = "careful"
+"""Of a search's folder: its evaluation of the reference at the minimal failures."""
 SETTINGS = "search.json"
 """File of a search's folder with what it was started with."""
 
@@ -32,42 +44,29 @@ def search(
     ],
     agent: AgentName,
     budget: Annotated[
-        int,
+        str,
         typer.Option(
-            help="Points to sample, with those of earlier starts. A failure that is made small takes some thirty "
-            "more runs.",
+            help="What to use in all, with earlier starts: points to sample (64), wall time (2h, 90min), money for "
+            "the model (5usd), or several with commas, of which the first that is spent ends it. A failure that is "
+            "made small takes some thirty runs beyond the points.",
             metavar="N",
-            parser=whole_number(1, 1_000_000),
+            show_default=False,
         ),
     ],
     model: ModelName = "rules",
     sampler: Annotated[
-        str, typer.Option(help="How points are chosen: climb, random, sobol, lhs, cma or bayes.")
+        str, typer.Option(help="How points are chosen: climb, random, sobol, lhs, grid, cma or bayes.")
     ] = "climb",
     seed: Annotated[
         int, typer.Option(help="Seed of the sampler.", metavar="N", parser=whole_number(0, 2**31 - 1))
     ] = 0,
-    hours: Annotated[
-        float | None,
-        typer.Option(
-            help="Sample no further point after this many hours; rerun to continue.",
-            metavar="X",
-            parser=number(0.0001, 10_000),
-            show_default=False,
-        ),
-    ] = None,
     failures: Annotated[
         int, typer.Option(help="How many failures are made small.", metavar="N", parser=whole_number(0, 1000))
     ] = 5,
-    workers: Annotated[
-        int,
-        typer.Option(
-            help="How many of the points that are spread evenly run in parallel; what is learnt from them runs one "
-            "by one.",
-            metavar="N",
-            parser=whole_number(1, 4096),
-        ),
-    ] = 1,
+    workers: Workers = None,
+    executor: ExecutorName = "processes",
+    ray_address: RayAddress = None,
+    ray_send: RaySend = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder; an existing one is resumed.", show_default="runs/search-<space>-<agent>"),
@@ -82,22 +81,31 @@ def search(
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
-    """Search a space of situations and conditions for failures of an agent. Rerun the command to resume."""
+    """Search a space of situations and conditions for failures of an agent. Rerun the command to resume.
+
+    Points that are spread evenly run in parallel, or on a cluster; what is learnt from them runs here, one by one.
+    """
     from automotive_cosim.cli.console import Console
+    from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan
-    from automotive_cosim.run.processes import Processes
     from automotive_cosim.run.record import write_whole
+    from automotive_cosim.safety.budget import LAID, SearchBudget
     from automotive_cosim.safety.findings import as_json as findings_json
     from automotive_cosim.safety.findings import sentence
-    from automotive_cosim.safety.hunt import hunt
+    from automotive_cosim.safety.hunt import hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import even_points, make_sampler
     from automotive_cosim.safety.space import read_space, space_file
     from automotive_cosim.safety.trying import check_space, trial_of, trying
 
-    file = space_file(space_name)
-    if workers > 1 and hours is not None:
-        raise UserError("--hours ends a search between two points, which run one by one; omit it, or --workers")
+    file, may_use = space_file(space_name), SearchBudget.read(budget)
+    if sampler in ("lhs", "grid") and may_use.points is None:
+        raise UserError(f"the sampler {sampler} is laid out for a number of points; give one, as in --budget 64,2h")
+    check_prices((model,), Budget(usd=may_use.usd))
+    if may_use.points is may_use.hours is None and model.startswith(("rules", "replay/")):
+        raise UserError(
+            f"{model} costs nothing, so that {budget} never ends; give points or hours, as in 64,{budget}"
+        )
     space = read_space(file)
     plan = make_plan({"agents": [agent], "models": [model], "trials": [_plain(trial_of(space.nominal))]})
     plan.check()
@@ -112,33 +120,42 @@ def search(
         "seed": seed,
         "failures": failures,
     }
-    laid = _laid(folder, about, budget)
+    laid, used_s = _before(folder, about, may_use.points or LAID)
     chooses = make_sampler(sampler, space, laid, seed)
-    ends_s = None if hours is None else time.monotonic() + 3600 * hours
+    where = executor_of(executor, workers, ray_address, ray_send)
+    is_parallel = executor != "processes" or (workers or 1) > 1
 
     def tell(found: Hunt) -> None:
         last = found.samples[-1]
         if last.outcome.is_unrunnable:
             return
         margin = "not judged" if last.outcome.margin is None else f"margin {last.outcome.margin:+.2f}"
-        console.print(
-            f"{found.run} of {budget}; {margin}; {counted(len(found.minimal), 'minimal failure')}",
-            soft_wrap=True,
-        )
+        count = f"{found.run} of {may_use.points}" if may_use.points else f"{found.run}"
+        console.print(f"{count}; {margin}; {counted(len(found.minimal), 'minimal failure')}", soft_wrap=True)
 
-    with trying(space, plan, folder) as run:
-        write_whole(folder / SETTINGS, json.dumps(about | {"budget": laid}, indent=1))
-        if workers > 1 and run(space.nominal, 0).passed:
-            run.ahead(even_points(make_sampler(sampler, space, laid, seed), budget), Processes(workers))
+    with where, trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s) as run:
+
+        def note(row: TrialRow | None = None) -> None:
+            noted = about | {"budget": laid, "used_s": round(run.limit.used_s(), 1)}
+            write_whole(folder / SETTINGS, json.dumps(noted, indent=1))
+
+        note()
+        run.tell = note
+        if is_parallel and run(space.nominal, 0).passed:
+            run.ahead(even_points(make_sampler(sampler, space, laid, seed), min(laid, may_use.most_points)))
         found = hunt(
             space,
             run,
             chooses,
-            budget,
+            may_use.most_points,
             most_failures=failures,
-            goes_on=lambda: ends_s is None or time.monotonic() < ends_s,
             tell=tell,
         )
+        if found.minimal and agent not in CAREFUL:
+            careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})
+            with trying(space, careful, folder / CAREFUL_FOLDER) as watcher:
+                try_carefully(found, watcher)
+        note()
         page = write_findings(folder, found, agent, model, about)
     if save is not None:
         write_whole(save, suite(found, agent, model))
@@ -146,14 +163,16 @@ def search(
         typer.echo(json.dumps(findings_json(found) | {"out": str(folder)}))
         return
     console.print(sentence(found, agent), soft_wrap=True)
+    if found.stopped:
+        console.print(f"Stopped: {found.stopped}; rerun with a larger --budget to go on.", soft_wrap=True)
     for count, each in enumerate(found.minimal, 1):
         near = "" if each.neighbour is None else f"; passes with {each.differs} {each.neighbour[each.differs]}"
         console.print(f"{count}. fails with {each.words(space)}{near} [{each.why}]", markup=False, soft_wrap=True)
     console.print(f"Report: {page}", soft_wrap=True)
 
 
-def _laid(folder: Path, about: Json, budget: int) -> int:
-    """The budget that the sampler was first laid out for.
+def _before(folder: Path, about: Json, points: int) -> tuple[int, float]:
+    """The number of points that the sampler was first laid out for, and the seconds that earlier starts took.
 
     Raises:
         UserError: the folder's search was started with something else.
@@ -162,16 +181,16 @@ def _laid(folder: Path, about: Json, budget: int) -> int:
 
     path = folder / SETTINGS
     if not path.is_file():
-        return budget
+        return points, 0.0
     try:
         before: Json = dict(read_json(path))
-        laid = int(before.pop("budget"))
+        laid, used_s = int(before.pop("budget")), float(before.pop("used_s", 0.0))
     except (LookupError, TypeError, ValueError) as error:
         raise UserError(f"cannot read {path}: {error}; give --out another folder") from error
     changed = sorted(name for name in about if before.get(name) != about[name])
     if changed:
         raise UserError(f"{folder} was started with a different {', '.join(changed)}; give --out another folder")
-    return laid
+    return laid, used_s
 
 
 def _plain(trial: object) -> Json:

@@ -309,7 +309,7 @@ def _leader_brakes(setting: Setting) -> Causes:
     return replace(_mood("pressing", "pressing")(setting), incidents=(brakes,))
 
 
-def _ahead(what: Literal["breakdown", "roadworks", "jam", "tractor"]) -> Staging:
+def _ahead(what: Literal["breakdown", "roadworks", "left_sign", "jam", "tractor"]) -> Staging:
     """On the way; as a look-alike, on the other carriageway."""
 
     def stage(setting: Setting) -> Causes:
@@ -386,6 +386,7 @@ ON_REQUEST: Mapping[str, Staging] = {
     "cut_in": _cut_in,
     "cut_out": _cut_out,
     "leader_stops": _leader_stops,
+    "left_sign": _ahead("left_sign"),
 }
 """What the settings of a drive can stage; families draw from ``STAGINGS`` alone."""
 SCHOOL_ZONE = "school_zone"

@@ -216,6 +216,8 @@ def _story_action(action: XmlElement, at_s: float, actors: Sequence[_Vehicle], r
     if what.tag == "GlobalAction":
         _environment(what.one("EnvironmentAction"), at_s, read)
         return
+    if what.find("RoutingAction") is not None and (way := what.one("RoutingAction").find("FollowTrajectoryAction")):
+        raise way.refused("fixes where a vehicle is, which SUMO's drivers decide here; give a route and speeds")
     done = what.one("LongitudinalAction", "LateralAction")
     for vehicle in actors:
         if done.tag == "LongitudinalAction":

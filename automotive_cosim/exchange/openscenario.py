@@ -16,17 +16,16 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
-from math import cos, pi, radians, sin
+from math import pi
 from pathlib import Path
 
 from automotive_cosim.contracts import SeenVehicle, Weather
 from automotive_cosim.errors import UserError
+from automotive_cosim.exchange.bodies import FRONT_AXLE, GAP_S, REAR_AXLE, WHEEL_M, heading_rad, height_m, place_at
 from automotive_cosim.exchange.recording import Recording
 
 VERSIONS = "1.2", "1.3"
 """Of the standard that can be written."""
-FRONT_AXLE, REAR_AXLE = 0.2, 0.8
-"""Where the axles are, as shares of the length from the front bumper: our choice, as for a passenger car."""
 CATEGORIES = {
     "bicycle": "bicycle", "bus": "bus", "coach": "bus", "motorcycle": "motorbike", "moped": "motorbike",
     "truck": "truck", "trailer": "truck", "delivery": "van", "emergency": "van", "tram": "tram", "rail": "train",
@@ -42,8 +41,6 @@ OKTAS = "zero", "one", "two", "three", "four", "five", "six", "seven", "eight"
 KELVIN = 273.15
 SNOW = frozenset({71, 73, 75, 77, 85, 86})
 """WMO 4677."""
-GAP_S = 1.5
-"""A vehicle that was not seen for longer had left."""
 
 SeenEntity = tuple[float, SeenVehicle]
 
@@ -172,25 +169,23 @@ def _names(vehicle_ids: Iterable[str]) -> Mapping[str, str]:
 
 def reference_point(vehicle: SeenVehicle) -> tuple[float, float, float]:
     """The middle of its rear axle, x and y in metres, and its heading in radians, counter-clockwise from east."""
-    heading = radians(90 - vehicle.heading_deg)
-    back_m = REAR_AXLE * vehicle.length_m
-    return vehicle.x_m - back_m * cos(heading), vehicle.y_m - back_m * sin(heading), heading
+    return *place_at(vehicle, REAR_AXLE), heading_rad(vehicle)
 
 
 def _vehicle(parent: ET.Element, name: str, seen: SeenVehicle) -> None:
-    length_m, height_m = seen.length_m, 1.5 if seen.length_m < 5.5 else 3.0
+    length_m, tall_m = seen.length_m, height_m(seen)
     role = {"role": "ambulance"} if seen.kind == "emergency" else {}
     made = _add(parent, "Vehicle", name=name, vehicleCategory=CATEGORIES.get(seen.kind, "car"), **role)
     box = _add(made, "BoundingBox")
-    _add(box, "Center", x=round((REAR_AXLE - 0.5) * length_m, 3), y=0, z=height_m / 2)
-    _add(box, "Dimensions", width=seen.width_m, length=length_m, height=height_m)
+    _add(box, "Center", x=round((REAR_AXLE - 0.5) * length_m, 3), y=0, z=tall_m / 2)
+    _add(box, "Dimensions", width=seen.width_m, length=length_m, height=tall_m)
     _add(made, "Performance", maxSpeed=70, maxAcceleration=10, maxDeceleration=10)
     axles = _add(made, "Axles")
     places_m = {"FrontAxle": round((REAR_AXLE - FRONT_AXLE) * length_m, 3), "RearAxle": 0.0}
     for axle, place_m in places_m.items():
         _add(
-            axles, axle, maxSteering=0.5 if place_m else 0.0, wheelDiameter=0.6, trackWidth=seen.width_m,
-            positionX=place_m, positionZ=0.3,
+            axles, axle, maxSteering=0.5 if place_m else 0.0, wheelDiameter=WHEEL_M, trackWidth=seen.width_m,
+            positionX=place_m, positionZ=WHEEL_M / 2,
         )  # fmt: skip
     properties = _add(made, "Properties")
     _add(properties, "Property", name="sumo:vClass", value=seen.kind)

@@ -8,12 +8,14 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import astuple, fields
 from pathlib import Path
+from typing import Any
 
 from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.errors import SetupError
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.run.record import write_whole
 
+NEEDS = "Parquet needs pandas and pyarrow: pip install 'automotive-cosim[parquet]'"
 COLUMNS = ("at_s", *(entry.name for entry in fields(SeenVehicle)))
 """Those of the tables; times are those of the record: 0 is the hand-over, or a drive's departure."""
 
@@ -46,11 +48,21 @@ def write_parquet(recording: Recording, target: Path) -> None:
     """
     try:
         import pandas as pd
+    except ImportError as error:
+        raise SetupError(NEEDS) from error
+    write_frame(pd.DataFrame(_lines(recording), columns=list(COLUMNS)), target)
 
-        frame = pd.DataFrame(_lines(recording), columns=list(COLUMNS))
+
+def write_frame(frame: Any, target: Path) -> None:
+    """Writes a data frame as Parquet.
+
+    Raises:
+        SetupError: the extra ``parquet`` is not installed.
+    """
+    try:
         frame.to_parquet(target, index=False)
     except ImportError as error:
-        raise SetupError("Parquet needs pandas and pyarrow: pip install 'automotive-cosim[parquet]'") from error
+        raise SetupError(NEEDS) from error
 
 
 def write_fcd(recording: Recording, target: Path) -> None:

@@ -16,8 +16,12 @@ from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from itertools import combinations, pairwise
 from math import acos, cos, degrees, hypot, radians, sin
+from typing import Any, NamedTuple
+
+import numpy as np
 
 from automotive_cosim.contracts import SeenVehicle
+from automotive_cosim.errors import SetupError
 from automotive_cosim.measures.formulas import (
     crossing_drac_mps2,
     crossing_time_to_collision_s,
@@ -48,6 +52,8 @@ MASSES_KG = {
 
 RoadScene = tuple[float, Sequence[SeenVehicle]]
 """Simulation time, and every vehicle then."""
+_Headed = tuple[SeenVehicle, float, float]
+"""A vehicle and its direction: east and north of a step of 1."""
 
 
 class EncounterKind(StrEnum):
@@ -67,9 +73,11 @@ class PairOrder(StrEnum):
     MEETS = "meets"
 
 
-@dataclass(frozen=True, slots=True)
-class PairReading:
-    """Two vehicles at one instant. A measure that does not apply is None."""
+class PairReading(NamedTuple):
+    """Two vehicles at one instant. A measure that does not apply is None.
+
+    A named tuple, as there are many and one is made in a fifth of the time of a frozen dataclass.
+    """
 
     time_s: float
     vehicle: str
@@ -135,25 +143,15 @@ def pair_readings(
         ego: only pairs with this vehicle; None for all pairs.
         thresholds: range, angles and reaction time.
     """
-    before: dict[str, float] = {}
-    before_s = 0.0
-    for time_s, vehicles in scenes:
-        brakes = {
-            each.vehicle_id: (before[each.vehicle_id] - each.speed_mps) / (time_s - before_s)
-            for each in vehicles
-            if each.vehicle_id in before and time_s > before_s
-        }
-        if ego is None:
-            pairs: Iterable[tuple[SeenVehicle, SeenVehicle]] = combinations(vehicles, 2)
-        else:
-            mine = [each for each in vehicles if each.vehicle_id == ego]
-            pairs = ((mine[0], each) for each in vehicles if each is not mine[0]) if mine else ()
-        for vehicle, other in pairs:
-            if abs(vehicle.x_m - other.x_m) + abs(vehicle.y_m - other.y_m) <= 1.5 * thresholds.range_m:
-                found = _reading(time_s, vehicle, other, brakes, thresholds)
-                if found is not None:
-                    yield found
-        before, before_s = {each.vehicle_id: each.speed_mps for each in vehicles}, time_s
+    before: RoadScene | None = None
+    for scene in scenes:
+        time_s, vehicles = scene
+        brakes = _Brakes(before, time_s)
+        for mine, other in _close_pairs(vehicles, ego, thresholds.range_m):
+            found = _reading(time_s, mine, other, brakes, thresholds)
+            if found is not None:
+                yield found
+        before = scene
 
 
 def encounters(
@@ -178,37 +176,107 @@ def as_csv(rows: Iterable[Encounter] | Iterable[PairReading], kind: type[Encount
     """The rows as a table with a column for each field; what is None is empty."""
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    names = [entry.name for entry in fields(kind)]
+    names = _names(kind)
     writer.writerow(names)
     writer.writerows([_plain(getattr(row, name)) for name in names] for row in rows)
     return text.getvalue()
 
 
+def _names(kind: type[Encounter] | type[PairReading]) -> list[str]:
+    return list(PairReading._fields) if kind is PairReading else [entry.name for entry in fields(Encounter)]
+
+
+def as_frame(rows: Iterable[Encounter] | Iterable[PairReading], kind: type[Encounter] | type[PairReading]) -> Any:
+    """The same as a pandas data frame; what is None is missing, and kinds and orders are texts.
+
+    Raises:
+        SetupError: pandas is not installed.
+    """
+    try:
+        import pandas as pd
+    except ImportError as missing:
+        raise SetupError("data frames need pandas: pip install 'automotive-cosim[report]'") from missing
+    names = _names(kind)
+    texts = [name for name in names if name in ("vehicle", "other", "kind", "order")]
+    table = [
+        [str(value) if isinstance(value := getattr(row, name), StrEnum) else value for name in names]
+        for row in rows
+    ]
+    return pd.DataFrame(table, columns=names).astype(
+        {name: "str" if name in texts else "Float64" for name in names}
+    )
+
+
 # --- one instant ---------------------------------------------------------------------------------------------
 
 
+def _close_pairs(
+    vehicles: Sequence[SeenVehicle], ego: str | None, range_m: float
+) -> Iterator[tuple[_Headed, _Headed]]:
+    """The pairs in range, with directions."""
+    if ego is None:
+        places = np.array([(each.x_m, each.y_m) for each in vehicles]).reshape(-1, 2)
+        apart = places[:, None, :] - places[None, :, :]
+        ones, others = np.nonzero(np.triu((apart**2).sum(axis=2) <= range_m**2, 1))
+        headed = [_headed(each) for each in vehicles]
+        yield from ((headed[one], headed[other]) for one, other in zip(ones.tolist(), others.tolist(), strict=True))
+        return
+    mine = next((each for each in vehicles if each.vehicle_id == ego), None)
+    if mine is None:
+        return
+    x_m, y_m, most_m2, own = mine.x_m, mine.y_m, range_m**2, _headed(mine)
+    for each in vehicles:
+        if (each.x_m - x_m) ** 2 + (each.y_m - y_m) ** 2 <= most_m2 and each is not mine:
+            yield own, _headed(each)
+
+
+def _headed(vehicle: SeenVehicle) -> _Headed:
+    heading = radians(vehicle.heading_deg)
+    return vehicle, sin(heading), cos(heading)
+
+
+class _Brakes:
+    """How hard vehicles brake at an instant; looked up for the few that lead."""
+
+    __slots__ = ("_before", "_speeds_mps", "_time_s")
+
+    def __init__(self, before: RoadScene | None, time_s: float) -> None:
+        self._before, self._time_s = before, time_s
+        self._speeds_mps: dict[str, float] | None = None
+
+    def of(self, vehicle: SeenVehicle) -> float:
+        """Deceleration since the instant before, at least 0."""
+        if self._before is None or self._time_s <= self._before[0]:
+            return 0.0
+        if self._speeds_mps is None:
+            self._speeds_mps = {each.vehicle_id: each.speed_mps for each in self._before[1]}
+        was_mps = self._speeds_mps.get(vehicle.vehicle_id, 0.0)
+        return max(0.0, (was_mps - vehicle.speed_mps) / (self._time_s - self._before[0]))
+
+
 def _reading(
-    time_s: float, vehicle: SeenVehicle, other: SeenVehicle, brakes: dict[str, float], thresholds: Thresholds
+    time_s: float, mine: _Headed, theirs: _Headed, brakes: _Brakes, thresholds: Thresholds
 ) -> PairReading | None:
-    if hypot(vehicle.x_m - other.x_m, vehicle.y_m - other.y_m) > thresholds.range_m:
-        return None
-    angle_deg = abs((vehicle.heading_deg - other.heading_deg + 180) % 360 - 180)
+    angle_deg = abs((mine[0].heading_deg - theirs[0].heading_deg + 180) % 360 - 180)
     if angle_deg < thresholds.following_below_deg:
-        return _following(time_s, vehicle, other, brakes, thresholds)
+        return _following(time_s, mine, theirs, brakes, thresholds)
     if angle_deg > ONCOMING_ABOVE_DEG:
-        return _oncoming(time_s, vehicle, other, thresholds)
+        return _oncoming(time_s, mine, theirs, thresholds)
     kind = EncounterKind.CROSSING if angle_deg > thresholds.crossing_above_deg else EncounterKind.MERGING
-    return _crossing(time_s, vehicle, other, kind)
+    return _crossing(time_s, mine, theirs, kind)
 
 
 def _following(
-    time_s: float, vehicle: SeenVehicle, other: SeenVehicle, brakes: dict[str, float], thresholds: Thresholds
+    time_s: float, mine: _Headed, theirs: _Headed, brakes: _Brakes, thresholds: Thresholds
 ) -> PairReading | None:
-    east, north = _direction(vehicle)
+    vehicle, east, north = mine
+    other = theirs[0]
     is_behind = (other.x_m - vehicle.x_m) * east + (other.y_m - vehicle.y_m) * north >= 0
-    back, front = (vehicle, other) if is_behind else (other, vehicle)
-    along_m, aside_m = _to_rear(back, front)
-    if aside_m >= (back.width_m + front.width_m) / 2 or along_m <= -front.length_m:
+    (back, east, north), (front, front_east, front_north) = (mine, theirs) if is_behind else (theirs, mine)
+    dx_m = front.x_m - front.length_m * front_east - back.x_m
+    dy_m = front.y_m - front.length_m * front_north - back.y_m
+    along_m = dx_m * east + dy_m * north
+    if abs(dx_m * north - dy_m * east) >= (back.width_m + front.width_m) / 2 or along_m <= -front.length_m:
         return None
     gap_m, closing_mps = max(0.0, along_m), back.speed_mps - front.speed_mps
     return PairReading(
@@ -221,19 +289,15 @@ def _following(
         time_to_collision_s(gap_m, closing_mps),
         drac_mps2(gap_m, closing_mps),
         mdrac_mps2(gap_m, closing_mps, thresholds.reaction_s),
-        required_deceleration_mps2(
-            gap_m, back.speed_mps, front.speed_mps, max(0.0, brakes.get(front.vehicle_id, 0.0))
-        ),
+        required_deceleration_mps2(gap_m, back.speed_mps, front.speed_mps, brakes.of(front)),
         gap_time_s(gap_m, back.speed_mps),
         headway_time_s(gap_m, front.length_m, back.speed_mps),
-        _delta_v(vehicle, other),
+        _delta_v(mine, theirs),
     )
 
 
-def _oncoming(
-    time_s: float, vehicle: SeenVehicle, other: SeenVehicle, thresholds: Thresholds
-) -> PairReading | None:
-    east, north = _direction(vehicle)
+def _oncoming(time_s: float, mine: _Headed, theirs: _Headed, thresholds: Thresholds) -> PairReading | None:
+    (vehicle, east, north), other = mine, theirs[0]
     dx_m, dy_m = other.x_m - vehicle.x_m, other.y_m - vehicle.y_m
     gap_m, aside_m = dx_m * east + dy_m * north, abs(dx_m * north - dy_m * east)
     if gap_m <= 0 or aside_m >= (vehicle.width_m + other.width_m) / 2:
@@ -252,18 +316,18 @@ def _oncoming(
         None,
         None,
         None,
-        _delta_v(vehicle, other),
+        _delta_v(mine, theirs),
     )
 
 
-def _crossing(time_s: float, vehicle: SeenVehicle, other: SeenVehicle, kind: EncounterKind) -> PairReading | None:
+def _crossing(time_s: float, mine: _Headed, theirs: _Headed, kind: EncounterKind) -> PairReading | None:
     """Two whose straight paths cross ahead of both, or on which one of them is already."""
-    (ax, ay), (bx, by) = _direction(vehicle), _direction(other)
+    (vehicle, ax, ay), (other, bx, by) = mine, theirs
+    if vehicle.speed_mps <= 0 or other.speed_mps <= 0:
+        return None
     dx_m, dy_m = other.x_m - vehicle.x_m, other.y_m - vehicle.y_m
     turn = ax * by - ay * bx
     mine_m, theirs_m = (dx_m * by - dy_m * bx) / turn, (dx_m * ay - dy_m * ax) / turn
-    if vehicle.speed_mps <= 0 or other.speed_mps <= 0:
-        return None
     is_first = mine_m / vehicle.speed_mps <= theirs_m / other.speed_mps
     first, second, first_m, second_m = (
         (vehicle, other, mine_m, theirs_m) if is_first else (other, vehicle, theirs_m, mine_m)
@@ -288,25 +352,12 @@ def _crossing(time_s: float, vehicle: SeenVehicle, other: SeenVehicle, kind: Enc
         needed_mps2,
         None,
         None,
-        _delta_v(vehicle, other),
+        _delta_v(mine, theirs),
     )
 
 
-def _direction(vehicle: SeenVehicle) -> tuple[float, float]:
-    heading = radians(vehicle.heading_deg)
-    return sin(heading), cos(heading)
-
-
-def _to_rear(back: SeenVehicle, front: SeenVehicle) -> tuple[float, float]:
-    """Metres from one's front to the other's rear, along the first one's heading and aside."""
-    (east, north), (fx, fy) = _direction(back), _direction(front)
-    dx_m = front.x_m - front.length_m * fx - back.x_m
-    dy_m = front.y_m - front.length_m * fy - back.y_m
-    return dx_m * east + dy_m * north, abs(dx_m * north - dy_m * east)
-
-
-def _delta_v(vehicle: SeenVehicle, other: SeenVehicle) -> float:
-    (ax, ay), (bx, by) = _direction(vehicle), _direction(other)
+def _delta_v(mine: _Headed, theirs: _Headed) -> float:
+    (vehicle, ax, ay), (other, bx, by) = mine, theirs
     passenger_kg = MASSES_KG["passenger"]
     return delta_v_mps(
         MASSES_KG.get(vehicle.kind, passenger_kg),

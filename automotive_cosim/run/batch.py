@@ -338,13 +338,8 @@ class _Batch(Generic[J, R]):
         self._give_up_like(job, row)
 
     def _note_spent(self) -> None:
-        if self._limit is None:
-            return
-        path = self._store.folder / SPENT
-        try:
-            write_whole(path, json.dumps(asdict(self._limit.spent())) + "\n")
-        except OSError as error:
-            raise cannot_write(self._store.folder, error) from error
+        if self._limit is not None:
+            note_spent(self._store, self._limit)
 
     def _give_up_like(self, job: J, row: R) -> None:
         """Records the jobs whose situation is known not to arise as errors, without another attempt."""
@@ -352,6 +347,18 @@ class _Batch(Generic[J, R]):
             for other in self._alike.pop(job.situation, []):
                 if self._queue.remove(other):
                     self._ended(other, self._failed(other, row.error_kind, row.error))
+
+
+def note_spent(store: Store[R], meter: MeterHandle) -> None:
+    """Writes down what has been spent, for ``spent_before`` of a later start.
+
+    Raises:
+        UserError: it cannot be written.
+    """
+    try:
+        write_whole(store.folder / SPENT, json.dumps(asdict(meter.spent())) + "\n")
+    except OSError as error:
+        raise cannot_write(store.folder, error) from error
 
 
 def spent_before(store: Store[R]) -> Spent:

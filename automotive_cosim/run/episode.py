@@ -6,7 +6,7 @@ find -> take over -> brief -> (act -> step)* -> verdict -> aftermath
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import ExitStack, closing, suppress
+from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
 from typing import Annotated, Any, Protocol, runtime_checkable
 
@@ -297,12 +297,15 @@ class _Run:
         return stages
 
     def _watch_aftermath(self, episode: Episode) -> None:
-        # The verdict exists: a simulation that fails now is not an error of the episode.
-        with suppress(InfrastructureError):
+        try:
             for _ in range(int(AFTERMATH_S)):
                 self._after += episode.aftermath(1.0)
             if episode.instance.task.second is not None:
                 self._baseline = episode.baseline.until(self._watched(episode)[-1].time_s)
+        except InfrastructureError:
+            # The figures of the row count the aftermath: without it they would not be those of another run.
+            episode.verdict = None
+            raise
 
     def _watched(self, episode: Episode) -> list[Moment]:
         """Moments from the hand-over to the end of the aftermath."""

@@ -5,19 +5,25 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from math import prod
 
 import numpy as np
+from numpy.typing import NDArray
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
-from automotive_cosim.safety.space import Factor, FactorRange, SearchPoint, told
+from automotive_cosim.safety.space import BINS, Factor, FactorRange, FactorValue, SearchPoint, told
 
 CONFIDENCE_WORDS = f"{100 * CONFIDENCE:.0f} %"
 LEAST_EVEN = 12
 """Fewer points say nothing about a factor's share."""
+POINTS_A_PART, MOST_PARTS = 8, 16
+"""Points for each of the finer parts into which a range is cut to see what it explains, and how many at most."""
+MOST_MAPS, MOST_COLUMNS = 3, 12
+"""Maps of two factors, and levels of the second that fit beside each other."""
 MOST_PAIRS = 30
 """Rows of the table of two factors."""
 
@@ -65,14 +71,20 @@ def explained(found: Hunt, point: SearchPoint) -> MinimalFailure | None:
     return next((each for each in found.minimal if each.covers(found.space, point)), None)
 
 
-def coverage(found: Hunt) -> tuple[int, int]:
-    """How many pairs of levels of two factors were tried, and how many there are (2-wise coverage)."""
+def coverage(found: Hunt, together: int = 2) -> tuple[int, int]:
+    """How many combinations of levels of so many factors were tried, and how many there are (t-wise coverage)."""
     points = [each.point for each in judged(found.tried)]
     covered = total = 0
-    for one, other in combinations(_varied(found), 2):
-        total += len(set(one.levels)) * len(set(other.levels))
-        covered += len({(one.level(point[one.name]), other.level(point[other.name])) for point in points})
+    for factors in combinations(_varied(found), together):
+        total += prod(len(set(factor.levels)) for factor in factors)
+        covered += len({tuple(factor.level(point[factor.name]) for factor in factors) for point in points})
     return covered, total
+
+
+def prevented(found: Hunt) -> tuple[int, int]:
+    """How many minimal failures a careful watcher prevents, of those at which it was tried."""
+    tried = [each.prevented for each in found.minimal if each.prevented is not None]
+    return sum(tried), len(tried)
 
 
 def tables(found: Hunt) -> list[Table]:
@@ -83,6 +95,7 @@ def tables(found: Hunt) -> list[Table]:
         _rates(found),
         _sensitivity(found),
         _pairs(found),
+        *_maps(found),
         _unsteady(found),
         _errors(found),
     )
@@ -94,15 +107,17 @@ def _failures(found: Hunt) -> Table:
     samples = judged(found.samples)
     for number, each in enumerate(found.minimal, 1):
         count = sum(tried.outcome.failed and each.covers(found.space, tried.point) for tried in samples)
-        lines.append((str(number), each.words(found.space), each.why, _passes(each), str(count)))
+        careful = {None: "not tried", True: "prevents it", False: "fails too"}[each.prevented]
+        lines.append((str(number), each.words(found.space), each.why, _passes(each), careful, str(count)))
     return Table(
         "failures",
         "Minimal failures",
-        ("No.", "Fails with", "What is missing", "Passes with", "Samples it explains"),
+        ("No.", "Fails with", "What is missing", "Passes with", "A careful watcher", "Samples it explains"),
         tuple(lines),
         f"Each failed {REPEATS} times of {REPEATS}. Factors that are not named are nominal; numbers are bisected. "
-        "failures/NN.toml replays the failure and the nearest passing neighbour: automotive-cosim eval --plan.",
-        heads=4,
+        "The careful watcher is the reference: rule-perfect on drives, oracle on tasks. failures/NN.toml replays "
+        "the failure and the nearest passing neighbour: automotive-cosim eval --plan.",
+        heads=5,
     )
 
 
@@ -113,7 +128,7 @@ def _passes(each: MinimalFailure) -> str:
 
 
 def _unseen(found: Hunt) -> Table:
-    bound, (covered, total) = unseen(found), coverage(found)
+    bound, (averted, tried) = unseen(found), prevented(found)
     samples = judged(found.samples)
 
     def share(value: float | None) -> str:
@@ -131,10 +146,15 @@ def _unseen(found: Hunt) -> Table:
             (f"Failure rate in the space at most ({CONFIDENCE_WORDS})", share(bound.upper)),
             ("Failures among them that no minimal failure explains", str(bound.unexplained)),
             (f"Rate of such failures at most ({CONFIDENCE_WORDS})", share(bound.unseen_upper)),
-            (
-                "Pairs of levels of two factors tried",
-                f"{covered} of {total} ({100 * covered / max(1, total):.0f} %)",
+            *(
+                (f"{name} tried", f"{covered} of {total} ({100 * covered / max(1, total):.0f} %)")
+                for name, (covered, total) in (
+                    ("Pairs of levels of two factors", coverage(found)),
+                    ("Triples of levels of three", coverage(found, 3)),
+                )
+                if total
             ),
+            *([("Minimal failures that a careful watcher prevents", f"{averted} of {tried}")] if tried else []),
         ),
         "Bounds are one-sided, by Clopper and Pearson (3/n if none was seen), over the points that were drawn from "
         "the whole space; points to which a search was drawn by failures do not count. They hold for this space "
@@ -159,7 +179,9 @@ def sensitivity(found: Hunt) -> list[tuple[Factor, float, float | None]]:
     represent the whole space; and its rank correlation with the margin if it is an ordered number.
 
     The share is the correlation ratio of the margin's means by level, corrected for the number of levels (epsilon
-    squared, Kelley 1935): a first-order Sobol index from given data. Empty with fewer than ``LEAST_EVEN`` points.
+    squared, Kelley 1935): a first-order Sobol index from given data. Ranges are cut into few parts, which see small
+    effects, and into as many as the points allow, which see what rises and falls; the larger share counts. Empty
+    with fewer than ``LEAST_EVEN`` points.
     """
     even = [each for each in judged(found.samples) if each.even]
     margins = np.array([each.outcome.margin for each in even], dtype=float)
@@ -168,20 +190,35 @@ def sensitivity(found: Hunt) -> list[tuple[Factor, float, float | None]]:
         return []
     shares = []
     for factor in _varied(found):
-        levels = np.array([factor.level(each.point[factor.name]) for each in even])
-        groups = [margins[levels == level] for level in dict.fromkeys(levels.tolist())]
-        within = sum(float(((group - group.mean()) ** 2).sum()) for group in groups)
-        freedom = len(even) - len(groups)
-        share = 1 - (within / freedom) / (total / (len(even) - 1)) if freedom > 0 else 0.0
+        values = [each.point[factor.name] for each in even]
+        share = max(
+            _explained(margins, _parts(factor, values, count)) for count in (BINS, len(even) // POINTS_A_PART)
+        )
         rank = None
         if isinstance(factor, FactorRange) and factor.is_ordered:
             from scipy.stats import rankdata
 
-            values = [factor.unit(each.point[factor.name]) for each in even]
             if len(set(values)) > 1:  # Spearman's
-                rank = float(np.corrcoef(rankdata(values), rankdata(margins))[0, 1])
-        shares.append((factor, min(1.0, max(0.0, share)), rank))
+                rank = float(np.corrcoef(rankdata(list(map(factor.unit, values))), rankdata(margins))[0, 1])
+        shares.append((factor, share, rank))
     return sorted(shares, key=lambda entry: -entry[1])
+
+
+def _explained(margins: NDArray[np.float64], levels: Sequence[str]) -> float:
+    """The share of the variance between levels (epsilon squared), at least 0."""
+    names = np.array(levels)
+    groups = [margins[names == level] for level in dict.fromkeys(levels)]
+    within = sum(float(((group - group.mean()) ** 2).sum()) for group in groups)
+    total, freedom = float(((margins - margins.mean()) ** 2).sum()), len(margins) - len(groups)
+    return max(0.0, 1 - (within / freedom) / (total / (len(margins) - 1))) if freedom > 0 else 0.0
+
+
+def _parts(factor: Factor, values: Sequence[FactorValue], count: int) -> list[str]:
+    """The level of each value; of a range, which of so many equal parts."""
+    if not isinstance(factor, FactorRange) or len(factor.levels) != BINS:
+        return [factor.level(value) for value in values]
+    parts = max(BINS, min(MOST_PARTS, count))
+    return [str(min(parts - 1, int(factor.unit(value) * parts))) for value in values]
 
 
 def _sensitivity(found: Hunt) -> Table:
@@ -232,6 +269,34 @@ def _pairs(found: Hunt) -> Table:
     )
 
 
+def _maps(found: Hunt) -> list[Table]:
+    """Maps of the failures over two factors, for the pairs of factors with the worst pairs of levels."""
+    samples = judged(found.samples)
+    worst: list[tuple[float, str, Factor, Factor, dict[tuple[str, str], list[bool]]]] = []
+    for one, other in combinations(_varied(found), 2):
+        cells: dict[tuple[str, str], list[bool]] = {}
+        for each in samples:
+            cell = one.level(each.point[one.name]), other.level(each.point[other.name])
+            cells.setdefault(cell, []).append(each.outcome.failed)
+        low = max((wilson(sum(failed), len(failed)).low for failed in cells.values() if any(failed)), default=0.0)
+        if low > 0 and len(set(other.levels)) <= MOST_COLUMNS:
+            worst.append((-low, f"{one.name} and {other.name}", one, other, cells))
+    made = []
+    for number, (_, names, one, other, cells) in enumerate(sorted(worst, key=lambda each: each[:2])[:MOST_MAPS], 1):
+        columns = tuple(dict.fromkeys(other.levels))
+        rows = tuple(
+            (row, *(_share_of(cells.get((row, column), ())) for column in columns))
+            for row in dict.fromkeys(one.levels)
+        )
+        note = f"Failures of samples. Rows are {one.name}, columns {other.name}; – was not sampled."
+        made.append(Table(f"map_{number}", f"Map of {names}", (one.name, *columns), rows, note))
+    return made
+
+
+def _share_of(failed: Sequence[bool]) -> str:
+    return f"{sum(failed)} of {len(failed)}" if failed else "–"
+
+
 def _cell(
     one: Factor, other: Factor, cell: tuple[str, str], failed: Sequence[bool]
 ) -> tuple[float, str, str, str, str]:
@@ -279,7 +344,8 @@ def sentence(found: Hunt, agent: str) -> str:
 
 def as_json(found: Hunt) -> Json:
     """The findings as a JSON object."""
-    bound, (covered, total) = unseen(found), coverage(found)
+    bound, (covered, total), (triples, of_triples) = unseen(found), coverage(found), coverage(found, 3)
+    averted, tried = prevented(found)
     samples = judged(found.samples)
     return {
         "samples": len(samples),
@@ -290,6 +356,10 @@ def as_json(found: Hunt) -> Json:
         "unseen_rate_upper": bound.unseen_upper,
         "pairs_covered": covered,
         "pairs": total,
+        "triples_covered": triples,
+        "triples": of_triples,
+        "careful_prevents": averted,
+        "careful_tried": tried,
         "stopped": found.stopped,
         "failures": [
             {
@@ -300,6 +370,7 @@ def as_json(found: Hunt) -> Json:
                 "differs": each.differs,
                 "trial": each.trial,
                 "neighbour_trial": each.neighbour_trial,
+                "careful_prevents": each.prevented,
             }
             for each in found.minimal
         ],

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import StrEnum
 
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.samplers import Sampler
 from automotive_cosim.safety.space import FactorRange, FactorValue, PointKey, SearchPoint, Space, key_of, told
@@ -16,6 +16,8 @@ REPEATS = 3
 BISECTIONS = 4
 """Halvings between a number that fails and the nominal one: to a sixteenth of the distance."""
 
+MOST_STALE = 1000
+"""Points in a row that were all known, after which a space of few points is taken to be used up."""
 MOST_ASKED = 20
 """Points that a sampler is asked for at most, for each that is run."""
 
@@ -61,6 +63,8 @@ class MinimalFailure:
     why: str
     trial: str
     neighbour_trial: str
+    prevented: bool | None = None
+    """Whether a careful watcher passes there; None if it was not tried or judged."""
 
     def covers(self, space: Space, point: SearchPoint) -> bool:
         """Whether a point has all that this failure needs, and perhaps more of it."""
@@ -121,7 +125,6 @@ def hunt(
     budget: int,
     *,
     most_failures: int = 5,
-    goes_on: Callable[[], bool] = lambda: True,
     tell: Callable[[Hunt], None] = lambda found: None,
 ) -> Hunt:
     """Searches a space.
@@ -133,11 +136,11 @@ def hunt(
         budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
             reductions come in addition: about thirty runs a failure.
         most_failures: how many failures are made small; those that one of them explains are not.
-        goes_on: asked before each point; whether there is time left.
         tell: called after each point.
 
     Raises:
         UserError: the nominal point fails, or cannot be run.
+        BudgetSpentError: ``evaluate`` refused the nominal point; a later refusal ends the search.
     """
     found = Hunt(space)
     run = _Runner(found, evaluate)
@@ -147,20 +150,38 @@ def hunt(
         raise UserError(
             f"the nominal point {why}; give nominal values, the first of each list, under which the agent passes"
         )
+    stale = 0
     for _ in range(MOST_ASKED * budget):
         if found.run >= budget:
             break
-        if not goes_on():
-            found.stopped = "its time is over"
+        if stale >= MOST_STALE:
+            found.stopped = f"nothing new in {MOST_STALE} points"
             break
         point, even = sampler.ask()
-        tried = run(Phase.SAMPLE, point, even=even)
-        margin = tried.outcome.margin
-        sampler.tell(point, 1.0 if margin is None else margin)
-        if tried.outcome.failed and not any(each.covers(space, point) for each in found.minimal):
-            _reduce(run, tried, most_failures)
+        stale = 0 if run.is_new(point) else stale + 1
+        try:
+            tried = run(Phase.SAMPLE, point, even=even)
+            margin = tried.outcome.margin
+            sampler.tell(point, 1.0 if margin is None else margin)
+            if tried.outcome.failed and not any(each.covers(space, point) for each in found.minimal):
+                _reduce(run, tried, most_failures)
+        except BudgetSpentError as spent:
+            found.stopped = str(spent)
+            break
         tell(found)
     return found
+
+
+def try_carefully(found: Hunt, careful: Evaluate) -> None:
+    """Notes which minimal failures a careful watcher prevents, as ISO 34502 asks of a preventable situation.
+
+    Args:
+        found: the search; changed in place.
+        careful: runs a point with that watcher.
+    """
+    for number, each in enumerate(found.minimal):
+        outcome = careful(each.point, 0)
+        found.minimal[number] = replace(each, prevented=None if outcome.margin is None else outcome.passed)
 
 
 class _Runner:
@@ -181,12 +202,24 @@ class _Runner:
             self.found.tried.append(tried)
         return tried
 
+    def is_new(self, point: SearchPoint) -> bool:
+        """Whether a point has not been run."""
+        return (key_of(point), 0) not in self._known
+
     def is_steady(self, point: SearchPoint) -> bool:
         """Whether a point fails each time."""
         return all(self(Phase.REPEAT, point, repeat).outcome.failed for repeat in range(1, REPEATS))
 
 
 def _reduce(run: _Runner, first: Tried, most: int) -> None:
+    try:
+        _sort_out(run, first, most)
+    except BudgetSpentError:
+        run.found.not_reduced.append(first)
+        raise
+
+
+def _sort_out(run: _Runner, first: Tried, most: int) -> None:
     found = run.found
     if not run.is_steady(first.point):
         found.unsteady.append(first)

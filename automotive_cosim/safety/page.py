@@ -12,6 +12,7 @@ from automotive_cosim.report.templates import render
 from automotive_cosim.run.plan import PlannedTrial
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write, read_manifest
+from automotive_cosim.safety.curves import curves
 from automotive_cosim.safety.findings import as_json, sentence, tables
 from automotive_cosim.safety.hunt import Hunt, MinimalFailure, Tried
 from automotive_cosim.safety.space import SearchPoint, told
@@ -100,6 +101,7 @@ def _page(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> str
         failures=len(found.minimal),
         errors=sum(each.outcome.margin is None for each in found.tried),
         tables=made,
+        curves=curves(found),
         starts=read_manifest(folder)["starts"],
         stand_in=model == "rules",
     )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from math import ceil, log2
+from math import ceil, log2, prod
 from typing import Any, Protocol
 
 import numpy as np
@@ -88,6 +88,43 @@ class EvenSampler:
 
     def tell(self, point: SearchPoint, margin: float) -> None:
         """Learns nothing."""
+
+
+class GridSampler:
+    """Takes every value of every list with the middles of equal parts of every range, in random order."""
+
+    def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
+        """Cuts the ranges into as many parts as ``budget`` points allow, but at least one."""
+        counts = [len(each.values) if isinstance(each, FactorChoices) else 1 for each in space.factors]
+        most = [_most_parts(each) for each in space.factors]
+        parts, finer = 1, counts
+        while prod(finer) <= budget:
+            counts, parts = finer, parts + 1
+            finer = [max(count, min(parts, limit)) for count, limit in zip(counts, most, strict=True)]
+            if finer == counts and parts > max(most):
+                break
+        self._space, self._rng, self._counts = space, rng, counts
+        self._left = [int(number) for number in rng.permutation(prod(counts))[:budget]]
+
+    def ask(self) -> tuple[SearchPoint, bool]:
+        """The next of them; random ones once they are used up."""
+        if not self._left:
+            return self._space.at(self._rng.random(self._space.dimensions).tolist()), True
+        number, units = self._left.pop(), []
+        for count in self._counts:
+            number, place = divmod(number, count)
+            units.append((place + 0.5) / count)
+        return self._space.at(units), True
+
+    def tell(self, point: SearchPoint, margin: float) -> None:
+        """Learns nothing."""
+
+
+def _most_parts(factor: Factor) -> int:
+    """Into how many parts a factor can be cut."""
+    if isinstance(factor, FactorChoices):
+        return len(factor.values)
+    return round(factor.most - factor.least) + 1 if factor.whole else 1000
 
 
 class ClimbSampler:
@@ -231,6 +268,7 @@ SAMPLERS: Mapping[str, Callable[[Space, int, np.random.Generator], Sampler]] = {
     "random": RandomSampler,
     "sobol": EvenSampler,
     "lhs": _latin,
+    "grid": GridSampler,
     "cma": CmaSampler,
     "bayes": BayesSampler,
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass, replace
@@ -9,18 +10,21 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.run import worker
-from automotive_cosim.run.batch import FINAL_KINDS, run_jobs
+from automotive_cosim.run.batch import FINAL_KINDS, Progress, note_spent, run_jobs, spent_before
 from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.jobs import TrialJob, failed
+from automotive_cosim.run.meter import Budget
 from automotive_cosim.run.plan import Plan, PlannedTrial
+from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.store import Store, opened, replan
 from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.safety.budget import SearchBudget, SearchLimit
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.space import CONDITIONS, SETTINGS, FactorChoices, SearchPoint, Space
 from automotive_cosim.scenery import open_scenario
@@ -78,12 +82,18 @@ class Trying:
     store: Store[TrialRow]
     runner: Runner[TrialJob, TrialRow]
     space: Space
+    limit: SearchLimit
+    executor: Executor
     ran: int = 0
     """Trials since this start."""
     tell: Callable[[TrialRow], None] = lambda row: None
 
     def __call__(self, point: SearchPoint, repeat: int) -> TriedOutcome:
-        """What comes of a point."""
+        """What comes of a point.
+
+        Raises:
+            BudgetSpentError: nothing more may be run, or its model asked; it counts as not run.
+        """
         trial = trial_of(point, repeat)
         try:
             job = job_of(self.plan, trial)
@@ -91,10 +101,10 @@ class Trying:
             return TriedOutcome(None, False, error=f"cannot be run: {error}")
         row = self.store.rows.get(job.id)
         if row is None or (row.error is not None and row.error_kind not in FINAL_KINDS):
-            self._add(trial)
-            row = self.runner(job, self.store.folder)
+            row = self._run(job)
             if row.error is not None and row.error_kind not in FINAL_KINDS:
-                row = replace(self.runner(job, self.store.folder), attempts=2)
+                row = replace(self._run(job), attempts=2)
+            self._add(trial)
             self.store.append(row)
             self.ran += 1
             self.tell(row)
@@ -102,28 +112,37 @@ class Trying:
             self._add(trial)
         return outcome_of(row, self.space.rule)
 
-    def ahead(self, points: Iterable[SearchPoint], executor: Executor) -> None:
+    def _run(self, job: TrialJob) -> TrialRow:
+        if refusal := self.limit.refusal():
+            raise BudgetSpentError(refusal)
+        row = self.runner(job, self.store.folder)
+        note_spent(self.store, self.limit)
+        if row.error_kind == BudgetSpentError.__name__:
+            raise BudgetSpentError(str(row.error))
+        return row
+
+    def ahead(self, points: Iterable[SearchPoint]) -> None:
         """Runs points at the same time that will be asked for one by one; those that cannot be run are left out.
 
         Raises:
             as ``run.batch.run_jobs``.
         """
-        jobs = {}
+        jobs: dict[str, TrialJob] = {}
+        trials: dict[str, PlannedTrial] = {}
         for point in points:
             with suppress(UserError):
                 trial = trial_of(point)
                 job = job_of(self.plan, trial)
-                jobs[job.id] = job
-                self._add(trial)
-        with executor:
-            run_jobs(
-                list(jobs.values()),
-                self.store,
-                partial(worker.trials, Pictures.NONE),
-                failed,
-                executor=executor,
-                tell=lambda progress: None if progress.ended is None else self.tell(progress.ended),
-            )
+                jobs[job.id], trials[job.id] = job, trial
+
+        def ended(progress: Progress[TrialRow]) -> None:
+            if progress.ended is not None:
+                self._add(trials[progress.ended.id])
+                self.tell(progress.ended)
+
+        opener = partial(worker.trials, Pictures.NONE, self.limit.meter)
+        every = list(jobs.values())
+        run_jobs(every, self.store, opener, failed, executor=self.executor, limit=self.limit, tell=ended)
 
     def _add(self, trial: PlannedTrial) -> None:
         if trial not in self.plan.trials:
@@ -133,7 +152,14 @@ class Trying:
 
 @contextmanager
 def trying(
-    space: Space, plan: Plan, folder: Path, runner: Runner[TrialJob, TrialRow] | None = None
+    space: Space,
+    plan: Plan,
+    folder: Path,
+    runner: Runner[TrialJob, TrialRow] | None = None,
+    *,
+    executor: Executor = Processes(),  # noqa: B008, frozen
+    budget: SearchBudget = SearchBudget(),  # noqa: B008, frozen
+    used_s: float = 0.0,
 ) -> Iterator[Trying]:
     """Opens a folder, new or to be resumed.
 
@@ -142,11 +168,17 @@ def trying(
         plan: the agent, its model and limits.
         folder: where the trials are kept.
         runner: runs a trial; None runs it with the agent of its name.
+        executor: where trials run that do not depend on each other; it has been entered.
+        budget: what may be used, with earlier starts.
+        used_s: wall time of earlier starts.
 
     Raises:
         UserError: it cannot be written, or holds something else.
     """
     with ExitStack() as ends:
         store = ends.enter_context(opened(folder, plan.as_json(), kind_of, planned=0, grows=True))
-        own = runner or ends.enter_context(worker.trials(Pictures.NONE))
-        yield Trying(plan, store, own, space)
+        meter = ends.enter_context(executor.metered(Budget(usd=budget.usd), spent_before(store)))
+        began_s = time.monotonic()
+        limit = SearchLimit(budget, meter, lambda: used_s + time.monotonic() - began_s)
+        own = runner or ends.enter_context(worker.trials(Pictures.NONE, meter))
+        yield Trying(plan, store, own, space, limit, executor)

@@ -86,6 +86,8 @@ class Roadworks(Incident):
     """Edge on which the roadworks are."""
     limit_kmh: Annotated[float, Gt(0)]
     """What is signed there."""
+    over: bool = False
+    """Whether the works have ended and only their sign still stands; it holds, but nobody reports it."""
     closed_lanes: tuple[Annotated[int, Ge(0)], ...] = ()
     """Among the edge's lanes for cars, 0 nearest the kerb."""
 
@@ -281,9 +283,9 @@ class AheadIncident(EgoIncident):
     """An incident on the ego's route some way ahead, wherever that is by then, as far as a road there has room."""
 
     kind: Literal["ahead"] = "ahead"
-    what: Literal["breakdown", "roadworks", "jam", "tractor"]
-    """A car stands with its hazard lights on, on the verge where there is one lane; a lower limit is signed; a
-    queue; a slow vehicle drives a kilometre along the route."""
+    what: Literal["breakdown", "roadworks", "left_sign", "jam", "tractor"]
+    """A car stands with its hazard lights on, on the verge where there is one lane; a lower limit is signed; such a
+    sign still stands after roadworks; a queue; a slow vehicle drives a kilometre along the route."""
     ahead_m: Annotated[float, Gt(0)] = 600.0
     """Distance from the ego along its route."""
     length_m: Annotated[float, Gt(0)] = 100.0

@@ -75,7 +75,7 @@ class _Breakdown(QuietScene):
 
 
 class _Roadworks(QuietScene):
-    """A lower limit and closed lanes."""
+    """A lower limit and closed lanes, or the sign that is left of them."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Roadworks) -> None:
         self._stage, self._incident = stage, incident
@@ -91,7 +91,8 @@ class _Roadworks(QuietScene):
         self._allowed = {lane: stage.sumo.lane.getAllowed(lane) for lane in self._closed}
         for lane in self._closed:
             stage.sumo.lane.setAllowed(lane, AUTHORITY)
-        return f"roadworks{_on(stage.edge(self._incident.edge))}"
+        what = f"a sign of {self._incident.limit_kmh:g} km/h still stands after" if self._incident.over else ""
+        return f"{what} roadworks{_on(stage.edge(self._incident.edge))}".strip()
 
     def end(self) -> str:
         self._stage.signs.take_down(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
@@ -99,8 +100,8 @@ class _Roadworks(QuietScene):
             self._stage.sumo.lane.setAllowed(lane, allowed)
         return ""
 
-    def reported(self, slow: Mapping[str, float]) -> RoadIncident:
-        return RoadIncident(IncidentKind.ROADWORKS, self._incident.edge, 0.0)
+    def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
+        return None if self._incident.over else RoadIncident(IncidentKind.ROADWORKS, self._incident.edge, 0.0)
 
 
 class _Jam(QuietScene):
@@ -369,9 +370,10 @@ class _Ahead(QuietScene):
             return self._jam(way, edges, on_edge_m)
         if on_edge_m > NEAR_M:  # they begin where their road does
             return None
-        if incident.what == "roadworks":
+        if incident.what in ("roadworks", "left_sign"):
             limit_kmh = max(20.0, 10.0 * round(0.06 * edges[0].speed_mps * KMH_PER_MPS))
-            return incidents.Roadworks(edge=way[0], limit_kmh=limit_kmh, from_s=from_s, to_s=to_s)
+            over = incident.what == "left_sign"
+            return incidents.Roadworks(edge=way[0], limit_kmh=limit_kmh, over=over, from_s=from_s, to_s=to_s)
         count = _covering(edges, TRACTOR_WAY_M) or len(way)
         return incidents.Tractor(from_edge=way[0], to_edge=way[count - 1], from_s=from_s, to_s=to_s)
 

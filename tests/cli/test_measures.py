@@ -8,6 +8,8 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 Cli = Callable[..., Any]
 
 
@@ -36,6 +38,20 @@ def test_encounters_and_readings_come_as_csv(cli: Cli, tmp_path: Path) -> None:
     assert len(cli("measures", folder, "--range", 100, "--ttc", 1, "--drac", 9).out.splitlines()) == 1
     told = cli("measures", folder, "--out", tmp_path / "a.csv").out
     assert told.startswith("1 line in ")
+
+
+def test_tables_come_as_parquet(cli: Cli, tmp_path: Path) -> None:
+    pd = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    folder = record(tmp_path)
+    for words, count in (((), 1), (("--readings",), 5)):
+        assert cli("measures", folder, "--range", 100, *words, "--out", tmp_path / "a.csv").code == 0
+        assert cli("measures", folder, "--range", 100, *words, "--out", tmp_path / "a.parquet").code == 0
+        written, table = pd.read_parquet(tmp_path / "a.parquet"), pd.read_csv(tmp_path / "a.csv")
+        assert list(written.columns) == list(table.columns)
+        assert written.ttc_s.tolist() == table.ttc_s.tolist() if words else written.min_ttc_s.tolist() == [2.5]
+        assert len(written) == count
+        assert set(written.kind) == {"following"}
 
 
 def test_what_was_not_recorded_is_said_in_a_line(cli: Cli, tmp_path: Path) -> None:

@@ -17,6 +17,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.exchange.opendrive import pose_at, write_opendrive
 from automotive_cosim.exchange.openscenario import write_openscenario
 from automotive_cosim.exchange.recording import RecordedAct, Recording, read_recording
+from automotive_cosim.exchange.trajectories import write_csv, write_parquet
 from automotive_cosim.formats.files import opened
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.road import RoadRecord, Second
@@ -226,3 +227,11 @@ def test_an_episode_is_exported_by_command(tmp_path, simulations, cli):
     assert len(rows) == len(fcd) == len(seen)
     assert (float(rows[0]["x_m"]), rows[0]["vehicle_id"]) == (float(fcd[0].attrib["x"]), fcd[0].attrib["id"])
     assert cli("export", tmp_path / "kept").code == 2
+
+
+def test_a_table_of_all_vehicles_as_parquet(recording, tmp_path):
+    pd = pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    write_csv(recording, tmp_path / "a.csv")
+    write_parquet(recording, tmp_path / "a.parquet")
+    pd.testing.assert_frame_equal(pd.read_parquet(tmp_path / "a.parquet"), pd.read_csv(tmp_path / "a.csv"))

@@ -25,6 +25,7 @@ SPEED = """<PrivateAction><LongitudinalAction><SpeedAction><SpeedActionDynamics/
 LANES = """<PrivateAction><LateralAction><LaneChangeAction><LaneChangeActionDynamics/><LaneChangeTarget>
 <RelativeTargetLane entityRef="other" value="{}"/></LaneChangeTarget></LaneChangeAction></LateralAction>
 </PrivateAction>"""
+TRAJECTORY = """<PrivateAction><RoutingAction><FollowTrajectoryAction/></RoutingAction></PrivateAction>"""
 PLACE = "<PrivateAction><TeleportAction><Position>{}</Position></TeleportAction></PrivateAction>"
 GOAL = """<PrivateAction><RoutingAction><AcquirePositionAction><Position>
 <WorldPosition x="1000" y="213"/></Position></AcquirePositionAction></RoutingAction></PrivateAction>"""
@@ -125,6 +126,7 @@ def test_an_imported_vehicle_does_what_the_file_says(file, tmp_path, simulations
         ('<EntityRef entityRef="other"/>', '<EntityRef entityRef="ego"/>', "acts on ego, which"),
         ("<CatalogLocations/>", "<CatalogLocations><VehicleCatalog/></CatalogLocations>", "<VehicleCatalog>"),
         ('rule="greaterThan"', 'rule="lessThan"', "has the rule lessThan"),
+        (LANES.format(1), TRAJECTORY, r"line \d+: <FollowTrajectoryAction> fixes where"),
         ("<SimulationTimeCondition", "<TimeOfDayCondition", "<TimeOfDayCondition>"),
         (GOAL, "", "neither AssignRouteAction nor AcquirePositionAction"),
     ],

@@ -13,7 +13,7 @@ from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.errors import ActionError, TrafficError, TriggerNotReachedError, UnknownNameError
 from automotive_cosim.interface import trace
-from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
+from automotive_cosim.run.episode import End, EpisodeObserver, EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.task import Suite
@@ -177,6 +177,23 @@ def test_watchers_hear_of_drive_steps_and_aftermath(run):
     assert memory.moved_s[0] < steps_s[0]
     assert memory.moved_s[-1] > steps_s[-1]
     assert len(memory.results) == 1
+
+
+def test_a_road_that_fails_after_the_end_is_an_error_too(simulations):
+    class Fails(EpisodeObserver):
+        episode = None
+
+        def handed_over(self, episode, shot):
+            self.episode = episode
+
+        def moved(self, moment, cockpit):
+            if self.episode is not None and self.episode.end is not None:
+                raise TrafficError("the simulation died")
+
+    setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="oracle", model="none")
+    result = run_episode(setup, make_agent("oracle"), (Fails(),), simulations=simulations)
+    assert (result.end, result.error) == (End.ERROR, "the simulation died")
+    assert (result.success, result.verdict) == (None, None)
 
 
 def test_an_unreadable_answer_costs_a_step(run):

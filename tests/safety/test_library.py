@@ -15,7 +15,7 @@ from automotive_cosim.safety.trying import trial_of
 from tests.laws import over
 
 DOCS = Path(__file__).parents[2] / "docs/search.md"
-ROAD_WORDS = "cuts in", "cuts out", "the vehicle ahead brakes"
+ROAD_WORDS = "cuts in", "cuts out", "the vehicle ahead brakes", "still stands after roadworks"
 
 
 def test_there_are_thirty_and_the_docs_list_them() -> None:

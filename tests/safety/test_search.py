@@ -8,11 +8,14 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.report.stats import upper_bound
+from automotive_cosim.run.meter import Budget, Meter, Spent
 from automotive_cosim.run.plan import make_plan, read_plan
-from automotive_cosim.safety.findings import as_json, coverage, sensitivity, tables, unseen
-from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt
+from automotive_cosim.safety.budget import SearchBudget, SearchLimit
+from automotive_cosim.safety.curves import curves, means
+from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, tables, unseen
+from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_carefully
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.page import suite
 from automotive_cosim.safety.samplers import SAMPLERS, even_points, make_sampler
@@ -115,11 +118,58 @@ def test_combinations_that_cannot_be_run_cost_nothing() -> None:
     assert dict(tables(found)[-1].rows)
 
 
-def test_no_point_is_begun_after_the_time_is_over() -> None:
-    left = iter([True, True, False])
-    found = hunt(SPACE, judged(lambda p: 0.5), make_sampler("random", SPACE, 9, 0), 9, goes_on=lambda: next(left))
-    assert found.run == 2
-    assert found.stopped == "its time is over"
+def test_a_search_whose_budget_is_spent_keeps_what_it_has() -> None:
+    """The budget ends in the repeats of the first failure, which is then told but not made small."""
+    asked = 0
+
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        nonlocal asked
+        asked += 1
+        if repeat:
+            raise BudgetSpentError("spent")
+        return TriedOutcome(0.5 if asked < 4 else -0.5, asked >= 4, trial="t")
+
+    found = hunt(SPACE, evaluate, make_sampler("random", SPACE, 9, 0), 9)
+    assert (found.run, found.stopped, found.minimal) == (3, "spent", [])
+    assert [each.outcome.failed for each in found.not_reduced] == [True]
+
+
+def test_a_space_of_few_points_is_used_up() -> None:
+    few = Space((FactorChoices("drive", ("a", "b")),))
+    found = hunt(few, judged(lambda p: 0.5), make_sampler("random", few, 9, 0), 1_000_000)
+    assert "nothing new" in found.stopped
+    assert len(found.samples) < 1100
+
+
+@pytest.mark.parametrize(
+    ("text", "budget"),
+    [
+        ("64", SearchBudget(64)),
+        ("2h", SearchBudget(hours=2)),
+        ("90min", SearchBudget(hours=1.5)),
+        ("$5", SearchBudget(usd=5)),
+        ("64, 2H ,0.5usd", SearchBudget(64, 2, 0.5)),
+    ],
+)
+def test_a_budget_is_points_hours_or_money(text: str, budget: SearchBudget) -> None:
+    assert SearchBudget.read(text) == budget
+
+
+@pytest.mark.parametrize("text", ["", "0", "-3", "1.5", "2 days", "64,32", "1h,30min", "$5h", "5eur", "inf"])
+def test_a_wrong_budget_is_refused(text: str) -> None:
+    with pytest.raises(UserError, match="64, 2h, 90min, 5usd"):
+        SearchBudget.read(text)
+
+
+def test_a_limit_is_that_of_time_or_that_of_the_meter() -> None:
+    used_s = 3500.0
+    limit = SearchLimit(SearchBudget(hours=1), Meter(Budget(usd=1.0), Spent(usd=0.4)), lambda: used_s)
+    assert not limit.refusal()
+    limit.spend(10, 0.7)
+    assert "dollars" in limit.refusal()
+    assert limit.spent() == Spent(10, 1.1)
+    used_s = 3601.0
+    assert "1 of 1 hours" in limit.refusal()
 
 
 def test_findings_count_every_sample() -> None:
@@ -132,6 +182,65 @@ def test_findings_count_every_sample() -> None:
     rates = next(table for table in tables(found) if table.name == "rates")
     of_driver = [int(str(row[2])) for row in rates.rows if row[0] == "driver"]
     assert sum(of_driver) == 50
+
+
+def test_a_grid_has_every_value_with_every_other() -> None:
+    factors = (
+        FactorChoices("drive", ("a", "b", "c")),
+        FactorRange("hour", 0.0, 8.0, 4.0),
+        FactorRange("seed", 0, 1, 0, whole=True),
+    )
+    space = Space(factors)
+    sampler = make_sampler("grid", space, 24, 0)
+    asked = [sampler.ask()[0] for _ in range(24)]
+    assert {tuple(point.values()) for point in asked} == {
+        (drive, hour, seed) for drive in "abc" for hour in (1.0, 3.0, 5.0, 7.0) for seed in (0, 1)
+    }
+    small = make_sampler("grid", space, 2, 0)
+    assert len({small.ask()[0]["drive"] for _ in range(2)}) == 2, "as many as the budget, though there are more"
+
+
+def test_response_curves_are_means_of_the_margin() -> None:
+    found = searched("grid", 128)
+    sight = SPACE.factor("visibility_m")
+    assert isinstance(sight, FactorRange)
+    line = means(found, sight)
+    assert line[0][1] < line[-1][1]
+    made = curves(found)
+    assert set(made) == {"visibility_m", "hour"}
+    assert all(svg.startswith("<svg") for _, *svgs in made.values() for svg in svgs)
+
+
+def test_triples_are_counted_as_pairs_are() -> None:
+    found = searched("random", 40)
+    pairs, of_pairs = coverage(found)
+    triples, of_triples = coverage(found, 3)
+    assert (of_pairs, of_triples) == (6 + 5 * 12 + 3 * 16, 6 * 12 + 5 * 48 + 64)
+    assert 0 < pairs < of_pairs
+    assert triples / of_triples < pairs / of_pairs
+
+
+def test_maps_of_two_factors_count_every_sample() -> None:
+    found = searched("sobol", 128)
+    maps = [table for table in tables(found) if table.name.startswith("map_")]
+    assert "driver and visibility_m" in maps[0].title
+    for table in maps:
+        cells = [str(cell).split(" of ") for row in table.rows for cell in row[1:] if str(cell) != "–"]
+        assert sum(int(failed) for failed, _ in cells) == sum(each.outcome.failed for each in found.samples)
+        assert sum(int(of) for _, of in cells) == len(found.samples)
+
+
+def test_a_careful_watcher_prevents_what_it_passes() -> None:
+    found = searched()
+    assert prevented(found) == (0, 0)
+    try_carefully(found, judged(lambda p: 0.5))
+    assert prevented(found) == (len(found.minimal), len(found.minimal))
+    assert "prevents it" in {cell for row in tables(found)[0].rows for cell in row}
+    try_carefully(found, lambda point, repeat: TriedOutcome(None, False, error="lost"))
+    assert prevented(found) == (0, 0)
+    try_carefully(found, judged(lambda p: -0.5))
+    assert prevented(found) == (0, len(found.minimal))
+    assert not any(as_json(found)["failures"][0][name] for name in ("careful_prevents",))
 
 
 def test_few_whole_numbers_are_levels_of_their_own() -> None:
@@ -215,5 +324,11 @@ def test_sensitivity_is_that_of_the_margin() -> None:
     assert shares["hour"][1] is not None
     assert shares["hour"][1] < -0.2
     assert shares["visibility_m"][0] < 0.05
+
+    def folded(point: SearchPoint) -> float:  # the same at both ends and in the middle of the range
+        return abs(((float(point["hour"]) - 6) / 16 * 4) % 2 - 1)
+
+    shares_of_folded = {factor.name: share for factor, share, _ in sensitivity(searched("sobol", 128, folded))}
+    assert shares_of_folded["hour"] > 0.6
     assert "Sensitivity" in [table.title for table in tables(found)]
     assert sensitivity(searched("sobol", 8, additive)) == []

@@ -18,6 +18,7 @@ from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import run_with
+from automotive_cosim.safety.budget import SearchBudget
 from automotive_cosim.safety.dossier.filing import write_dossier
 from automotive_cosim.safety.hunt import Hunt, hunt
 from automotive_cosim.safety.page import FINDINGS, PAGE, PLANS, write_findings
@@ -56,6 +57,10 @@ def test_a_search_finds_what_is_planted_and_goes_on(tmp_path: Path, simulations:
             found.append(hunt(SPACE, tries, make_sampler("sobol", SPACE, 2, 1), budget))
             page = write_findings(folder, found[-1], "oracle", "rules", ABOUT)
         ran.append(tries.ran)
+    with trying(SPACE, plan(), folder, run, budget=SearchBudget(hours=1), used_s=3600) as tries:
+        spent = hunt(SPACE, tries, make_sampler("sobol", SPACE, 2, 1), 5)
+    assert "1 hours" in spent.stopped
+    assert (spent.tried, tries.ran) == (found[2].tried, 0), "what is known costs nothing"
     assert ran[0] > 0
     assert ran[2] == 0
     assert found[2].tried == found[1].tried

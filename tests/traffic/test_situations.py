@@ -120,6 +120,16 @@ def test_roadworks_lower_the_sign_and_close_a_lane(staged: Staged, average: EgoP
 
 
 @pytest.mark.sumo
+def test_a_sign_that_is_left_after_roadworks_holds_and_is_not_reported(staged: Staged, average: EgoPlan) -> None:
+    left = staged('kind = "roadworks"\nedge = "c2c3"\nlimit_kmh = 30\nover = true\nfrom_s = 5.0')
+    drive = driven(left, average)
+    assert any("a sign of 30 km/h still stands after roadworks" in event.text for event in drive.events)
+    assert not any(state.ahead.incidents for state in drive.states)
+    limits = {state.road.limit.mps for state in drive.states if state.road.edge_id == "c2c3"}
+    assert {round((mps or 0) * KMH_PER_MPS) for mps in limits} == {30}
+
+
+@pytest.mark.sumo
 def test_a_jam_stands_beyond_a_bend(staged: Staged, average: EgoPlan) -> None:
     """Its tail is in the street that the ego turns into; the queue moves up, and the ego gets through."""
     jam = staged(

@@ -53,9 +53,13 @@ def unseen(subject: Subject) -> Section:
         ):
             if found[key] is not None:
                 lines.append((name, f"at most {percent(found[key])}", "Clopper and Pearson"))
-        lines.append(
-            ("Pairs of levels of two factors tried", f"{found['pairs_covered']} of {found['pairs']}", "2-wise")
-        )
+        for name, part, whole, how in (
+            ("Pairs of levels of two factors tried", "pairs_covered", "pairs", "2-wise"),
+            ("Triples of levels of three tried", "triples_covered", "triples", "3-wise"),
+            ("Minimal failures that a careful watcher prevents", "careful_prevents", "careful_tried", "ISO 34502"),
+        ):
+            if found.get(whole):
+                lines.append((name, f"{found[part]} of {found[whole]}", how))
     else:
         bad, total, upper = failing(subject)
         three = f"; rule of three: {percent(min(1.0, 3 / total))}" if not bad else ""
