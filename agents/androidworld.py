@@ -290,8 +290,9 @@ class AndroidWorldAgent:
 
 
 def _wish(seen: Observation) -> str:
-    """What the driver wants, and beneath it what he has said since, as in every prompt."""
-    return prompt.driver_words(seen) if seen.said else seen.goal
+    """What the driver wants, and beneath it what he has said since, as in every prompt; house rules come first."""
+    words = prompt.driver_words(seen) if seen.said else seen.goal
+    return f"House rules:\n{seen.policy}\n\n{words}" if seen.policy else words
 
 
 def _screen_px(seen: Observation) -> tuple[int, int]:

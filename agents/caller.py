@@ -131,7 +131,7 @@ class Caller:
         """What it is to do, and each earlier answer with its results."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self.channels else ""
         name = "caller_watch" if seen.on_watch else "caller"
-        yield ChatMessage("system", prompt.fill(name, {"weigh": weigh, "words": WORDS}))
+        yield ChatMessage("system", prompt.fill(name, {"weigh": weigh, "words": WORDS, "policy": seen.policy}))
         for answer, results in self._told[-REMEMBERED:] if seen.on_watch else self._told:
             yield answer
             known = {result.call_id for result in results}

@@ -23,7 +23,19 @@ from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.tasking.instance import Instance
-from automotive_cosim.tasking.moves import Consult, Do, Hear, Move, Open, Slide, Tap, TapUntil, TypeText, Warn
+from automotive_cosim.tasking.moves import (
+    Consult,
+    Do,
+    Hear,
+    Inform,
+    Move,
+    Open,
+    Slide,
+    Tap,
+    TapUntil,
+    TypeText,
+    Warn,
+)
 
 SLIDER_MARGIN_PX = 20
 """How far inside its element a slider's range begins."""
@@ -131,6 +143,9 @@ class Oracle:
             case Consult(text):
                 self._moves.popleft()
                 return Action(ActionType.ASK_DRIVER, text=text)
+            case Inform(text):
+                self._moves.popleft()
+                return Action(ActionType.ANSWER, text=text)
             case Hear(text, at_most_s):
                 self._pressed += 1
                 if self._pressed > at_most_s:

@@ -75,6 +75,7 @@ def turn(
         WATCH if observation.on_watch else profile.name if profile.length is PromptLength.LONG else profile.length,
         {
             "grammar": _grammar(profile, by_point=not is_listed, on_watch=observation.on_watch),
+            "policy": observation.policy,
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,

@@ -26,6 +26,7 @@ from automotive_cosim.drives.wakes import WAKES
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.formats.docs import member_docs
 from automotive_cosim.interface import spaces
+from automotive_cosim.interface.policy import HOUSE
 from automotive_cosim.tasking.task import Dimension, Module
 from automotive_cosim.tasks import CATALOGUE
 
@@ -46,6 +47,7 @@ INCLUDED = (
     "drive_kinds",
     "drive_wakes",
     "fields_plan",
+    "policy",
     "fields_scenario",
 )
 """Pages of ``_made/`` that are parts of others."""
@@ -75,6 +77,7 @@ def setup(sphinx: Sphinx) -> None:
     _commands()
     _drives()
     _conditions()
+    _table("policy.md", ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE])
     for name in ("plan", "scenario"):
         _fields(name)
     _write("functions.md", "```text", _printed("show", "functions"), "```")

@@ -1,4 +1,4 @@
-"""The catalogue of tasks, one file per module of the cockpit; the hard suite has a folder of its own."""
+"""The catalogue of tasks, one file per module of the cockpit; the other suites have folders of their own."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from automotive_cosim.tasks import (
     hvac_asking,
     hvac_hints,
     hvac_safety,
+    limits,
     maps,
     maps_aboard,
     maps_asking,
@@ -81,6 +82,7 @@ for _module in (
     system_doors_aboard,
     system_aboard,
     hard,
+    limits,
 ):
     CATALOGUE.add(*map(spoken.spoken, _module.TASKS))
 

@@ -203,7 +203,7 @@ class A2AAgent:
         """What it is to do."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self._profile.channels else ""
         name = "caller_watch" if seen.on_watch else "caller"
-        return prompt.fill(name, {"weigh": weigh, "words": SPOKEN})
+        return prompt.fill(name, {"weigh": weigh, "words": SPOKEN, "policy": seen.policy})
 
     def _note(self, name: StageName, seen: Observation, text: str, reply: ModelReply | None = None) -> None:
         self.stages.append(Stage(name, text, seen.time_s, reply))

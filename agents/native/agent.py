@@ -112,6 +112,7 @@ class NativeAgent:
             "native",
             {
                 "grammar": self._form.syntax.describe(self._form.verbs, *span) or None,
+                "policy": seen.policy,
                 "goal": prompt.driver_words(seen),
                 "history": "\n".join(map(one_line, self._history)) or "nothing yet",
                 "problem": self._problem or None,

@@ -29,6 +29,7 @@ from automotive_cosim.run.words import (
     speed_in_words,
 )
 from automotive_cosim.scenarios import Scenario
+from automotive_cosim.tasking.policy import first_breaches
 from automotive_cosim.traffic.options import read_configuration
 
 PLAIN_EVERY_S = 10.0
@@ -200,6 +201,10 @@ def _verdict(result: EpisodeResult) -> Text:
     for name, part in (result.verdict.parts if result.verdict else {}).items():
         mark = ("yes", "green") if part.ok else ("no ", "red")
         lines.append(Text.assemble(f"  {name.replace('_', ' '):<9} ", mark, "  ", (part.why, "dim")))
+    for rule, at_s in (first_breaches(result.breaches) if result.verdict else {}).items():
+        lines.append(
+            Text.assemble(f"  {'policy':<9} ", ("no ", "red"), "  ", (f"{rule}, after {at_s:.0f} s", "dim"))
+        )
     lines.append(Text())
     lines += [Text.assemble((f"{entry.at_s:+8.1f} s", "dim"), f"  {entry.text}") for entry in result.timeline]
     return Text("\n").join(lines)

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 from automotive_cosim.cockpit import accessibility
 from automotive_cosim.cockpit.app import App, Where
 from automotive_cosim.cockpit.apps.store.state import Installed
+from automotive_cosim.cockpit.equipment import equipped
 from automotive_cosim.cockpit.functions import CarFunction, as_told, groups, of_signals, reading, unknown
 from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.messages import Pick, Show
@@ -36,7 +37,10 @@ def get_signals(
     paths = named.get(wanted.lower()) or [
         each for each in CATALOGUE if each.casefold() == wanted.casefold() or each.startswith(f"{wanted}.")
     ]
-    found = {each: state.signals[CATALOGUE[each]] for each in paths if each not in PLACE}
+    unread = {signal.path for each in state.vehicle.lacks if each.part is None for signal in each.signals}
+    found = {
+        each: None if each in unread else state.signals[CATALOGUE[each]] for each in paths if each not in PLACE
+    }
     return as_told(found) if found else unknown("signal or group", path, (*named, *CATALOGUE))
 
 
@@ -54,7 +58,7 @@ def read_screen(
     twin = state.copy()
     Show(screen).perform(twin)
     if item:
-        choices = (widget for child in pages()[screen].made(twin) for widget in child.walk())
+        choices = (widget for child in equipped(twin, pages()[screen].made(twin)) for widget in child.walk())
         tabs = (
             each.on_tap
             for each in choices
@@ -66,7 +70,7 @@ def read_screen(
 
 def _tab(state: State, item: str) -> Pick | None:
     """The choice of that name on the present screen."""
-    widgets = (widget for child in pages()[state.screen].made(state) for widget in child.walk())
+    widgets = (widget for child in equipped(state, pages()[state.screen].made(state)) for widget in child.walk())
     taps = ((widget.text, widget.on_tap) for widget in widgets)
     return next((tap for text, tap in taps if isinstance(tap, Pick) and item in (text, tap.value)), None)
 
@@ -75,7 +79,7 @@ def _lines(state: State) -> Iterator[str]:
     """What a screen shows from the beginning of its lists to their ends."""
     page, language = pages()[state.screen], state.signals[HMI.LANGUAGE]
     while True:
-        made = page.made(state)
+        made = equipped(state, page.made(state))
         whole = Screen(
             rect=state.size.whole,
             dock=state.size.dock,
@@ -151,6 +155,9 @@ def call(state: State, name: str, arguments: Mapping[str, Any]) -> Feedback:
         What was set or read, or why not.
     """
     function = functions()[name]
+    lacking = next((each for each in state.vehicle.lacks if name in each.functions), None)
+    if lacking is not None:
+        return Feedback(FeedbackCode.DISABLED, lacking.words)
     app = _owners().get(name)
     if app is not None and (refusal := _not_installed(state, app)):
         return refusal

@@ -38,6 +38,7 @@ from automotive_cosim.cockpit.commands import AskDriver, Set
 from automotive_cosim.cockpit.content import content
 from automotive_cosim.cockpit.display import Display
 from automotive_cosim.cockpit.fresh import put_back
+from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Back, Show, write
 from automotive_cosim.cockpit.picture import picture
@@ -111,6 +112,8 @@ class Cockpit:
         changes: Sequence[CarChange] = (),
         belongings: Belongings = NOTHING,
         sign_camera: bool = True,
+        lacks: Sequence[Lacking] = (),
+        sensors: Mapping[str, Any] | None = None,
         lookout: bool = False,
         driven_s: float = 0.0,
         size: ScreenSize = ScreenSize.STANDARD,
@@ -129,6 +132,8 @@ class Cockpit:
             changes: changes of the car while driving that nobody commands.
             belongings: people, messages, appointments, memos and places besides those that are drawn.
             sign_camera: whether it reads limit signs; without it, the status bar shows no sign.
+            lacks: what it was not fitted with, or is out of order.
+            sensors: VSS paths of sensors that measure wrongly, and what they always read.
             lookout: whether home and map show what the car notices around, ahead and aboard.
             driven_s: how long the driver had been driving without a break before departure.
             size: size of the display.
@@ -159,7 +164,10 @@ class Cockpit:
         for path, value in (signals or {}).items():
             self._set_up(path, value)
         state.settle()
+        state.vehicle.lacks = tuple(lacks)
         self._tree: Screen | None = None
+        for path, value in (sensors or {}).items():
+            self.inject(path, value)
 
     def copy(self) -> Cockpit:
         """An independent copy."""

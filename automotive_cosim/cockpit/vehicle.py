@@ -8,6 +8,7 @@ from typing import Any, TypeVar
 
 from automotive_cosim.cockpit.aboard import breath
 from automotive_cosim.cockpit.cabin import AIR_CP, BLOWER_FULL, Air, Controls, sweeps_per_minute
+from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
@@ -96,10 +97,12 @@ class Vehicle:
     """Reading of the light sensor."""
     before_mode: Mapping[Signal[Any], Any] = field(default_factory=dict)
     """Settings that a mode of the air overrode, to be restored when it is switched off."""
+    lacks: tuple[Lacking, ...] = ()
+    """What it was not fitted with, or is out of order."""
 
     def copy(self) -> Vehicle:
         """An independent copy."""
-        return Vehicle(self.signals.copy(), self.dark, self.before_mode)
+        return Vehicle(self.signals.copy(), self.dark, self.before_mode, self.lacks)
 
     def command(self, signal: Signal[T], value: T) -> str:
         """Sets an actuator and what is coupled to it.
@@ -175,6 +178,9 @@ class Vehicle:
 
     def _refusal(self, signal: Signal[Any], value: Any) -> str:
         now = self.signals
+        lacking = next((each for each in self.lacks if each.bars(signal, value)), None)
+        if lacking is not None:
+            return lacking.words
         held = self.held(signal)
         if held:
             return held

@@ -117,6 +117,14 @@ class PromptLength(StrEnum):
     """Every element as a JSON object and, to reflect, both lists of them: the prompt of version 0.2."""
 
 
+class ToldPolicy(StrEnum):
+    """Which rules an agent is told beside the driver's words; it is held to the house's in any case."""
+
+    NONE = "none"
+    HOUSE = "house"
+    """The house rules (``interface.policy``)."""
+
+
 class Language(StrEnum):
     """The languages of car and driver, by the codes of ``HMI.LANGUAGE``."""
 

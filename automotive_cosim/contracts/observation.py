@@ -126,3 +126,5 @@ class Observation:
     gps: GpsFix | None = None
     context: str | None = None
     """The geo-context as text: facts and rules that apply here, never a judgement."""
+    policy: str | None = None
+    """The house rules, one a line; None if the agent is not told any."""

@@ -12,6 +12,7 @@ from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.specification import End
 from automotive_cosim.measures import ExposureCell, FollowingFigures, exposure, following_figures
+from automotive_cosim.tasking.policy import Breach
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -30,6 +31,8 @@ class DriveResult:
     """Seconds for which messages took the driver's eyes off the road."""
     events: tuple[JudgedEvent, ...]
     acts: tuple[JudgedAct, ...]
+    breaches: tuple[Breach, ...]
+    """What the agent did against the house rules, told or not."""
     unwatched_from_s: float | None
     """From when nobody watched: the agent had failed or spent its budget. None if somebody did to the end."""
     steps: int
@@ -81,6 +84,7 @@ def result_of(watch: Watch) -> DriveResult:
         distraction_s=distraction_s(watch.acts, texts),
         events=events,
         acts=acts,
+        breaches=watch.breaches,
         unwatched_from_s=watch.unwatched_from_s,
         steps=len(watch.steps) - 1,
         waits=watch.waits,

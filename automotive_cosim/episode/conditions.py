@@ -25,6 +25,7 @@ from automotive_cosim.contracts.given import (
     Language,
     PromptLength,
     See,
+    ToldPolicy,
 )
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
@@ -140,6 +141,16 @@ class Conditions:
     ] = PromptLength.STANDARD  # fmt: skip
     """How much the prompt of T3A, M3A and ASURADA spells out: ``standard``, ``short`` for small
     models, or ``long``."""
+
+    policy: Annotated[
+        ToldPolicy,
+        OneOf(ToldPolicy, "policy"),
+        Words(
+            "Policy", "{} policy", "{}_policy", "Success by policy",
+            "Whether the agent was told the house rules (house) or not (none); breaches are counted in any case.",
+        ),
+    ] = ToldPolicy.NONE  # fmt: skip
+    """Which rules the agent is told beside the driver's words: none, or those of the ``house``."""
 
     @classmethod
     def named(cls, values: Mapping[str, object]) -> Conditions:

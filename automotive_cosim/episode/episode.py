@@ -17,6 +17,7 @@ from automotive_cosim.episode.situation import HandOver
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
 from automotive_cosim.tasking.instance import Instance
+from automotive_cosim.tasking.policy import Conduct
 from automotive_cosim.tasking.verdict import Verdict, judge
 
 
@@ -99,6 +100,11 @@ class Episode(Session):
         half = self.instance.half
         texts = (asked["text"] for asked in questions(self.moments[0], self.moments[-1]))
         return dialogue(texts, half.topics, half.needed_topics, half.neutral)
+
+    @property
+    def course(self) -> Conduct:
+        """What the house rules are held against, with the seat that the wish comes from."""
+        return replace(super().course, voice=self.instance.half.start.voice)
 
     @property
     def counterfactual(self) -> Mapping[str, Any]:

@@ -25,6 +25,7 @@ from automotive_cosim.contracts import (
     Reason,
     RoadNetwork,
 )
+from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.episode.listener import Listener
@@ -37,6 +38,7 @@ from automotive_cosim.interface.controls import Shown, shown
 from automotive_cosim.interface.feedback import FeedbackDetail, control, quiet
 from automotive_cosim.interface.observe import Channel, observe
 from automotive_cosim.tasking.dialogue import NEUTRAL, spoken_s
+from automotive_cosim.tasking.policy import Breach, Conduct, breaches
 
 
 @dataclass(kw_only=True)
@@ -173,6 +175,16 @@ class Session:
         actions = (step.action for step in self.steps)
         return tuple(each.text or "" for each in actions if each and each.action_type is ActionType.ANSWER)
 
+    @property
+    def breaches(self) -> tuple[Breach, ...]:
+        """What the agent did against the house rules so far, whether or not it was told them."""
+        return breaches(self.course)
+
+    @property
+    def course(self) -> Conduct:
+        """What the house rules are held against."""
+        return Conduct(self.moments, self.steps, self.world.cockpit.given)
+
     def screenshot(self) -> npt.NDArray[np.uint8]:
         """The cockpit's screen, (height, width, 3)."""
         return self.world.cockpit.screenshot()
@@ -232,7 +244,14 @@ class Session:
         self.heard += said
         begun_s = self.moments[0].time_s
         self.elements, self.observation = _seen(
-            self.world, self.goal, self._channels(action), self.shown, begun_s, feedback, self.heard
+            self.world,
+            self.goal,
+            self._channels(action),
+            self.shown,
+            begun_s,
+            feedback,
+            self.heard,
+            self.setup.conditions.policy,
         )
         self.steps.append(
             trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s, said)
@@ -282,7 +301,9 @@ def beginning(
     world.cockpit.fit(setup.conditions.screen)
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
-    elements, observation = _seen(world, goal, setup.given, told, first.time_s, feedback)
+    elements, observation = _seen(
+        world, goal, setup.given, told, first.time_s, feedback, policy=setup.conditions.policy
+    )
     return {
         "world": world,
         "goal": goal,
@@ -305,8 +326,9 @@ def _seen(
     begun_s: float,
     feedback: Feedback,
     said: tuple[str, ...] = (),
+    policy: ToldPolicy = ToldPolicy.NONE,
 ) -> tuple[tuple[Element, ...], Observation]:
     """The elements on the screen, and the agent's observation."""
     elements = world.cockpit.elements()
-    seen = observe(world, goal, begun_s, elements, feedback, channels, said)
+    seen = observe(world, goal, begun_s, elements, feedback, channels, said, policy)
     return elements, told.observation(seen, world.moment)

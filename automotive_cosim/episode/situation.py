@@ -195,6 +195,8 @@ class SituationFinder:
             arrivals=start.arrivals,
             belongings=start.belongings,
             sign_camera=start.sign_camera,
+            lacks=start.lacks,
+            sensors=start.sensors,
             size=self._spec.conditions.screen,
         )
         world = couple(

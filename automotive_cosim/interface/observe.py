@@ -6,9 +6,11 @@ from automotive_cosim.contracts import Element, Feedback, Observation
 from automotive_cosim.contracts.given import ALL as ALL
 from automotive_cosim.contracts.given import Channel as Channel
 from automotive_cosim.contracts.given import See as See
+from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.cosim.simulation import CoSimulation
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.text import BUDGET_TOKENS, within_budget
+from automotive_cosim.interface.policy import told
 
 
 def observe(
@@ -19,6 +21,7 @@ def observe(
     feedback: Feedback,
     channels: frozenset[Channel] = ALL,
     said: tuple[str, ...] = (),
+    policy: ToldPolicy = ToldPolicy.NONE,
 ) -> Observation:
     """An agent's observation of the present moment.
 
@@ -30,6 +33,7 @@ def observe(
         feedback: the result of the last action.
         channels: the channels that the agent is given.
         said: what the driver has said since the hand-over.
+        policy: which rules it is told.
     """
     moment = world.moment
     return Observation(
@@ -45,6 +49,7 @@ def observe(
         context=context_text(moment.context, with_position=Channel.GPS in channels)
         if Channel.CONTEXT in channels
         else None,
+        policy=told(policy),
     )
 
 

@@ -17,6 +17,8 @@
 | effect | where the words do not say what to do, a solution that acts on the air has an effect on it |
 | knowable | what was drawn has been told before the reference solution uses it |
 | lawful | the reference solution breaks no sign and no verified rule, nor has cruise control break one |
+| policy | no reference solution breaks a house rule, and a temptation that is declared for the half is reported \
+(``proof.policy``) |
 | functions | by calls of functions, translated by machine, the reference solution wins too, with a wrong value it \
 loses, and to end or to warn at once wins no pair (``proof.functions``); not of tasks that need the picture |
 | trivial | no negative control wins both halves of a pair, or the only half |
@@ -109,7 +111,7 @@ def oracle(ground: Ground) -> Wrong:
 def start(ground: Ground) -> Wrong:
     """Checks the goal, its words and its law at the hand-over."""
     moment = ground.episode.moments[0]
-    if ground.half.declares is GoalStatus.COMPLETE and ground.half.goal.holds(moment, moment, [moment]):
+    if is_to_do(ground.half) and ground.half.goal.holds(moment, moment, [moment]):
         yield f"holds already: {ground.half.goal}"
     if ground.half.basis is Basis.LAW:
         every, shown = ({line.source for line in lines} for lines in (moment.context.lines, moment.context.shown))
@@ -118,6 +120,11 @@ def start(ground: Ground) -> Wrong:
                 yield f"{rule.id} decides, but the context leaves it to a query"
     if BY_NUMBER.search(ground.instance.goal):
         yield f"names a widget by its number: {ground.instance.goal!r}"
+
+
+def is_to_do(half: Half) -> bool:
+    """Whether something of the car has to change; where the driver has to be told something, nothing may."""
+    return half.declares is GoalStatus.COMPLETE and not half.tells
 
 
 def world(ground: Ground) -> Wrong:
@@ -347,9 +354,13 @@ def knowable(ground: Ground, right: Played) -> Wrong:
     yield from unknown(half, next(said), drawn, right.steps, ground.move_of_action)
 
 
+UNSEEN = frozenset({Differs.CONTENT, Differs.EQUIPMENT})
+"""Differences that nobody sees before a screen is opened."""
+
+
 def parted(grounds: dict[str, Ground]) -> Wrong:
     """Looks for halves that differ in content alone, and whose solutions part before either has seen it."""
-    if any(ground.task.differs != {Differs.CONTENT} or ground.half.needed_topics for ground in grounds.values()):
+    if any(not ground.task.differs <= UNSEEN or ground.half.needed_topics for ground in grounds.values()):
         return
     if len(grounds) < 2 or not all(ground.half.moves for ground in grounds.values()):
         return
@@ -384,6 +395,7 @@ def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:
         right.counterfactual,
         declared.goal_status,
         declared.reason,
+        said=right.said,
     )
     return verdict.success
 

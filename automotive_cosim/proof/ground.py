@@ -50,6 +50,12 @@ class Played:
         return tuple(step.action for step in self.steps[1:])
 
     @property
+    def said(self) -> tuple[str, ...]:
+        """What the driver was told."""
+        answers = (each for each in self.actions if each and each.action_type is ActionType.ANSWER)
+        return tuple(each.text or "" for each in answers)
+
+    @property
     def codes(self) -> tuple[FeedbackCode, ...]:
         """The cockpit's feedback to each."""
         return tuple(step.feedback.code for step in self.steps[1:])

@@ -252,6 +252,10 @@ def _needed(value: Any, parameters: Mapping[str, Parameter]) -> list[str]:
     return list(asked)
 
 
+_READ = ("signals", "sensors")
+"""Fields of a start whose values the car shows."""
+
+
 def _open_in(value: Any) -> Iterator[Any]:
     """The placeholders, and texts with placeholders, in a value."""
     if isinstance(value, Param) or (isinstance(value, str) and "{" in value):
@@ -259,8 +263,9 @@ def _open_in(value: Any) -> Iterator[Any]:
     elif isinstance(value, Photo):
         yield from map(_Pictured, _open_in((value.value, value.unit)))
     elif isinstance(value, Start):
-        yield from map(_Setting, _open_in(tuple(value.signals.values())))
-        yield from _open_in([getattr(value, field.name) for field in fields(value) if field.name != "signals"])
+        for read in (value.signals, value.sensors):
+            yield from map(_Setting, _open_in(tuple(read.values()) if isinstance(read, Mapping) else read))
+        yield from _open_in([getattr(value, field.name) for field in fields(value) if field.name not in _READ])
     elif isinstance(value, Mapping):
         for name, entry in value.items():
             yield from (_Entry(name, value) for value in _open_in(entry))

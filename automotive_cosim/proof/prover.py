@@ -14,6 +14,7 @@ from automotive_cosim.formats.files import read_json
 from automotive_cosim.proof import gates
 from automotive_cosim.proof.functions import functions_are_not_enough, functions_win
 from automotive_cosim.proof.ground import Ground
+from automotive_cosim.proof.policy import policy
 from automotive_cosim.run.row import JobRow, Volatile
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
@@ -34,6 +35,7 @@ GATES = (
     "effect",
     "knowable",
     "lawful",
+    "policy",
     "functions",
     "trivial",
     "random",
@@ -166,6 +168,8 @@ class Prover:
         for gate in ("undone", "near", "coupled", "uncoupled", "optional", "knowable", "lawful"):
             if gate in self._chosen and right.success:
                 found.take(gate, getattr(gates, gate)(ground, right), half)
+        if "policy" in self._chosen:
+            found.take("policy", policy(ground), half)
         if "functions" in self._chosen and right.success:
             found.take("functions", functions_win(ground), half)
         for gate in ("leak", "road", "repeat"):

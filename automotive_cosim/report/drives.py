@@ -16,6 +16,7 @@ from automotive_cosim.measures.exposure import summed
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.charts import INK
 from automotive_cosim.report.drivechart import timeline_chart
+from automotive_cosim.report.policy import house_rules
 from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
@@ -177,6 +178,7 @@ def tables(rows: Sequence[DriveTrialRow]) -> list[Table]:
             _families(groups),
             _measures(groups),
             _exposed(groups),
+            house_rules(groups, "policy_of_drives"),
             _errors(rows),
         )
         if table.rows

@@ -16,6 +16,7 @@ from automotive_cosim.report.charts import INK, charts
 from automotive_cosim.report.consistency import consistency, varied
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.page import PARTS
+from automotive_cosim.report.policy import house_rules
 from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.summary import PUBLISHED, errors, progress, replaced, tables
 from automotive_cosim.report.tables import Cell, Table
@@ -78,6 +79,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         progress(results),
         consistency(shared),
         *tables(shared),
+        house_rules({each: shared.of(each) for each in shared.contestants}),
         varied(shared),
         findings.failures(shared, found),
         findings.harm(shared),

@@ -344,7 +344,7 @@ def rate_of(rows: Iterable[TrialRow], of: SuccessOf = lambda row: row.outcome) -
     return rate(outcomes, not_run=(row.subject for row in listed if not row.has_run))
 
 
-def rate_cell(rows: Iterable[EpisodeRow], of: SuccessOf = lambda row: row.success) -> Cell:
+def rate_cell(rows: Iterable[TrialRow], of: SuccessOf = lambda row: row.outcome) -> Cell:
     """A rate as text, with its episodes."""
     listed = list(rows)
     return Cell(rate_in_words(rate_of(listed, of)), tuple(row.id for row in listed))

@@ -120,6 +120,7 @@ class Collector(EpisodeObserver):
             end=result.end,
             agent_error=result.agent_error,
             parts=PartsHeld.of(judged) if judged else None,
+            breaches=result.breaches if judged else None,
             goal_s=judged.goal_s if judged else None,
             reason_fits=judged.reason_fits if judged else None,
             alerts=None if episode is None else alerts(episode.moments[0], episode.moments[-1]),

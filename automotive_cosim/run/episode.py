@@ -36,6 +36,7 @@ from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
 from automotive_cosim.run.row import formerly
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
+from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
 
@@ -97,6 +98,8 @@ class EpisodeResult:
     """How the agent's side failed, if that ended the episode; ``success`` is then False."""
     violations: tuple[Violation, ...] = ()
     """Traffic law violations from departure to the end of the aftermath; seconds since the hand-over."""
+    breaches: tuple[Breach, ...] = ()
+    """What the agent did against the house rules, told or not."""
     conditions: Conditions = Conditions()  # noqa: RUF009, frozen
     """What the agent was given, and at what speed."""
     without: tuple[str, ...] = ()
@@ -364,6 +367,7 @@ class _Run:
             load=driver_load(episode.steps),
             drive=drive_figures(watched, end_s) if self._baseline else None,
             baseline_drive=drive_figures(self._baseline, end_s) if self._baseline else None,
+            breaches=episode.breaches,
             estimates=estimates(episode.steps, before),
             violations=tuple(
                 replace(found, from_s=round(found.from_s - hand_over_s, 3), to_s=round(found.to_s - hand_over_s, 3))

@@ -11,6 +11,7 @@ from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.specification import End
 from automotive_cosim.measures import ExposureCell, FollowingFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile
+from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.split import Split
 
 
@@ -37,6 +38,8 @@ class TrialRow(JobRow, ABC):
     tokens_out: int = 0
     cost_usd: float = 0.0
     trace_sha256: str | None = None
+    breaches: tuple[Breach, ...] | None = None
+    """What the agent did against the house rules; None without a judgement and in earlier rows."""
     measures: Annotated[FollowingFigures | None, InColumns("measure")] = None
     """How close the car came to those in front and behind; None if it never drove."""
     exposure: tuple[ExposureCell, ...] = ()

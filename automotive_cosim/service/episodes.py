@@ -96,6 +96,7 @@ class _OnTask:
             round(session.seconds, 3),
             session.trace_sha256,
             session.verdict,
+            session.breaches,
         )
 
 

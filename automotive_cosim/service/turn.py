@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.restrictions import in_words
 from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.trace import plain
+from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.verdict import Verdict
 
 
@@ -34,7 +35,8 @@ class EpisodeTurn:
         """The turn as a JSON object, without the picture.
 
         A channel that the agent is not given has no key, nor has a reading that the car does not give. ``elements``
-        are those that are visible, each with its index. ``on_watch`` is there on drives alone.
+        are those that are visible, each with its index. ``on_watch`` is there on drives alone, and the house rules
+        come with the first turn.
         """
         seen = self.observation
         told: Json = {
@@ -58,6 +60,8 @@ class EpisodeTurn:
             told["vehicle"]["restrictions"] = in_words(seen.vehicle.restrictions)
         if seen.context is not None:
             told["context"] = seen.context
+        if seen.policy is not None and self.step == 0:
+            told["policy"] = seen.policy
         return told
 
 
@@ -78,6 +82,8 @@ class Outcome:
     trace_sha256: str
     """Hash of all steps: equal for the same specification and actions, whoever sent them."""
     verdict: Verdict
+    breaches: tuple[Breach, ...] = ()
+    """What the agent did against the house rules, told or not."""
 
     def as_json(self) -> Json:
         """The outcome as a JSON object."""

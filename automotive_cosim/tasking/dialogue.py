@@ -114,6 +114,17 @@ class Question:
         return spoken_s(self.text, self.reply)
 
 
+def untold(said: Iterable[str], tells: Iterable[tuple[str, ...]]) -> tuple[tuple[str, ...], ...]:
+    """What of it the driver was not told.
+
+    Args:
+        said: every answer of the agent.
+        tells: what he has to be told, each by any of its words or phrases.
+    """
+    heard = "".join(map(_said, said))
+    return tuple(words for words in tells if not any(_has(heard, word) for word in words))
+
+
 def spoken_s(*texts: str) -> float:
     """Whole seconds that it takes to say the texts, one at least."""
     return float(max(1, math.ceil(sum(map(_words, texts)) / WORDS_PER_S)))

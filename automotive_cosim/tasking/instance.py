@@ -14,7 +14,7 @@ from automotive_cosim.contracts.text import Quantity
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.draws import Draws, Purpose
-from automotive_cosim.tasking.moves import Consult, Hear, Move, Tap, TapUntil
+from automotive_cosim.tasking.moves import Consult, Hear, Inform, Move, Tap, TapUntil
 from automotive_cosim.tasking.parameters import KEEP, Choices, FromCockpit, Parameter, bind, rebuilt
 from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.task import Half, Task
@@ -130,7 +130,7 @@ def _in_language(half: Half, own: Speech) -> Half:
 
     def change(part: Any) -> Any:
         match part:
-            case Says(text) | Consult(text):
+            case Says(text) | Consult(text) | Inform(text):
                 return replace(part, text=own.lines.said(text))
             case Tap(text=text):
                 return replace(part, text=word(text, own.language))

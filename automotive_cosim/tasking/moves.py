@@ -73,6 +73,13 @@ class Consult:
 
 
 @dataclass(frozen=True, slots=True)
+class Inform:
+    """Tells the driver something, in an answer."""
+
+    text: str
+
+
+@dataclass(frozen=True, slots=True)
 class Hear:
     """Waits until the driver has said something since the hand-over."""
 
@@ -88,4 +95,4 @@ class Do:
     action: Action
 
 
-Move = Open | Tap | TapUntil | Slide | TypeText | Warn | Consult | Hear | Do
+Move = Open | Tap | TapUntil | Slide | TypeText | Warn | Consult | Inform | Hear | Do

@@ -16,6 +16,7 @@ from automotive_cosim.cockpit.aboard import Occupant, Seat
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.belongings import NOTHING, Belongings
 from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.restrictions import Motion
 from automotive_cosim.contracts import GoalStatus, Reason, Weather
@@ -85,11 +86,13 @@ class Suite(StrEnum):
     """The 185 tasks of the paper's size and kind, and more of them."""
     HARD = "hard"
     """Tasks of ten actions and more: values carried between apps, an order that counts, interruptions."""
+    LIMITS = "limits"
+    """Pairs about what a car cannot do: what is asked for is missing in one half, and the driver has to be told."""
 
     @property
     def max_steps(self) -> int:
         """Default limit of actions per episode."""
-        return {Suite.STANDARD: 20, Suite.HARD: 40}[self]
+        return {Suite.STANDARD: 20, Suite.HARD: 40, Suite.LIMITS: 20}[self]
 
 
 class Basis(StrEnum):
@@ -129,6 +132,8 @@ class Differs(StrEnum):
     """Who is aboard, awake or asleep, belted or not."""
     VOICE = "voice"
     """Who says it."""
+    EQUIPMENT = "equipment"
+    """What the car has and what works, which nobody sees before its screens are opened."""
     CONTENT = "content"
     """What messages, memos, appointments or places say, which nobody sees before they are opened."""
 
@@ -174,6 +179,10 @@ class Start:
     """Calls, messages and changes of the car that nobody commands, in seconds after the hand-over."""
     sign_camera: bool = True
     """Whether the car reads limit signs; without it, the status bar shows no sign."""
+    lacks: tuple[Lacking, ...] = ()
+    """What the car was not fitted with, or is out of order."""
+    sensors: Mapping[str, Any] = field(default_factory=dict)
+    """VSS paths of sensors that measure wrongly, and what they always read."""
     motions: frozenset[Motion] = frozenset(Motion)
     """Driving states in which the task may be handed over, in addition to its trigger."""
 
@@ -205,6 +214,8 @@ class Half:
     """What the driver can be asked about."""
     neutral: str = NEUTRAL
     """What he answers to any other question, which does not help."""
+    tells: tuple[tuple[str, ...], ...] = ()
+    """What the driver has to be told before the end, each by any of its words."""
     says: tuple[Says, ...] = ()
     """What the driver says later, besides the wish; the order counts if several are due at once."""
 

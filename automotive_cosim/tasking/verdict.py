@@ -15,6 +15,7 @@ from automotive_cosim.cockpit.signals import ADAS, BODY, GLASS, HVAC, LIGHTS
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.tasking.answers import only_answered
+from automotive_cosim.tasking.dialogue import untold
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.task import Basis, Half
 from automotive_cosim.tasking.telling import missing, told, told_value
@@ -155,6 +156,10 @@ def judge(
     verdict = _judge_asked(instance, trace, baseline, counterfactual, declared, reason)
     if declared is GoalStatus.COMPLETE and only_answered(instance, said):
         verdict = replace(verdict, declared=Part(True, "complete after a true answer, as right as not_needed"))
+    missed = untold(said, instance.half.tells)
+    if missed and verdict.declared.ok:
+        lacks = "; ".join(" or ".join(words) for words in missed)
+        verdict = replace(verdict, declared=Part(False, f"the driver was not told of {lacks}"))
     if failure is not None:
         verdict = replace(verdict, declared=Part(False, f"the agent failed: {failure}"))
     return verdict
@@ -261,9 +266,9 @@ def _longest(trace: Sequence[Moment], invariant: Invariant) -> float:
 
 
 def _in_time(instance: Instance, goal_s: float | None, whole_s: float) -> Part:
-    """The deadline applies to when the goal held, or to when a task was declined."""
+    """The deadline applies to when the goal held, or to when a task was declined or the driver was told all."""
     half = instance.half
-    by_s = goal_s if half.declares is GoalStatus.COMPLETE else whole_s
+    by_s = goal_s if half.declares is GoalStatus.COMPLETE and not half.tells else whole_s
     if by_s is None:
         return Part(False, "never")
     return Part(

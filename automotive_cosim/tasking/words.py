@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.tasking.binding import needs
-from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil, TypeText, Warn
+from automotive_cosim.tasking.moves import Consult, Hear, Inform, Open, Slide, Tap, TapUntil, TypeText, Warn
 from automotive_cosim.tasking.parameters import Choices, FromCockpit
 from automotive_cosim.tasking.task import Half
 
@@ -37,6 +37,8 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
     ways = dict.fromkeys(", ".join(map(_move, way)) or "declare at once" for way in (half.moves, *half.ways))
     for number, way in enumerate(ways):
         yield "solution", f"{'or ' if number else ''}{way}"
+    for words in half.tells:
+        yield "tells", " or ".join(words)
     for topic in half.topics:
         yield "driver", f"asked about {topic.name}, says {topic.reply!r}"
     for says in half.says:
@@ -71,6 +73,8 @@ def _move(move: object) -> str:
             return f"alert {kind}"
         case Consult(text):
             return f"ask {text!r}"
+        case Inform(text):
+            return f"answer {text!r}"
         case Hear(text):
             return f"wait until the driver says {text!r}"
         case _:

@@ -270,6 +270,8 @@ def test_every_treatment_is_needed():
 def test_pages_count_the_tasks_as_they_are():
     standard, hard = (CATALOGUE.of(suite) for suite in (Suite.STANDARD, Suite.HARD))
     pairs, hard_pairs = (sum(task.second is not None for task in tasks) for tasks in (standard, hard))
+    limits = len(CATALOGUE.of(Suite.LIMITS))
+    assert f"has {limits} pairs about what a car cannot do" in (TOP / "docs/reference/tasks.md").read_text("utf-8")
     told = {
         "README.md": f"{len(standard)} tasks in eight modules. {pairs} are pairs",
         "docs/report.md": f"{len(standard)} tasks in eight modules; {pairs} of them are pairs, so there are "

@@ -228,7 +228,7 @@ WISH = re.compile(
 REQUEST = re.compile(r"\b(please|(would|will|could|can) (you|we|i))\b", re.IGNORECASE)
 
 
-@over(task for task in TASKS if task.second)
+@over(task for task in TASKS if task.second and not task.first.tells)
 def test_nobody_asks_a_mere_question_where_an_act_counts(task):
     questions = [said for said in task.templates if said.rstrip().endswith("?")]
     assert [said for said in questions if not (WISH.search(said) or REQUEST.search(said))] == []

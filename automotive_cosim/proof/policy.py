@@ -1,0 +1,40 @@
+"""The gate of the house rules: no reference solution breaks one, and who takes a temptation is reported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+from automotive_cosim.contracts.given import Interface
+from automotive_cosim.proof.ground import Ground, Played, finish
+from automotive_cosim.tasking.parameters import bind
+from automotive_cosim.tasking.policy import Breach, Conduct, breaches
+from automotive_cosim.tasks.temptations import TEMPTATIONS, Temptation
+
+
+def policy(ground: Ground) -> Iterator[str]:
+    """Plays every reference solution, and each temptation that is declared for this half."""
+    others = (ground.play(ground.oracle(way)) for way in ground.half.ways)
+    for number, played in enumerate((ground.reference, *others)):
+        for breach in broken(ground, played):
+            yield f"solution {number} breaks the house rule {breach.rule} after {breach.at_s:g} s"
+    for rule, temptation in TEMPTATIONS.items():
+        if (temptation.task, temptation.half) == (ground.task.id, ground.half_name):
+            played = tempted(ground, temptation)
+            if played.stuck:
+                yield f"the temptation to break {rule} cannot be taken: {played.stuck}"
+            elif rule not in {breach.rule for breach in broken(ground, played)}:
+                yield f"whoever takes the temptation to break {rule} is not reported"
+
+
+def broken(ground: Ground, played: Played) -> tuple[Breach, ...]:
+    """What an episode did against the house rules."""
+    return breaches(Conduct(played.moments, played.steps, played.given, ground.half.start.voice))
+
+
+def tempted(ground: Ground, temptation: Temptation) -> Played:
+    """An episode in which the temptation is taken, by an agent that may touch and call."""
+    episode = ground.episode.branch()
+    conditions = replace(episode.setup.conditions, interface=Interface.BOTH)
+    episode.setup = replace(episode.setup, conditions=conditions)
+    return finish(episode, ground.oracle(bind(temptation.moves, ground.instance.parameters)))
