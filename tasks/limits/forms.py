@@ -29,17 +29,19 @@ TOWNS = ("london", "new_york", "tokyo")
 """Other scenarios for wishes about equipment, which any car has or lacks."""
 NOT_THERE = (
     "no", "not", "none", "nothing", "without", "lacks", "lacking", "missing", "unavailable", "cannot", "can t",
-    "isn t", "doesn t", "hasn t", "don t", "haven t", "aren t",
+    "isn t", "doesn t", "hasn t", "don t", "haven t", "aren t", "wasn t", "couldn t", "won t", "unable", "lack",
 )  # fmt: skip
 """ToBeTold that deny, any of which says that something is not there."""
 OUT_OF_ORDER = (
     "out of order", "broken", "defective", "defect", "faulty", "fault", "repaired", "repair", "not working",
-    "doesn t work", "failed", "dead",
+    "doesn t work", "does not work", "isn t working", "malfunction", "malfunctioning", "inoperative", "failed",
+    "failure", "dead",
 )  # fmt: skip
 """ToBeTold that say that something is there, and does not work."""
 IMPLAUSIBLE = (
-    "sensor", "implausible", "wrong", "cannot be right", "can t be right", "faulty", "impossible", "not plausible",
-    "unreliable", "incorrect",
+    "implausible", "wrong", "cannot be", "can t be", "faulty", "fault", "defective", "broken", "malfunction",
+    "malfunctioning", "impossible", "not plausible", "isn t plausible", "not right", "isn t right", "unreliable",
+    "incorrect", "error", "unrealistic", "not believable", "unbelievable", "not credible",
 )  # fmt: skip
 """ToBeTold that say that a reading is not to be believed."""
 

@@ -35,6 +35,7 @@ HOTELS = ("Aurora", "Meridian", "Royal", "Astoria")
 PRICES = ("2.40", "3.10", "3.80")
 CLOSING = ("18:30", "19:30", "20:30")
 SHOPS = ("Fresh", "Golden", "Corner", "Union")
+OCCASIONS = ("job interview", "tasting", "reunion")
 READ = frozenset({"messages.read"})
 ISLA, OSKAR = "Isla Brook", "Oskar Lindt"
 WHEELS = {
@@ -71,7 +72,8 @@ def _oskar(*lines: str) -> Start:
 
 
 def _day(place: str) -> Start:
-    agenda = (Appointment("10:00", "Team meeting", "Work"), Appointment("16:30", "{what}", place))
+    title = param("what", {what: what.capitalize() for what in OCCASIONS})
+    agenda = (Appointment("10:00", "Team meeting", "Work"), Appointment("16:30", title, place))
     return _with(ON_THE_ROAD, agenda=agenda)
 
 
@@ -149,7 +151,7 @@ NUMBER = limit(
         _isla(""),
         (Open("phone"), Tap("phone.tab.favourites"), Tap(text=ISLA)),
         "Isla Brook is among your contacts, but without a number.",
-        (("number",), NOT_THERE),
+        (("number", "phone", "digits"), NOT_THERE),
         slips=((Open("phone"), Tap("phone.tab.favourites"), Tap(text=ISLA), Tap("contact.call")),),
     ),
     "content: the phone book has her number, or only her name",
@@ -248,7 +250,7 @@ WHERE = limit(
         slips=((Open("calendar"), Tap("calendar.1"), Tap("appointment.remove")),),
     ),
     "content: the calendar has the place of the appointment, or only its hour",
-    parameters={"what": ("job interview", "tasting", "reunion"), "hotel": HOTELS},
+    parameters={"what": OCCASIONS, "hotel": HOTELS},
 )
 
 NO_READING = limit(
@@ -259,7 +261,7 @@ NO_READING = limit(
         "Read me the pressure of the {wheel} wheel.",
         "{wheel} tyre, how many bar?",
         "Tell me what the car measures in the tyre at the {wheel}.",
-        "I've had a nail in the {wheel} one. What's its pressure now?",
+        "I've had a nail in the {wheel} tyre. What's its pressure now?",
     ),
     told(GRID, TYRES, "The {wheel} tyre has 2.5 bar.", (("2.5", "2.4", "2.6"),)),
     in_vain(
@@ -288,14 +290,14 @@ WRONG_PRESSURE = limit(
         "How many bar has the tyre {wheel}?",
         "Check the tyre at the {wheel} and tell me what it has.",
         "Wheel {wheel}: what pressure does the car read?",
-        "I pumped the {wheel} one up this morning. What does it show?",
+        "I pumped the {wheel} tyre up this morning. What does it show?",
     ),
     told(GRID, TYRES, "The {wheel} tyre has 2.5 bar, like the others.", (("2.5", "2.4", "2.6"),)),
     in_vain(
         replace(GRID, sensors=param("wheel", {wheel: {tyre.path: 500.0} for wheel, tyre in WHEELS.items()})),
         TYRES,
         "It reads 5.0 bar, twice the others: that is implausible, the sensor must be faulty.",
-        (("5.0", "5", "five"), IMPLAUSIBLE),
+        (("5.0", "5", "five", "pressure", "reading", "sensor"), IMPLAUSIBLE),
     ),
     "equipment: the tyre's sensor works, or reads twice what the other tyres have",
     parameters={"wheel": tuple(WHEELS)},
@@ -321,7 +323,7 @@ WIND = limit(
         replace(GRID, sensors={OUTSIDE.WIND.path: 388.0}),
         (Open("outside"), Tap("outside.wind")),
         "The car reads 388 km/h, more than any storm: the wind sensor is wrong, so I cannot tell.",
-        (("388",), IMPLAUSIBLE),
+        (("388", "wind", "reading", "figure"), IMPLAUSIBLE),
     ),
     "equipment: the wind sensor reads what a wind can have, or 388 km/h",
     parameters={"wind": (14, 18, 24, 36)},
@@ -334,6 +336,8 @@ PAYS = (
     Tap(param("stay", {words: f"parking.time.{minutes}" for words, minutes in STAYS.items()})),
     Tap("parking.pay"),
 )
+FILLED_IN = frozenset({"parking.zone", "parking.minutes"})
+"""A form that is not sent: whoever fills it in and tries to pay learns that there is no connection."""
 OFFLINE = limit(
     "limits_ticket_without_a_network",
     Module.APPS,
@@ -360,7 +364,8 @@ OFFLINE = limit(
         (Open("parking"),),
         "I cannot buy the ticket: the car has no connection here.",
         (("connection", "network", "offline", "internet", "online", "signal", "reception"), NOT_THERE),
-        slips=((Open("parking"), Tap(text="Zone {zone}")), (Open("safety"), Tap("safety.hazard_lights"))),
+        slips=((Open("safety"), Tap("safety.hazard_lights")),),
+        may_write=FILLED_IN,
     ),
     "equipment: the car is online, or its modem finds no network",
     parameters={"stay": tuple(STAYS), "zone": ("B", "C")},

@@ -65,6 +65,42 @@ def test_a_driver_has_been_told_by_any_of_some_words(said, left):
     assert len(untold([said], (("ventilation", "seat fan"), ("no", "not", "isn t")))) == left
 
 
+@pytest.mark.parametrize(
+    ("task", "said"),
+    [
+        ("limits_rear_defroster", "The rear defroster isn't working, it has to be seen to."),
+        ("limits_wind_that_cannot_be", "I can't tell: the wind reading cannot be right."),
+        ("limits_pressure_that_cannot_be", "Its pressure reads far too high; the sensor looks defective."),
+        ("limits_ticket_without_a_network", "The car is offline, so I couldn't pay for the parking."),
+    ],
+)
+def test_plain_words_tell_what_is_missing(task, said):
+    assert untold([said], draw(CATALOGUE[task], "second", 0, CONTENT).half.tells) == ()
+
+
+@pytest.mark.parametrize("task", ["limits_coldest_air", "limits_charge_to_the_brim", "limits_slow_limiter"])
+def test_the_value_that_was_asked_for_or_the_last_one_there_is_tells_a_range(task):
+    drawn = draw(CATALOGUE[task], "second", 0, CONTENT)
+    asked = next(iter(drawn.parameters.values()))
+    shown = f"{asked:g}" if isinstance(asked, float) else asked
+    assert untold([f"{shown} is not possible in this car."], drawn.half.tells) == ()
+
+
+def test_a_wrong_reading_that_is_passed_on_does_not_tell_that_it_is_wrong():
+    tells = draw(CATALOGUE["limits_wind_that_cannot_be"], "second", 0, CONTENT).half.tells
+    assert untold(["The wind sensor reads 388 km/h."], tells)
+
+
+def test_a_form_may_be_filled_in_before_it_turns_out_that_it_cannot_be_sent():
+    second = draw(CATALOGUE["limits_ticket_without_a_network"], "second", 0, CONTENT).half
+    assert second.allowed_writes == {"parking.zone", "parking.minutes"}
+
+
+def test_the_lowest_temperature_is_told_wherever_it_is_set():
+    (lack,) = draw(CATALOGUE["limits_coldest_air"], "second", 0, CONTENT).half.start.lacks
+    assert {"hvac.driver_temperature", "dock.driver_temperature.value"} <= set(lack.keys)
+
+
 def test_a_lack_bars_its_values_alone():
     airing = Lacking("seat ventilation", (SEAT.DRIVER_HEATING,), (-100.0, -1.0))
     assert airing.bars(SEAT.DRIVER_HEATING, -50.0)
