@@ -50,6 +50,7 @@ from automotive_cosim.cockpit.sensing import sense
 from automotive_cosim.cockpit.signals import (
     HMI,
     LIGHTS,
+    LINK,
     LeafKind,
     Signal,
     Signals,
@@ -188,8 +189,7 @@ class Cockpit:
     def sense(self, surroundings: Surroundings, dt_s: float) -> None:
         """Lets ``dt_s`` seconds pass; the surroundings are those at their end."""
         sense(self._state, surroundings, dt_s)
-        for path, value in self._state.injected.items():
-            self.signals[named(path)] = value
+        self._hold_injected()
         self._tree = None
 
     def freshened(
@@ -198,8 +198,13 @@ class Cockpit:
         """A copy as if it had just departed here, for the arguments of ``fresh.put_back``."""
         twin = self.copy()
         put_back(twin._state, departed._state, surroundings, way, with_air=with_air)
+        twin._hold_injected()
         twin._tree = None
         return twin
+
+    def _hold_injected(self) -> None:
+        for path, value in self._state.injected.items():
+            self.signals[named(path)] = value
 
     def expect(self, interruptions: Sequence[Arrival | CarChange]) -> None:
         """Lets calls, messages and changes of the car come, at seconds from now.
@@ -232,6 +237,11 @@ class Cockpit:
         if signal.kind is not LeafKind.ACTUATOR:
             self._state.injected = {**self._state.injected, path: self.signals[signal]}
         self._tree = None
+
+    @property
+    def is_cut_off(self) -> bool:
+        """Whether it was set to have no connection, whatever networks there are."""
+        return self._state.injected.get(LINK.ONLINE.path) is False
 
     def get_property(self, name: str, area: int = vhal.GLOBAL) -> Any:
         """A signal by its VHAL name, in VHAL's unit; raises like ``vhal.get_property``."""

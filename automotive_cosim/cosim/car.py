@@ -8,7 +8,7 @@ from datetime import UTC, datetime, timedelta
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import DrivingState, RouteOption
 from automotive_cosim.cosim.moment import Moment, around
-from automotive_cosim.geo.connectivity import Modem
+from automotive_cosim.geo.connectivity import OFFLINE, Modem
 from automotive_cosim.geo.gps import Gps
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.signs import LocalSigns
@@ -90,6 +90,8 @@ class Car:
         weather = weather_at(self.weather, elapsed_s)
         gps = None if self.gps is None else self.gps.read(driving, dt_s)
         connectivity = self.modem.read(driving, dt_s, round(elapsed_s, 6))
+        if self.cockpit.is_cut_off:
+            connectivity = OFFLINE
         if connectivity.online and driving.end is None and self._is_asking(driving.time_s):
             self.alternatives_asked_s = driving.time_s
             self.alternatives = traffic.alternatives()[1:]

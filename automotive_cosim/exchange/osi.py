@@ -108,7 +108,7 @@ class _Messages:
         self._truth = osi_groundtruth_pb2.GroundTruth
         self._vehicle = osi_object_pb2.MovingObject
         self._light = osi_trafficlight_pb2.TrafficLight
-        options = osi_version_pb2.DESCRIPTOR.GetOptions()
+        options: Any = osi_version_pb2.DESCRIPTOR.GetOptions()
         self._version = options.Extensions[osi_version_pb2.current_interface_version]
         self._recording, self._road = recording, road
         seen = {each.vehicle_id: None for second in recording.road.seconds for each in second.vehicles}

@@ -60,7 +60,7 @@ FREED: Mapping[Differs, frozenset[Facet]] = {
     Differs.EVENTS: frozenset(),
     Differs.ABOARD: frozenset({Facet.ABOARD, Facet.CABIN}),
     Differs.VOICE: frozenset({Facet.WORDS}),
-    Differs.EQUIPMENT: frozenset({Facet.SIGN, Facet.SETTINGS}),
+    Differs.EQUIPMENT: frozenset({Facet.SIGN, Facet.SETTINGS, Facet.LINK, Facet.WEATHER}),
     Differs.CONTENT: frozenset(),
 }
 """What each kind of difference changes by itself; what follows from that names it among its causes."""

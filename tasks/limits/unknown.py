@@ -322,7 +322,7 @@ WIND = limit(
     in_vain(
         replace(GRID, sensors={OUTSIDE.WIND.path: 388.0}),
         (Open("outside"), Tap("outside.wind")),
-        "The car reads 388 km/h, more than any storm: the wind sensor is wrong, so I cannot tell.",
+        "The car reads 388 km/h, more than any storm: the reading is wrong, so I cannot tell.",
         (("388", "wind", "reading", "figure"), IMPLAUSIBLE),
     ),
     "equipment: the wind sensor reads what a wind can have, or 388 km/h",
