@@ -18,9 +18,13 @@ from starlette.types import ASGIApp, Receive, Scope, Send
 
 from automotive_cosim.service.own_names import is_own, own_names
 
+MOST_BYTES = 2**20
+"""Longest request; an action has some hundred bytes, an assessment some thousand."""
+
 
 class Guarded:
-    """An application that answers requests that name this server, have its token and come from no other site."""
+    """An application that answers requests that name this server, have its token, come from no other site and say
+    how long they are: at most ``MOST_BYTES``."""
 
     def __init__(
         self, app: ASGIApp, host: str, port: int, token: str | None = None, also: Collection[str] = ()
@@ -52,6 +56,11 @@ class Guarded:
             return HTTPStatus.MISDIRECTED_REQUEST, "this server has another name; use the address that it printed"
         if origin not in (None, f"http://{host}"):
             return HTTPStatus.FORBIDDEN, "other sites may not use this"
+        length = headers.get("content-length", "0")
+        if "transfer-encoding" in headers or not length.isdecimal():
+            return HTTPStatus.LENGTH_REQUIRED, "say how long the request is"
+        if int(length) > MOST_BYTES:
+            return HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"at most {MOST_BYTES:,} bytes are read"
         if self._token is None:
             return None
         kind, _, given = headers.get("authorization", "").partition(" ")

@@ -8,12 +8,10 @@ import uvicorn
 from mcp.server.mcpserver import MCPServer
 from mcp.server.transport_security import TransportSecuritySettings
 
-from automotive_cosim.doors.guard import Guarded
+from automotive_cosim.doors.guard import MOST_BYTES, Guarded
 
 NOT_ITS_OWN = TransportSecuritySettings(enable_dns_rebinding_protection=False)
 """``Guarded`` asks for more."""
-MOST_BYTES = 2**20
-"""Longest request; an action has some hundred bytes."""
 
 
 def serve_http(server: MCPServer[Any], host: str, port: int, token: str) -> None:
@@ -22,8 +20,5 @@ def serve_http(server: MCPServer[Any], host: str, port: int, token: str) -> None
     Raises:
         SystemExit: the address cannot be used.
     """
-    app = server.streamable_http_app(
-        max_request_body_size=MOST_BYTES,
-        transport_security=NOT_ITS_OWN,
-    )
+    app = server.streamable_http_app(max_request_body_size=MOST_BYTES, transport_security=NOT_ITS_OWN)
     uvicorn.run(Guarded(app, host, port, token), host=host, port=port, log_level="warning")

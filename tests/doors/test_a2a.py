@@ -27,6 +27,7 @@ from a2a.types import Role, SendMessageRequest, TaskState
 
 from automotive_cosim.doors.a2a import Assessor, _Stoppable, _StoppedError, make_app
 from automotive_cosim.doors.assessment import CONFIG, read_assessment
+from automotive_cosim.doors.guard import MOST_BYTES
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Pictures
@@ -226,5 +227,7 @@ def test_a_refusal_is_told_and_foreign_names_are_not_answered(tmp_path: Path, mo
         for name, value in (("Host", "evil.example"), ("Origin", "http://evil.example")):
             answer = httpx.get(url + ".well-known/agent.json", headers={name: value}, trust_env=False)
             assert answer.status_code in (403, 421)
+        for giant, code in (({"content": b" " * (MOST_BYTES + 1)}, 413), ({"content": iter([b"{", b"}"])}, 411)):
+            assert httpx.post(url, **giant, trust_env=False).status_code == code
         assert httpx.get(url + ".well-known/agent.json", trust_env=False).json()["name"] == "automotive_cosim"
     assert not list(tmp_path.iterdir())
