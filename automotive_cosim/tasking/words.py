@@ -38,7 +38,7 @@ def half_in_words(half: Half) -> Iterable[tuple[str, str]]:
     for number, way in enumerate(ways):
         yield "solution", f"{'or ' if number else ''}{way}"
     for words in half.tells:
-        yield "tells", " or ".join(words)
+        yield "tells", " or ".join(map(str, words))
     for topic in half.topics:
         yield "driver", f"asked about {topic.name}, says {topic.reply!r}"
     for says in half.says:
