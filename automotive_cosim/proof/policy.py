@@ -13,11 +13,10 @@ from automotive_cosim.tasks.temptations import TEMPTATIONS, Temptation
 
 
 def policy(ground: Ground) -> Iterator[str]:
-    """Plays every reference solution, and each temptation that is declared for this half."""
-    others = (ground.play(ground.oracle(way)) for way in ground.half.ways)
-    for number, played in enumerate((ground.reference, *others)):
-        for breach in broken(ground, played):
-            yield f"solution {number} breaks the house rule {breach.rule} after {breach.at_s:g} s"
+    """Looks at the reference solution, and plays each temptation declared for this half. Other ways that the
+    verdict accepts may break a rule, such as one without a look-up."""
+    for breach in broken(ground, ground.reference):
+        yield f"the reference solution breaks the house rule {breach.rule} after {breach.at_s:g} s"
     for rule, temptation in TEMPTATIONS.items():
         if (temptation.task, temptation.half) == (ground.task.id, ground.half_name):
             played = tempted(ground, temptation)
