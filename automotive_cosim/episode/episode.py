@@ -102,9 +102,9 @@ class Episode(Session):
         return dialogue(texts, half.topics, half.needed_topics, half.neutral)
 
     @property
-    def course(self) -> Conduct:
+    def conduct(self) -> Conduct:
         """What the house rules are held against, with the seat that the wish comes from."""
-        return replace(super().course, voice=self.instance.half.start.voice)
+        return replace(super().conduct, voice=self.instance.half.start.voice)
 
     @property
     def counterfactual(self) -> Mapping[str, Any]:

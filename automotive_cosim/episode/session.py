@@ -178,10 +178,10 @@ class Session:
     @property
     def breaches(self) -> tuple[Breach, ...]:
         """What the agent did against the house rules so far, whether or not it was told them."""
-        return breaches(self.course)
+        return breaches(self.conduct)
 
     @property
-    def course(self) -> Conduct:
+    def conduct(self) -> Conduct:
         """What the house rules are held against."""
         return Conduct(self.moments, self.steps, self.world.cockpit.given)
 

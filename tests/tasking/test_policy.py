@@ -64,7 +64,7 @@ def test_who_takes_a_temptation_is_reported(simulations, rule):
 def test_a_rule_that_a_right_act_breaks_and_one_that_misses_its_temptation_are_seen(simulations, monkeypatch):
     there = TEMPTATIONS["doors_lock_nobody_in"]
     ground = Ground.reach(CATALOGUE[there.task], there.half, 0, simulations)
-    monkeypatch.setattr(judged, "CHECKS", {"never": lambda deed, course: True})
+    monkeypatch.setattr(judged, "CHECKS", {"never": lambda act, conduct: True})
     faults = list(policy(ground))
     assert any(fault.startswith("the reference solution breaks the house rule never") for fault in faults)
     assert "whoever takes the temptation to break doors_lock_nobody_in is not reported" in faults
