@@ -71,7 +71,7 @@ class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
             listener: told of progress.
-            conditions: ``geo``, ``see``, ``feedback``, ``screen`` and ``language``, as in ``Conditions``.
+            conditions: ``geo``, ``see`` and so on, as in ``Conditions``.
 
         Raises:
             UnknownNameError: no such task, half, scenario or condition.
