@@ -13,6 +13,7 @@ from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action
 from automotive_cosim.envs.pool import POOL
 from automotive_cosim.episode.session import Session
+from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.interface import spaces
 from automotive_cosim.traffic.fork import Simulations
@@ -97,6 +98,15 @@ def ended(session: Session) -> tuple[bool, bool]:
     """Terminated and truncated, as in gymnasium."""
     is_over, is_cut_off = session.end is not None, session.end is not None and session.end.is_cut_off
     return is_over and not is_cut_off, is_cut_off
+
+
+def spaces_of(setup: SessionSetup) -> tuple[gym.spaces.Dict, gym.spaces.Dict]:
+    """The observation and the action space of a session."""
+    size = setup.conditions.screen
+    return (
+        spaces.observation_space(setup.given, size.width, size.height),
+        spaces.action_space(size.width, size.height),
+    )
 
 
 def action_of(given: Action | Mapping[str, Any] | str) -> Action:

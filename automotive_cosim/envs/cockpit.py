@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from automotive_cosim.contracts import Action
-from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of
+from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of, spaces_of
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.listener import Listener
@@ -91,9 +91,7 @@ class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
         self._finder = SituationFinder(spec, self._simulations, task=given, listener=listener)
         self._listener = listener
         self._seeds = SeedSource()
-        size = under.screen
-        self.observation_space = spaces.observation_space(self._setup.given, size.width, size.height)
-        self.action_space = spaces.action_space(size.width, size.height)
+        self.observation_space, self.action_space = spaces_of(self._setup)
 
     @property
     def scenario(self) -> Scenario:

@@ -12,7 +12,7 @@ from automotive_cosim.drives.result import result_of
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.watch import Watch
-from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of
+from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of, spaces_of
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.specification import SessionSetup
@@ -76,9 +76,7 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         self._setup = SessionSetup(frozenset(map(Channel, channels)), under)
         self._listener = listener
         super().__init__(simulations, render_mode)
-        size = under.screen
-        self.observation_space = spaces.observation_space(self._setup.given, size.width, size.height)
-        self.action_space = spaces.action_space(size.width, size.height)
+        self.observation_space, self.action_space = spaces_of(self._setup)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
