@@ -23,6 +23,7 @@ from automotive_cosim.tasks import (
     hvac_asking,
     hvac_hints,
     hvac_safety,
+    leaving,
     limits,
     maps,
     maps_aboard,
@@ -81,6 +82,7 @@ for _module in (
     road_aboard,
     system_doors_aboard,
     system_aboard,
+    leaving,
     hard,
     limits,
 ):
