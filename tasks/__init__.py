@@ -33,6 +33,9 @@ from automotive_cosim.tasks import (
     media,
     media_aboard,
     media_asking,
+    noticed,
+    one_of_two,
+    outright,
     phenomenon,
     phenomenon_aboard,
     phenomenon_asking,
@@ -45,6 +48,7 @@ from automotive_cosim.tasks import (
     system_aboard,
     system_asking,
     system_doors_aboard,
+    under_way,
 )
 
 __all__ = ["CATALOGUE"]
@@ -83,6 +87,10 @@ for _module in (
     system_doors_aboard,
     system_aboard,
     leaving,
+    under_way,
+    outright,
+    one_of_two,
+    noticed,
     hard,
     limits,
 ):

@@ -320,9 +320,9 @@ CHILD_IN_FRONT = hazard(
         SignalRaised(SEAT.PASSENGER_POSITION, 100.0),
         *SEATS,
         Tap("seat.who.passenger"),
-        Tap("seat.passenger.position.increase", times=14),
+        Tap("seat.passenger.position.increase", times=10),
         rule=NEAR_AIRBAG_SOURCE,
-        ways=((*SEATS, Tap("seat.who.passenger"), Tap("seat.passenger.position.increase", times=20)),),
+        ways=((*SEATS, Tap("seat.who.passenger"), Tap("seat.passenger.position.increase", times=14)),),
     ),
     rest(
         at(
