@@ -24,6 +24,7 @@ from automotive_cosim.tasks import (
     hvac_hints,
     hvac_safety,
     leaving,
+    left_to_the_car,
     limits,
     maps,
     maps_aboard,
@@ -91,6 +92,7 @@ for _module in (
     outright,
     one_of_two,
     noticed,
+    left_to_the_car,
     hard,
     limits,
 ):
