@@ -7,7 +7,7 @@ from dataclasses import replace
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.signals import BODY, CABIN, DRIVE, ENERGY, HVAC, LIGHTS, MIRROR, SEAT
 from automotive_cosim.contracts import AlertKind, Weather
-from automotive_cosim.tasking.checks import AlertGiven, AllOf, SignalIs, SignalRaised
+from automotive_cosim.tasking.checks import AlertGiven, AllOf, AnyOf, SignalIs, SignalRaised
 from automotive_cosim.tasking.moves import Open, Slide, Tap, Warn
 from automotive_cosim.tasking.task import Module, Start
 from automotive_cosim.tasks.aboard import (
@@ -345,11 +345,12 @@ WASHER_FOR_THE_SLUSH = pair(
     ),
     act(
         parked("nordic", "town", **{BODY.WASHER_FLUID.path: 3.0}),
-        AlertGiven(AlertKind.VEHICLE),
+        AnyOf((AlertGiven(AlertKind.VEHICLE), AlertGiven(AlertKind.VISIBILITY))),
         Open("vehicle"),
         Tap("vehicle.tab.driving"),
         Warn(AlertKind.VEHICLE),
         rule=WASHER_SOURCE,
+        ways=((Warn(AlertKind.VISIBILITY),),),
     ),
     rest(parked("nordic", "town", **{BODY.WASHER_FLUID.path: 90.0}), WASHER_SOURCE),
     "settings: the tank of the washer is as good as empty, or full",

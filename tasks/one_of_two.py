@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant
-from automotive_cosim.cockpit.signals import ADAS, BODY, CABIN, DRIVE, HVAC, MEDIA, SEAT
+from automotive_cosim.cockpit.signals import ADAS, BODY, CABIN, DRIVE, HVAC, MEDIA, MIRROR, SEAT
 from automotive_cosim.contracts import AlertKind, Weather
 from automotive_cosim.tasking.checks import AlertGiven, SignalIs, SignalRaised, SignalWithin
 from automotive_cosim.tasking.moves import Open, Slide, Tap, Warn
@@ -38,7 +38,11 @@ HOT_CHILD_SOURCE = "a child's body warms up three to five times as fast as an ad
 HEAT = Weather(33.0, 40.0, 0.0, 0, 5.0, 20_000.0, 8.0)
 JULY = "2026-07-14T15:00:00"
 SENSORS = (*ASSIST, Tap("adas.parking_sensors"))
-REAR_HEAT = (Open("climate"), Tap("hvac.comfort"), Tap("hvac.rear_left_seat_heating", times=2))
+REAR_HEAT = (Open("climate"), Tap("hvac.comfort"), Tap("hvac.rear_left_seat_heating"))
+FOLDED = frozenset({MIRROR.DRIVER_FOLDED.path, MIRROR.PASSENGER_FOLDED.path})
+"""Mirrors may be folded in as well."""
+FOR_RASCALS = frozenset({CABIN.LEFT_CHILD_LOCK.path, CABIN.RIGHT_CHILD_LOCK.path, HVAC.KEPT.path})
+"""What may be done for children who stay, besides."""
 SMALL_HANDS = (on(REAR_LEFT, Kind.CHILD), Occupant(REAR_RIGHT, Kind.ADULT))
 
 
@@ -85,6 +89,7 @@ CAR_WASH = pair(
         LAMPS,
         Tap("wiper.front.off"),
         rule=BRUSH_SOURCE,
+        may_write=FOLDED,
     ),
     act(
         parked("beauce", "plain", **{BODY.FRONT_WIPER.path: "OFF", CABIN.REAR_LEFT_WINDOW.path: 20.0}),
@@ -92,6 +97,7 @@ CAR_WASH = pair(
         *DOORS,
         Slide("window.rear_left", 0.0),
         rule=BRUSH_SOURCE,
+        may_write=FOLDED,
         ways=((*DOORS, Tap("window.close_all")),),
     ),
     "settings: the wipers wait for drops, or they are off and a rear window is ajar",
@@ -235,6 +241,7 @@ JUST_PAYING = hazard(
         *DRIVING_TAB,
         Tap("drive.parking_brake"),
         rule=UNATTENDED_SOURCE,
+        may_write=FOR_RASCALS,
     ),
     act(
         at(
@@ -248,6 +255,7 @@ JUST_PAYING = hazard(
         *DOORS,
         Tap("window.lock"),
         rule=WINDOW_LOCK_SOURCE,
+        may_write=FOR_RASCALS,
     ),
     "settings: the parking brake is off, or the rear windows are not locked",
 )
@@ -274,6 +282,7 @@ LOOSE_DOG = hazard(
         *DOORS,
         Tap("door.trunk"),
         rule=LOOSE_DOG_SOURCE,
+        may_write=frozenset({CABIN.WINDOW_LOCK.path}),
     ),
     act(
         at(
@@ -287,6 +296,7 @@ LOOSE_DOG = hazard(
         *DOORS,
         Slide("window.rear_right", 0.0),
         rule=LOOSE_DOG_SOURCE,
+        may_write=frozenset({CABIN.WINDOW_LOCK.path}),
         ways=((*DOORS, Slide("window.rear_right", 20.0)), (*DOORS, Tap("window.close_all"))),
     ),
     "settings: the trunk is open, or the window beside the dog",
@@ -387,6 +397,7 @@ ROUGH_AREA = pair(
         *DOORS,
         Tap("door.passenger"),
         rule=THEFT_SOURCE,
+        may_write=FOLDED,
         ways=((*DOORS, Tap("door.all")),),
     ),
     act(
@@ -395,6 +406,7 @@ ROUGH_AREA = pair(
         *DOORS,
         Slide("window.rear_right", 0.0),
         rule=THEFT_SOURCE,
+        may_write=FOLDED,
         ways=((*DOORS, Tap("window.close_all")),),
     ),
     "settings: the passenger's door is unlocked, or a rear window is open",

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind
-from automotive_cosim.cockpit.signals import ADAS, BODY, CABIN, DRIVE, HMI, HVAC, LIGHTS, SEAT, Signal
+from automotive_cosim.cockpit.signals import ADAS, CABIN, DRIVE, HMI, HVAC, LIGHTS, SEAT, Signal
 from automotive_cosim.contracts import Weather
 from automotive_cosim.tasking.checks import AnyOf, SignalIs, SignalWithin
 from automotive_cosim.tasking.moves import Open, Slide, Tap
@@ -70,50 +70,6 @@ def start(scenario: str, trip: str, signals: dict[Signal[Any], Any] | None = Non
     return Start(scenario, trip, signals={one.path: value for one, value in (signals or {}).items()}, **more)
 
 
-WIPED = tuple((LAMPS, Tap(f"wiper.front.{pace}")) for pace in ("auto", "slow", "medium", "fast"))
-CLEAR_GLASS = AnyOf((SignalIs(HVAC.FRONT_DEFROSTER, (True,)), SignalIs(HVAC.MAX_DEFROST, (True,))))
-VIEW_AHEAD = pair(
-    "phenomenon_view_ahead",
-    Module.PHENOMENON,
-    (
-        "Everything is a blur in front of me. Do what clears the windshield.",
-        "I can hardly make out the road; get me a clear pane, please.",
-        "The glass! I need to see through it, quickly.",
-        "It's like looking through a bathroom window up front, put an end to that.",
-        "Free the view ahead, however that's done today.",
-    ),
-    act(
-        start(
-            "grid",
-            "round",
-            {BODY.FRONT_WIPER: "OFF", LIGHTS.SWITCH: "BEAM"},
-            start="2026-05-12T10:20:00",
-            weather=STEADY_RAIN,
-            cabin={"temperature_c": 19.0, "humidity_pct": 40.0},
-        ),
-        SignalIs(BODY.FRONT_WIPER, ("RAIN_SENSOR", "SLOW", "MEDIUM", "FAST")),
-        *WIPED[0],
-        rule=VIEW_SOURCE,
-        ways=WIPED[1:],
-    ),
-    act(
-        start(
-            "grid",
-            "round",
-            {BODY.FRONT_WIPER: "OFF", LIGHTS.SWITCH: "BEAM", HVAC.RECIRCULATION: True},
-            start="2026-05-12T10:20:00",
-            weather=replace(DAMP_COLD, temperature_2m=6.0),
-            cabin={"temperature_c": 21.0, "humidity_pct": 85.0, "wet_clothes": True},
-        ),
-        CLEAR_GLASS,
-        Open("climate"),
-        Tap("hvac.front_defroster"),
-        rule=VIEW_SOURCE,
-        ways=((Tap("dock.front_defroster"),), (Open("climate"), Tap("hvac.max_defrost"))),
-    ),
-    "weather and settings: rain on the outside of the glass and the wipers off, or damp breath on its inside",
-)
-
 BRIGHT = {HMI.BRIGHTNESS: 100.0, HMI.DAY_NIGHT_AUTO: False, HMI.DAY_NIGHT: "DAY"}
 LESS_LIGHT = pair(
     "system_less_light_inside",
@@ -136,12 +92,15 @@ LESS_LIGHT = pair(
     ),
     act(
         start("beauce", "villages", BRIGHT, start=NIGHT, weather=DRY_EVENING),
-        SignalWithin(HMI.BRIGHTNESS, 0.0, 55.0),
+        AnyOf((SignalWithin(HMI.BRIGHTNESS, 10.0, 55.0), SignalIs(HMI.DAY_NIGHT, ("NIGHT",)))),
         Open("settings"),
         Slide("settings.brightness", 20.0),
         rule=DAZZLE_SOURCE,
-        ways=((Open("settings"), Slide("settings.brightness", 40.0)),),
-        may_write=frozenset({HMI.DAY_NIGHT.path, HMI.DAY_NIGHT_AUTO.path}),
+        ways=(
+            (Open("settings"), Slide("settings.brightness", 40.0)),
+            (Open("settings"), Tap("settings.appearance.night")),
+        ),
+        may_write=frozenset({HMI.DAY_NIGHT_AUTO.path}),
     ),
     "settings: the light in the roof is on, or the display stands at full brightness in its colours of the day",
 )
@@ -510,7 +469,6 @@ PANTING = hazard(
 )
 
 TASKS = (
-    VIEW_AHEAD,
     LESS_LIGHT,
     WATCHERS,
     ROOM_IN_FRONT,
