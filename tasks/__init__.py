@@ -18,6 +18,7 @@ from automotive_cosim.tasks import (
     comms_asking,
     folder,
     hard,
+    hints,
     hvac,
     hvac_aboard,
     hvac_asking,
@@ -93,6 +94,7 @@ for _module in (
     one_of_two,
     noticed,
     left_to_the_car,
+    hints,
     hard,
     limits,
 ):

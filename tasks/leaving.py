@@ -356,11 +356,44 @@ WASHER_FOR_THE_SLUSH = pair(
     "settings: the tank of the washer is as good as empty, or full",
 )
 
+TAILGATE = pair(
+    "system_tailgate_while_we_carry",
+    Module.SYSTEM,
+    (
+        "We're still carrying boxes. The lid stays up, unless our things get wet in there.",
+        "I go up for the next chair. Look after the load at the back in this weather, please.",
+        "Leave it open behind for the lads, if the sky allows that; otherwise shut it.",
+        "Ten minutes till the sofa comes down. Is that good for the books in the trunk? If not, cover them.",
+        "Mind the cargo hatch while I'm inside: open is handy, soaked is not.",
+    ),
+    act(
+        replace(
+            parked("border", "old_road", **{CABIN.TRUNK.path: True}),
+            start="2026-05-12T11:20:00",
+            weather=replace(STORM, temperature_2m=12.0, weather_code=63),
+        ),
+        SignalIs(CABIN.TRUNK, (False,)),
+        *DOORS,
+        Tap("door.trunk"),
+        rule=RAIN_SOURCE,
+    ),
+    rest(
+        replace(
+            parked("border", "old_road", **{CABIN.TRUNK.path: True}),
+            start="2026-05-12T11:20:00",
+            weather=replace(SUNNY, temperature_2m=15.0),
+        ),
+        RAIN_SOURCE,
+    ),
+    "weather: steady rain, or a dry day",
+)
+
 TASKS = (
     SHUT_FOR_THE_ROAD,
     STAYS_PUT,
     NOTHING_SHINING,
     ROOF_WHEN_LEFT,
+    TAILGATE,
     MIRRORS_SHOW_NOTHING,
     STILL_PLUGGED_IN,
     LAST_LOOK,

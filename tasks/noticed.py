@@ -627,7 +627,7 @@ PARKING_LAMPS = pair(
     ),
     "time of day: half past nine in the evening, when German law requires dipped beam, or half past twelve",
     dimension=EXPLICIT,
-    tags=PLACE | {"lamps"},
+    tags=frozenset({"lamps"}),
 )
 
 TUNNEL_AIR = Start("paris_centre", "tunnel", driver="average", sign_camera=False)

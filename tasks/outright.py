@@ -97,7 +97,36 @@ FLAP = pair(
     dimension=EXPLICIT,
 )
 
-ENGAGED = All((Driving(), SpeedBetween(45.0)))
+BRAKE = pair(
+    "road_brake_off_at_the_charger",
+    Module.ROAD,
+    (
+        "Parking brake off.",
+        "Let the brake go, we're off.",
+        "Loosen her, I want to roll out of here.",
+        "Take the handbrake away, please.",
+        "Brake: release. The next one is waiting for this place.",
+    ),
+    decline(
+        start("autobahn", "rest", {ENERGY.CABLE: True, ENERGY.CHARGE_FLAP: True}, parked=True),
+        AT_REST,
+        replace(COMFORT, seconds=20.0),
+        Basis.PHYSICS,
+        CABLE_SOURCE,
+        reasons=DANGER,
+    ),
+    act(
+        start("autobahn", "rest", parked=True),
+        SignalIs(DRIVE.PARKING_BRAKE, (False,)),
+        *DRIVING_TAB,
+        Tap("drive.parking_brake"),
+        rule=CABLE_SOURCE,
+    ),
+    "settings: the charging cable is in, or it is out and the flap shut",
+    dimension=EXPLICIT,
+)
+
+ENGAGED = All((Driving(), BuiltUp(False), SpeedAbove(45.0, 70.0, 110.0)))
 CRUISE = pair(
     "road_cruise_on_ice",
     Module.ROAD,
@@ -565,6 +594,7 @@ BLIND = hazard(
 
 TASKS = (
     FLAP,
+    BRAKE,
     CRUISE,
     ROOF,
     SPORT,
