@@ -249,7 +249,7 @@ FOUND = pair(
         "My sister follows me on her screen, she says, or would if the car let her. Let it.",
         "Should I not arrive tonight, somebody has to know where to dig. See to that.",
         "Send a sign of life up to the cloud: where I am, as long as I drive through this wilderness.",
-        "They're to see my dot on the map down in the valley. Switch on what's missing for that, please.",
+        "They're to see my dot on the map down in the valley. Switch that on if it isn't, please.",
     ),
     act(
         start("alpine_pass", "hairpins", {LIGHTS.SWITCH: "BEAM"}),
@@ -259,18 +259,11 @@ FOUND = pair(
         Tap("privacy.position"),
         rule=RESCUE_SOURCE,
     ),
-    act(
-        start(
-            "alpine_pass",
-            "hairpins",
-            {LIGHTS.SWITCH: "BEAM", LINK.SHARE_POSITION: True, LINK.MOBILE_DATA: False},
-        ),
-        SignalIs(LINK.MOBILE_DATA, (True,)),
-        *CONNECTIONS,
-        Tap("link.mobile"),
-        rule=RESCUE_SOURCE,
+    rest(
+        start("alpine_pass", "hairpins", {LIGHTS.SWITCH: "BEAM", LINK.SHARE_POSITION: True}),
+        RESCUE_SOURCE,
     ),
-    "settings: the position is not shared, or it is and the car has no data",
+    "settings: the car keeps its position to itself, or shares it already",
 )
 
 PROTECTS_HER = hazard(

@@ -158,7 +158,7 @@ BIKES = pair(
     "settings: the blind spot assistant is off, or the collision warning",
 )
 
-LOUD = {MEDIA.ACTION.path: "PLAY", MEDIA.VOLUME.path: 85.0}
+PLAYING = {MEDIA.ACTION.path: "PLAY"}
 OUT_OF_THE_YARD = pair(
     "road_out_of_the_yard",
     Module.ROAD,
@@ -170,13 +170,13 @@ OUT_OF_THE_YARD = pair(
         "Help me listen while I leave this courtyard. Whatever is wrong for that, change it.",
     ),
     act(
-        parked("peripherique", "streets", **{ADAS.PARKING_SENSORS.path: False, MEDIA.VOLUME.path: 10.0}),
+        parked("peripherique", "streets", **PLAYING, **{ADAS.PARKING_SENSORS.path: False, MEDIA.VOLUME.path: 10.0}),
         SignalIs(ADAS.PARKING_SENSORS, (True,)),
         *SENSORS,
         rule=YARD_SOURCE,
     ),
     act(
-        parked("peripherique", "streets", **LOUD),
+        parked("peripherique", "streets", **PLAYING, **{MEDIA.VOLUME.path: 85.0}),
         SignalWithin(MEDIA.VOLUME, 0.0, 35.0),
         Open("media"),
         Slide("media.volume", 10.0),
@@ -184,7 +184,7 @@ OUT_OF_THE_YARD = pair(
         may_write=frozenset({MEDIA.MUTED.path, MEDIA.ACTION.path}),
         ways=((Open("media"), Slide("media.volume", 0.0)),),
     ),
-    "settings: the sensors at the rear are off, or music plays at 85 per cent",
+    "settings: the sensors at the rear are off and music plays at 10 per cent, or they are on and it plays at 85",
 )
 
 GRANDFATHER = hazard(
