@@ -1,4 +1,4 @@
-"""What an attentive companion notices: two meanings of a figure, a voice that may not decide, a lamp too many."""
+"""What an attentive companion notices: a figure in another unit, a voice that may not decide, a lamp too many."""
 
 from __future__ import annotations
 
@@ -19,8 +19,6 @@ from automotive_cosim.tasking.triggers import (
     Lit,
     Not,
     OnRoadClass,
-    SpeedAbove,
-    SpeedBetween,
     Trigger,
     TunnelWithin,
     VisibilityBetween,
@@ -64,7 +62,7 @@ from automotive_cosim.tasks.phenomenon_light import (
 from automotive_cosim.tasks.phenomenon_light import NOON as JUNE_NOON
 from automotive_cosim.tasks.road_aboard import LOAD_SOURCE as FLYING_SOURCE
 from automotive_cosim.tasks.road_lamps import BLINDED, FULL, NOBODY, when
-from automotive_cosim.tasks.road_law import FAIR, PLACE, SOON, fine, warned
+from automotive_cosim.tasks.road_law import FAIR, PLACE, fine
 from automotive_cosim.tasks.under_way import ASSIST, DRIVING_TAB, LAMPS, start
 
 BOTH_BLINK_SOURCE = "with both indicators blinking nobody sees where a car is going (Vienna Convention, article 32)"
@@ -101,41 +99,6 @@ THIRTY = pair(
         FRICTION,
     ),
     "weather, date and settings: freezing rain at 30 degrees Fahrenheit in January, or 30 Celsius in July",
-)
-
-FIFTY = pair(
-    "road_fifty_or_fifty",
-    Module.ROAD,
-    (
-        "The dial says about fifty, and so did the sign. Shout if that isn't the same fifty.",
-        "Fifty on the plate, fifty on the screen, or nearly. Warn me if I've got that wrong.",
-        "I'm on the number that's posted, by what I read here. Object with an alert if the figures don't match.",
-        "It's a borrowed car, so check its speedometer for me; a warning, if I'm too fast in truth.",
-        "As far as I can see I keep to the limit. Sound the alarm if I misread the instrument.",
-    ),
-    warned(
-        start(
-            "paris_centre",
-            "foch",
-            {HMI.DISTANCE_UNIT: "MILES"},
-            driver="hurried",
-            start="2026-11-17T12:30:00",
-            sign_camera=False,
-        ),
-        Trigger(SpeedAbove(78.0, 45.0, 50.0), for_s=3.0, within_s=240.0),
-        SOON,
-        Basis.POSTED,
-        "sign B14, 50 km/h; FR Code de la route R413-3",
-        speed_kmh=50.0,
-    ),
-    fine(
-        start("paris_centre", "foch", driver="calm", start="2026-11-17T12:30:00", sign_camera=False),
-        Trigger(All((SpeedAbove(44.0, 50.0, 50.0), SpeedBetween(44.0, 50.3))), for_s=2.0, within_s=240.0),
-        SOON,
-        Basis.POSTED,
-        "sign B14, 50 km/h; FR Code de la route R413-3",
-    ),
-    "settings and traffic: the display counts miles and the car does 80 km/h, or it counts kilometres",
 )
 
 LITTLE_PRINCE = hazard(
@@ -669,7 +632,6 @@ WINDOWS_A_CRACK = pair(
 
 TASKS = (
     THIRTY,
-    FIFTY,
     LITTLE_PRINCE,
     WHITE_WALL,
     BLINKS_ON,
