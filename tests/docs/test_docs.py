@@ -27,6 +27,9 @@ from tests.laws import over
 TOP = Path(__file__).parents[2]
 PAGES = sorted([TOP / "README.md", TOP / "CONTRIBUTING.md", *(TOP / "docs").glob("**/*.md")])
 PAGES = [page for page in PAGES if not {"_made", "_site"} & set(page.parts)]
+LOOKED_UP = {"glossary", "api", "CONTRIBUTING"}
+"""Pages beside docs/reference that nobody reads from beginning to end."""
+MOST_WORDS = 1_000
 PROGRAM = re.compile(r"^(?:\S*/)?automotive-cosim\b")
 
 
@@ -91,6 +94,12 @@ def test_every_python_block_compiles(page):
     for language, text in blocks(page):
         if language == "python":
             compile(text, page.name, "exec")
+
+
+@over([page for page in PAGES if page.parent.name != "reference" and page.stem not in LOOKED_UP])
+def test_a_guide_can_be_read_in_five_minutes(page):
+    prose = re.sub(r"^```[^`]*^```|^    [^\n]*$|\]\(\S+?\)|\|", "", page.read_text("utf-8"), flags=re.MULTILINE)
+    assert len(prose.split()) <= MOST_WORDS, "move what is looked up to docs/reference"
 
 
 # --- run -------------------------------------------------------------------------------------------------
