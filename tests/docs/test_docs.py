@@ -19,6 +19,8 @@ from typer import TyperException
 from typer.main import get_command
 
 from automotive_cosim.cli.main import app
+from automotive_cosim.cockpit.registry import pages
+from automotive_cosim.interface.functions import functions
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
@@ -290,6 +292,11 @@ def test_pages_count_the_tasks_as_they_are():
     }
     for page, words in told.items():
         assert words in (TOP / page).read_text(encoding="utf-8")
+
+
+def test_pages_count_screens_and_functions_as_they_are():
+    assert f"with {len(pages())} screens" in (TOP / "docs/cockpit.md").read_text(encoding="utf-8")
+    assert f"by {len(functions())} typed functions" in (TOP / "docs/functions.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(
