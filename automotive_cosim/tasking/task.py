@@ -89,7 +89,7 @@ class Suite(StrEnum):
     LIMITS = "limits"
     """Pairs about what a car cannot do: what is asked for is missing in one half, and the driver has to be told."""
     CLARIFY = "clarify"
-    """Pairs about wishes that leave something open: the driver has to be asked in one half, in the other it is known."""
+    """Pairs about wishes that leave something open: only the driver knows it, or the car does too."""
 
     @property
     def max_steps(self) -> int:

@@ -349,7 +349,7 @@ TASKS = (
         untold=replace(PARIS, weather=Weather(1.0, 90.0, 0.0, 3, 100.0, 10_000.0, 10.0)),
         told=replace(
             PARIS,
-            weather=param(  # type: ignore[arg-type]
+            weather=param(
                 "which",
                 {
                     "rain": Weather(9.0, 92.0, 3.0, 63, 100.0, 6_000.0, 10.0),
