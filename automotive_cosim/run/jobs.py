@@ -87,7 +87,7 @@ class EpisodeJob:
     @property
     def split(self) -> Split:
         """The set that it belongs to, by its seed and its phrasing."""
-        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out)
+        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out, redrawn=self.setup.redrawn)
 
     @property
     def simulation(self) -> tuple[str, int]:
@@ -163,6 +163,7 @@ class EpisodeJob:
             setup.task, half, setup.agent, setup.model, conditions.geo, f"s{setup.seed}", f"r{self.repeat}",
             setup.scenario or "own",
             *(["held_out"] if setup.held_out else []),
+            *([f"redrawn{setup.redrawn}"] if setup.redrawn else []),
             *replace(conditions, geo=GeoInput.FULL).tags,
         )  # fmt: skip
         return file_name(exactly)
