@@ -109,7 +109,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         self._episode_id = turn.episode_id
         self._state = CarState(episode_id=episode_id, task=task or "", half=half, drive=drive or "", seed=spec.seed)
         offered = [as_openai(function) for function in functions_of(under)]
-        return _observation(turn).model_copy(update={"functions": offered or None})
+        return _observation(turn, functions=offered or None)
 
     def step(self, action: CarAction, timeout_s: float | None = None, **kwargs: Any) -> CarObservation:
         """Performs one action. One that cannot be read counts as a step too.
@@ -149,7 +149,9 @@ def _given(action: CarAction) -> Json | str:
     return action_json(action.function, action.arguments or {})
 
 
-def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservation:
+def _observation(
+    turn: EpisodeTurn, outcome: Json | None = None, functions: list[Json] | None = None
+) -> CarObservation:
     told = {name: value for name, value in turn.as_json().items() if name != "episode_id"}
     picture = turn.picture
     return CarObservation(
@@ -157,6 +159,7 @@ def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservati
         reward=None if outcome is None else reward_of(outcome),
         turn=told,
         picture=None if picture is None else base64.b64encode(picture).decode(),
+        functions=functions,
         outcome=outcome,
     )
 
