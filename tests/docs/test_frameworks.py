@@ -94,7 +94,7 @@ def test_an_example_is_short(example):
 @pytest.mark.parametrize("example", NEEDS)
 def test_an_example_wins(example, model, tmp_path):
     for name in NEEDS[example]:
-        tried = subprocess.run([PYTHON, "-c", f"import {name}"], capture_output=True, check=False)
+        tried = subprocess.run([PYTHON, "-c", f"import {name}"], cwd=tmp_path, capture_output=True, check=False)
         if tried.returncode:
             pytest.skip(f"{PYTHON} has no {name}; AUTOMOTIVE_COSIM_FRAMEWORKS names one that has")
     path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
