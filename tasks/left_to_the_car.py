@@ -2,8 +2,22 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from automotive_cosim.cockpit.aboard import Kind, Occupant
-from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, HMI, HVAC, LIGHTS, LINK, MIRROR, SEAT, VOICE
+from automotive_cosim.cockpit.signals import (
+    ADAS,
+    CABIN,
+    ENERGY,
+    HMI,
+    HVAC,
+    LIGHTS,
+    LINK,
+    MIRROR,
+    SEAT,
+    VOICE,
+    Signal,
+)
 from automotive_cosim.contracts import Action, ActionType, Reason, SlowDown
 from automotive_cosim.tasking.checks import (
     AllOf,
@@ -415,7 +429,7 @@ GUSTS = pair(
     "weather: a strong gale, or next to no wind",
 )
 
-MIRROR_HEATERS = {MIRROR.DRIVER_HEATING: True, MIRROR.PASSENGER_HEATING: True}
+MIRROR_HEATERS: dict[Signal[Any], Any] = {MIRROR.DRIVER_HEATING: True, MIRROR.PASSENGER_HEATING: True}
 BEHIND_IN_SNOW = pair(
     "phenomenon_behind_us_in_snow",
     Module.PHENOMENON,
