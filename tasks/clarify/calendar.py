@@ -24,6 +24,7 @@ KNOWN = (Contact(ISLA, "555 31 40"), Contact(OSKAR, "555 84 26"))
 WHO = Topic("whom", (("isla",), ("oskar",)), "{which}.", ("who", "whom", "{what}"))
 FAVOURITE = (Open("phone"), Tap("phone.tab.favourites"), Tap(text=param("which", PEOPLE)))
 EVENINGS = ("dinner", "concert", "game", "class")
+MORNINGS_OUT = ("breakfast", "class", "lesson", "tour")
 STAYS = {"one hour": 60, "two hours": 120}
 WHOM = ("physio", "dentist", "hairdresser", "notary")
 EARLY = replace(AT_THE_KERB, start="2026-11-18T05:10:00")
@@ -66,7 +67,7 @@ TASKS = (
             "Isla or Oskar will be standing there before the {what}: text them 10 minutes.",
             "Oskar, Isla? Let the one I meet for the {what} know that I'm late, ten minutes.",
             "Message the person I've the {what} with, that's Isla or Oskar, I'm ten minutes behind.",
-            "Ten minutes late, tell Oskar, or Isla, the one that's coming to the {what}.",
+            "Tell Oskar or Isla, whoever is coming to the {what}, that I'm ten minutes late.",
         ),
         WHO,
         "Who waits for you at the {what}, Isla or Oskar?",
@@ -74,11 +75,11 @@ TASKS = (
         *FAVOURITE,
         Tap("contact.message"),
         Tap(text="I'll be 10 minutes late"),
-        untold=planned(PARIS, MEETING, entry("11:30", "Go to the {what}"), contacts=KNOWN),
-        told=planned(PARIS, MEETING, entry("11:30", "Go to the {what} with {which}"), contacts=KNOWN),
+        untold=planned(PARIS, entry("08:20", "Go to the {what}"), MEETING, contacts=KNOWN),
+        told=planned(PARIS, entry("08:20", "Go to the {what} with {which}"), MEETING, contacts=KNOWN),
         look=LOOK,
         difference="content: the calendar has the hour, or also with whom",
-        parameters={"which": tuple(PEOPLE), "what": EVENINGS},
+        parameters={"which": tuple(PEOPLE), "what": MORNINGS_OUT},
     ),
     clarify(
         "clarify_where_we_meet",
@@ -88,7 +89,7 @@ TASKS = (
             "{who} and I agreed on a car park, Garden or Theatre. Go there.",
             "Theatre Car Park, Garden Car Park: take me to the one I arranged with {who}.",
             "I'm to meet {who} at noon, was it the Garden or the Theatre Car Park? Start the route.",
-            "Navigate to {who}'s and my meeting place: one of Theatre and Garden Car Park.",
+            "Navigate to where {who} and I meet. It's the Theatre or the Garden Car Park.",
         ),
         Topic(
             "which car park",
@@ -210,7 +211,7 @@ TASKS = (
             "One hour of parking at my {whom}'s. C? A? You find the zone.",
             "Get the ticket for the {whom}, 60 minutes in the right zone, A or C.",
             "Is it zone C or A at the {whom}'s? An hour's ticket, please.",
-            "Sixty minutes for my visit to the {whom}, in zone A or else in C.",
+            "Sixty minutes for my visit to the {whom}, in zone A or C, whichever it is there.",
         ),
         Topic(
             "which zone",
@@ -228,8 +229,8 @@ TASKS = (
         Open("parking"),
         Tap(text="Zone {which}"),
         Tap("parking.pay"),
-        untold=planned(AT_THE_KERB, MEETING, entry("11:30", "At the {whom}'s", "Second floor")),
-        told=planned(AT_THE_KERB, MEETING, entry("11:30", "At the {whom}'s", "Second floor, park in zone {which}")),
+        untold=planned(AT_THE_KERB, MEETING, entry("08:30", "At the {whom}'s", "Second floor")),
+        told=planned(AT_THE_KERB, MEETING, entry("08:30", "At the {whom}'s", "Second floor, park in zone {which}")),
         look=LOOK,
         difference="content: the calendar has the floor, or also the parking zone",
         parameters={"which": ("A", "C"), "whom": WHOM},
@@ -270,7 +271,7 @@ TASKS = (
             "Charging done before I drive to {who}, at 7:30 or 8:30.",
             "Half past eight, half past seven? Schedule the charging for {who}'s pick-up.",
             "Full battery when I go and get {who}. 7:30? 8:30? Set the time.",
-            "Be charged by the hour I collect {who}, 8:30 or else 7:30.",
+            "Be charged by the time I collect {who}, 8:30 or 7:30.",
         ),
         Topic("when she is fetched", HOW_EARLY, AT_HALF_PAST, ("{who}", "when", "time", "fetch")),
         "Do you fetch {who} at 7:30 or at 8:30?",
@@ -278,10 +279,10 @@ TASKS = (
         Open("charging"),
         TapUntil("charging.schedule.later", "charging.schedule.time", param("which", SET_OUT)),
         Tap("charging.schedule"),
-        untold=planned(EARLY, entry("07:00", "Ask {who} when she's ready"), entry("17:00", "Shopping")),
-        told=planned(EARLY, entry(param("which", SET_OUT), "Fetch {who}"), entry("17:00", "Shopping")),
+        untold=planned(EARLY, entry("17:00", "Bring {who} home")),
+        told=planned(EARLY, entry(param("which", SET_OUT), "Fetch {who}"), entry("17:00", "Bring {who} home")),
         look=LOOK,
-        difference="content: the calendar says that she has to be asked, or when she is fetched",
+        difference="content: the calendar says when she is brought home, or also when she is fetched",
         parameters={"which": MORNINGS, "who": FRIENDS},
     ),
     clarify(
@@ -292,7 +293,7 @@ TASKS = (
             "The display should greet the {guest} in his own tongue, Japanese, French or German.",
             "What does today's {guest} speak? German, Japanese, French: set the car to it.",
             "Switch the menus for our {guest}. It's French, German or Japanese he understands.",
-            "For the {guest}: German, French or Japanese on the screen, whichever is his.",
+            "Put the screen in the {guest}'s language, German, French or Japanese, whichever he speaks.",
         ),
         Topic(
             "which language",
@@ -305,11 +306,14 @@ TASKS = (
         Open("settings"),
         Tap("settings.page.language"),
         Tap(param("which", {name: f"language.{code}" for name, code in LANGUAGES.items()})),
-        untold=planned(PARIS, MEETING, entry("11:00", "Collect the {guest}")),
+        untold=planned(PARIS, entry("09:00", "Collect the {guest}"), MEETING),
         told=planned(
             PARIS,
+            entry(
+                "09:00",
+                param("which", {k: f"Collect the {{guest}}, who comes from {v}" for k, v in GUESTS.items()}),
+            ),
             MEETING,
-            entry("11:00", param("which", {k: f"Collect the {{guest}} from {v}" for k, v in GUESTS.items()})),
         ),
         look=LOOK,
         difference="content: the calendar has the visit, or also the town that he comes from",

@@ -253,9 +253,9 @@ TASKS = (
         (
             "We're at {who}'s. Onto her Wi-Fi, Garage or Coffee-Guest, and mobile data off.",
             "Use {who}'s wireless instead of my mobile data; it's Coffee-Guest or Garage.",
-            "Wi-Fi on and into the network of {who}, that's Garage or else Coffee-Guest. No mobile data.",
+            "Wi-Fi on and into the network of {who}, that's Garage or Coffee-Guest. No mobile data.",
             "Save my mobile data: join Coffee-Guest or Garage, the one that belongs to {who}.",
-            "Get us into {who}'s network, Garage or Coffee-Guest, then mobile data can go off.",
+            "Get us onto {who}'s Wi-Fi, Garage or Coffee-Guest; then mobile data can go off.",
         ),
         Topic(
             "which network is hers",

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, company
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.signals import CABIN, DRIVE, MEDIA, SEAT
 from automotive_cosim.contracts import Weather
@@ -108,6 +108,7 @@ TASKS = (
         "Full",
         "content: both car parks have spaces, or one is full",
         {"what": ("play", "concert", "show", "talk")},
+        start=replace(PARIS, start="2026-11-18T19:15:00"),
     ),
     _place(
         "clarify_kitchen_that_is_open",
@@ -117,8 +118,8 @@ TASKS = (
             "Drive {who} and me to Basil or Cedar Kitchen, not to a closed door. Two open ones, and I pick.",
             "See where {who} and I can eat now, Cedar Kitchen or Basil Kitchen, and set off. A choice would"
             " be mine.",
-            "Is Basil Kitchen serving today, or Cedar? Go there with {who} and me; in case both are, I'll"
-            " tell you which.",
+            "Is Basil Kitchen open today, or is it Cedar? Take {who} and me there; if both are, I'll tell"
+            " you which.",
         ),
         "restaurant",
         "{} Kitchen",
@@ -128,6 +129,7 @@ TASKS = (
         "Closed today",
         "content: both restaurants are open, or one is closed",
         {"who": FRIENDS},
+        start=replace(PARIS, start="2026-11-18T12:15:00", aboard=company(2)),
     ),
     _place(
         "clarify_pharmacy_at_night",
@@ -138,8 +140,7 @@ TASKS = (
             "Find me {what} at this hour, Linden Pharmacy or Crown. Where I'd have the choice, let me make it.",
             "Off to fetch {what}, from Crown or from Linden Pharmacy, as they're open. Both? Then I'd like"
             " to pick.",
-            "Which pharmacy has a night shift, Linden or Crown? Take me there for {what}, and leave it to me"
-            " if it's two.",
+            "Which pharmacy is on duty tonight, Linden or Crown? Take me there for {what}; if both are, I choose.",
         ),
         "pharmacy",
         "{} Pharmacy",
@@ -172,7 +173,7 @@ TASKS = (
         "No rooms tonight",
         "content: both hotels have rooms, or one is booked out",
         {"who": FRIENDS},
-        AT_NIGHT,
+        replace(AT_NIGHT, aboard=company(2)),
     ),
     _place(
         "clarify_market_that_is_open",
@@ -183,8 +184,8 @@ TASKS = (
             "I have to buy {what}: is it Fresh Market that's open, or Corner Market? Go. Should both be,"
             " I'll say which.",
             "Find out who still sells {what}, Corner Market or Fresh Market, and guide me. Two of them: my choice.",
-            "For {what} I'd go to Fresh or to Corner Market. Start for the open one, and leave it to me if"
-            " there are two.",
+            "For {what} I'd go to Fresh or to Corner Market. Take me to the one that's open, and if both"
+            " are, leave it to me.",
         ),
         "shop",
         "{} Market",
@@ -204,8 +205,8 @@ TASKS = (
             " choice, it's mine.",
             "See which museum lets {who} and me in today, the Maritime or the Science. Both? Leave that to"
             " me, else start.",
-            "Is the Science Museum closed, or the Maritime? Bring {who} and me to the other one; none"
-            " closed, and I decide.",
+            "Is the Science Museum closed, or the Maritime? Take {who} and me to the other one; if neither"
+            " is closed, I decide.",
         ),
         "museum",
         "{} Museum",
@@ -215,6 +216,7 @@ TASKS = (
         "Closed for repairs",
         "content: both museums are open, or one is closed",
         {"who": FRIENDS},
+        start=replace(PARIS, start="2026-11-18T10:15:00", aboard=company(2)),
     ),
     clarify(
         "clarify_whose_window_behind",
@@ -305,7 +307,7 @@ TASKS = (
             "All the music over to {who}'s side, so that only she has it.",
             "Balance fully to where {who} is, behind.",
             "Move the sound across to {who}, all the way.",
-            "Only {who} listens. Push the balance right over to her side of the car.",
+            "Only {who} listens. Push the balance all the way over to her side of the car.",
         ),
         Topic(
             "where {who} sits",
