@@ -15,9 +15,8 @@ WISH = "Start the task hvac_fan_max in scenario grid with see nothing, do what t
 async def _drive():
     async with MultiServerMCPClient({"car": CAR}).session("car") as car:
         agent = create_react_agent(ChatOpenAI(model=sys.argv[1]), await load_mcp_tools(car))
-        print(
-            (await agent.ainvoke({"messages": [("user", WISH)]}, {"recursion_limit": 60}))["messages"][-1].content
-        )
+        told = await agent.ainvoke({"messages": [("user", WISH)]}, {"recursion_limit": 60})
+        print(told["messages"][-1].content)
 
 
 asyncio.run(_drive())
