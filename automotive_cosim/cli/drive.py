@@ -3,13 +3,26 @@
 from __future__ import annotations
 
 from contextlib import closing
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
-from automotive_cosim.cli.options import AgentName, AsJson, Force, MinutesMost, ModelName, Seed, print_json
+from automotive_cosim.cli.options import (
+    AgentName,
+    AsJson,
+    Force,
+    MinutesMost,
+    ModelName,
+    MostSeconds,
+    MostSteps,
+    MostTokens,
+    MostWallSeconds,
+    Seed,
+    print_json,
+)
 from automotive_cosim.episode.conditions import Conditions
 
 if TYPE_CHECKING:
@@ -33,6 +46,10 @@ def drive(
     ] = "",
     seed: Seed = 0,
     minutes: MinutesMost = None,
+    most_steps: MostSteps = None,
+    most_tokens: MostTokens = None,
+    most_seconds: MostSeconds = None,
+    most_wall_seconds: MostWallSeconds = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for the results.", show_default="runs/<time>-<family>-<agent>-seed<seed>"),
@@ -47,12 +64,14 @@ def drive(
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.run.drive import DriveSetup, run_drive
     from automotive_cosim.run.drive_recorder import DriveRecorder
-    from automotive_cosim.run.jobs import DriveJob
+    from automotive_cosim.run.jobs import DriveJob, Limits
     from automotive_cosim.run.record import check_folder, stamped_folder
     from automotive_cosim.run.row import as_json as row_json
 
     under = Conditions.named(given(conditions))
-    player = make_agent(agent, model, AgentSettings(under, seed=seed))
+    limits = Limits().of_drives.within(most_tokens, most_seconds)
+    budget = AgentSettings(under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s)
+    player = make_agent(agent, model, budget)
     setup = DriveSetup(
         family,
         seed,
@@ -61,12 +80,13 @@ def drive(
         under,
         scenario=scenario,
         settings=DriveSettings(minutes=minutes),
+        max_steps=most_steps or limits.steps,
     )
     planned = DriveJob(setup).planned()
     folder = out or stamped_folder(f"{family}-{player.name}-seed{seed}")
     check_folder(folder, force=force)
     with closing(DriveRecorder(folder, setup, player)) as recorder:
-        record = run_drive(planned, setup, player, observers=[recorder])
+        record = run_drive(planned, setup, player, observers=[recorder], wall_s=float(most_wall_seconds or inf))
     if as_json:
         print_json({**row_json(record.row), "out": str(folder)})
         return

@@ -30,11 +30,15 @@ from automotive_cosim.cli.options import (
     TASKS_HELP,
     AsJson,
     MinutesMost,
+    MostSeconds,
+    MostSteps,
+    MostTokens,
     TasksFrom,
     number,
     print_json,
     whole_number,
 )
+from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
@@ -168,6 +172,9 @@ def evaluate(
         ),
     ] = None,
     minutes: MinutesMost = None,
+    most_steps: MostSteps = None,
+    most_tokens: MostTokens = None,
+    most_seconds: MostSeconds = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **conditions: str | None,
@@ -203,6 +210,8 @@ def evaluate(
     values |= values_of(conditions)
     values |= {"settings": {**values.get("settings", {}), "minutes": minutes}} if minutes is not None else {}
     values = with_preset(values, preset) if preset is not None else values
+    own = _limits(most_steps, most_tokens, most_seconds)
+    values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = Budget(budget_tokens, budget_usd)
     plan = make_plan(values)
     folder = out or _folder(plan)
@@ -270,6 +279,16 @@ def evaluate(
         )
 
 
+def _limits(steps: int | None, tokens: int | None, seconds: int | None) -> Json:
+    """The limits of a plan that options set, of tasks and of drives."""
+    named = {
+        ("steps", "hard_steps", "drive_steps"): steps,
+        ("tokens", "drive_tokens"): tokens,
+        ("model_s", "drive_model_s"): seconds,
+    }
+    return {name: value for names, value in named.items() if value is not None for name in names}
+
+
 def _failures(rows: Sequence[TrialRow]) -> Iterator[str]:
     """A line for each agent that failed."""
     failed: dict[str, list[TrialRow]] = {}
@@ -324,8 +343,15 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         "limits",
         f"{counted(limits.steps, 'step')} ({limits.hard_steps} in the hard suite), "
         f"{limits.sim_s:g} s simulated, {limits.wall_s:g} s real and "
-        f"{limits.agent_s:g} s in the agent's process, {limits.tokens:,} tokens",
+        f"{limits.agent_s:g} s in the agent's process, {limits.model_s:g} s of the model, {limits.tokens:,} tokens",
     )
+    if len(episodes) < len(jobs):
+        own = limits.of_drives
+        table.add_row(
+            "of a drive",
+            f"{counted(own.steps, 'step')}, {own.wall_s:g} s real and {own.agent_s:g} s in the agent's process, "
+            f"{own.model_s:g} s of the model, {own.tokens:,} tokens; beyond them nobody watches",
+        )
     table.add_row("runs", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}")
     table.add_row("folder", str(folder))
     console.print(table)

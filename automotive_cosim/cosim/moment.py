@@ -44,7 +44,14 @@ class Moment:
     @property
     def surroundings(self) -> Surroundings:
         """Everything outside the cockpit."""
-        return around(self.driving, self.weather, self.local_time, self.gps, self.connectivity)
+        return around(
+            self.driving,
+            self.weather,
+            self.local_time,
+            self.gps,
+            self.connectivity,
+            sign_unit=self.context.speed_unit,
+        )
 
 
 def around(
@@ -55,6 +62,7 @@ def around(
     connectivity: Connectivity,
     *,
     parked: bool = False,
+    sign_unit: str = "km/h",
 ) -> Surroundings:
     """Everything outside the cockpit, with the sun where it stands then and there."""
     sun_deg = (
@@ -62,4 +70,4 @@ def around(
         if driving.lat_deg is None or driving.lon_deg is None
         else elevation_deg(driving.lat_deg, driving.lon_deg, local_time)
     )
-    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity, parked)
+    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity, parked, sign_unit)

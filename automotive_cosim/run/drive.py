@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import dataclass, fields, replace
+from math import inf
 from typing import Any
 
 from automotive_cosim.agents import Agent, Thinker
@@ -18,7 +19,7 @@ from automotive_cosim.drives.result import DriveResult, judged_since, result_of
 from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
-from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.drives.specification import MOST_STEPS, DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
@@ -46,11 +47,13 @@ class DriveSetup:
     """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
     settings: DriveSettings = AS_SCRIPTED
     """What is set otherwise than the family's script has it."""
+    max_steps: int = MOST_STEPS
+    """Actions, waits among them, after which nobody watches."""
 
     @property
     def spec(self) -> DriveSpec:
         """The drive, whoever is at the cockpit."""
-        return DriveSpec(self.family, self.seed, self.conditions, self.scenario, self.settings)
+        return DriveSpec(self.family, self.seed, self.conditions, self.scenario, self.settings, self.max_steps)
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,6 +160,7 @@ def run_drive(
     simulations: Simulations | None = None,
     observers: Sequence[DriveObserver] = (),
     plan: DriveScript | None = None,
+    wall_s: float = inf,
 ) -> DriveRecord:
     """Runs a drive to its end and judges it.
 
@@ -167,6 +171,7 @@ def run_drive(
         simulations: warm simulations to use; by default its own, closed with the drive.
         observers: notified of everything as it happens.
         plan: used instead of the family's plan for the seed.
+        wall_s: wall seconds from departure after which nobody watches.
 
     Raises:
         UserError: something in the setup does not exist.
@@ -181,7 +186,9 @@ def run_drive(
         agent.reset(watch.goal)
         for observer in observers:
             observer.departed(watch)
-        end = play(watch, agent, (meter.stepped, *(observer.acted for observer in observers)), meter.thought_s)
+        end = play(
+            watch, agent, (meter.stepped, *(observer.acted for observer in observers)), meter.thought_s, wall_s
+        )
         result = result_of(watch)
         record = DriveRecord(
             row=judged_row(planned, end, channels, result, **meter.totals()),

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
+from math import inf
 from typing import Annotated, Any, Protocol, runtime_checkable
 
 import numpy as np
@@ -183,6 +184,7 @@ def run_episode(
     watchers: Sequence[EpisodeObserver] = (),
     *,
     simulations: Simulations | None = None,
+    wall_s: float = inf,
 ) -> EpisodeResult:
     """Runs an episode to its end and judges it.
 
@@ -191,6 +193,7 @@ def run_episode(
         agent: the agent that acts.
         watchers: notified of everything as it happens.
         simulations: warm simulations to use; by default its own, closed with the episode.
+        wall_s: wall seconds from the hand-over after which it is judged as it is.
 
     Raises:
         UserError: something in the setup does not exist or is invalid; no watcher has been notified of a hand-over.
@@ -202,7 +205,7 @@ def run_episode(
         run = _Run(setup, finder, agent, watchers)
         ends.callback(run.close)
         try:
-            end = run.play()
+            end = run.play(wall_s)
         except InfrastructureError as error:
             return run.finish(End.ERROR, error)
         except KeyboardInterrupt:
@@ -227,7 +230,7 @@ class _Run:
         self._after: list[Moment] = []
         self._baseline: tuple[Moment, ...] = ()
 
-    def play(self) -> End:
+    def play(self, wall_s: float) -> End:
         agent = self._agent
         hand_over = self._find()
         try:
@@ -242,7 +245,7 @@ class _Run:
         first = Shot(episode.steps[0], (), episode.screenshot(), "")
         for watcher in self._watchers:
             watcher.handed_over(episode, first)
-        end = play(episode, agent, (self._stepped,), self._thought_s)
+        end = play(episode, agent, (self._stepped,), self._thought_s, wall_s)
         if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
             self._stages()  # of the turn that it did not finish
         if isinstance(agent, Learner) and episode.verdict is not None:
