@@ -21,6 +21,7 @@ from automotive_cosim.cli.options import (
     MostTokens,
     MostWallSeconds,
     Seed,
+    WithErrands,
     print_json,
 )
 from automotive_cosim.episode.conditions import Conditions
@@ -46,6 +47,7 @@ def drive(
     ] = "",
     seed: Seed = 0,
     minutes: MinutesMost = None,
+    errands: WithErrands = False,
     most_steps: MostSteps = None,
     most_tokens: MostTokens = None,
     most_seconds: MostSeconds = None,
@@ -79,7 +81,7 @@ def drive(
         player.model,
         under,
         scenario=scenario,
-        settings=DriveSettings(minutes=minutes),
+        settings=DriveSettings(minutes=minutes, errands=errands or None),
         max_steps=most_steps or limits.steps,
     )
     planned = DriveJob(setup).planned()

@@ -34,6 +34,7 @@ from automotive_cosim.cli.options import (
     MostSteps,
     MostTokens,
     TasksFrom,
+    WithErrands,
     number,
     print_json,
     whole_number,
@@ -172,6 +173,7 @@ def evaluate(
         ),
     ] = None,
     minutes: MinutesMost = None,
+    errands: WithErrands = False,
     most_steps: MostSteps = None,
     most_tokens: MostTokens = None,
     most_seconds: MostSeconds = None,
@@ -208,7 +210,8 @@ def evaluate(
     single = {"suite": suite, "split": split, "repeats": repeats, "held_out": held_out, "everywhere": everywhere}
     values |= {name: value for name, value in single.items() if value not in (None, False)}
     values |= values_of(conditions)
-    values |= {"settings": {**values.get("settings", {}), "minutes": minutes}} if minutes is not None else {}
+    told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value}
+    values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
     values = with_preset(values, preset) if preset is not None else values
     own = _limits(most_steps, most_tokens, most_seconds)
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
@@ -255,8 +258,8 @@ def evaluate(
     errors = [row for row in (*found.rows, *found.drives) if row.error is not None]
     size_mb = megabytes(folder)
     if as_json:
-        told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
-        typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
+        counts = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
+        typer.echo(json.dumps(counts | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
     else:
         console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")

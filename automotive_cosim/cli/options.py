@@ -140,6 +140,10 @@ MinutesMost = Annotated[
         show_default=False,
     ),
 ]
+WithErrands = Annotated[
+    bool,
+    typer.Option("--errands", help="On drives, people aboard also ask for things, near what safety asks for."),
+]
 MostSteps = Annotated[
     int | None,
     typer.Option(

@@ -7,6 +7,7 @@ from datetime import UTC, datetime, timedelta
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import DrivingState, Limit, RouteOption
+from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.cosim.moment import Moment, around
 from automotive_cosim.geo.connectivity import OFFLINE, Modem
 from automotive_cosim.geo.gps import Gps
@@ -42,6 +43,8 @@ class Car:
     """Simulation time at which the navigation last looked for them."""
     is_parked: bool = False
     """Whether the driver has parked on the way."""
+    errands: tuple[Errand, ...] = ()
+    """What people aboard ask for, by simulation time."""
     read_sign: tuple[Limit, str] | None = None
     """The limit that is signed here, and the unit of its sign; None before departure."""
 
@@ -127,6 +130,7 @@ class Car:
             signals=self.cockpit.signals.snapshot(),
             commands=self.cockpit.commands(),
             sights=self.cockpit.sights,
+            asked=tuple(errand for errand in self.errands if errand.at_s <= driving.time_s + 1e-6),
         )
 
     def _is_asking(self, now_s: float) -> bool:

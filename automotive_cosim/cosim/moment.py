@@ -8,6 +8,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Sight, Surroundings, Weather
+from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.traffic.base import Event
@@ -35,6 +36,8 @@ class Moment:
     """Everything that can be commanded: actuator signals, app data, sent messages and requests."""
     sights: tuple[Sight, ...] = ()
     """What the car notices and shows by itself; empty if it has no such equipment."""
+    asked: tuple[Errand, ...] = ()
+    """What people aboard have asked for so far; times are simulation times."""
 
     def earlier(self, by: timedelta) -> Moment:
         """The same at an earlier time of day; what the car has sensed is not changed."""

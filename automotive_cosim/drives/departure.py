@@ -68,6 +68,7 @@ def depart(script: DriveScript, simulations: Simulations, listener: Listener | N
             weather=script.weather,
             departure=ego.start or scenario.start,
             links=scenario.connectivity,
+            errands=script.errands,
         )
     except BaseException:
         traffic.close()

@@ -44,6 +44,7 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         scenario: str = "",
         minutes: float | None = None,
         max_steps: int = MOST_STEPS,
+        errands: bool = False,
         channels: Iterable[str] = ALL,
         render_mode: str | None = None,
         simulations: Simulations | None = None,
@@ -57,6 +58,7 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
             scenario: where to drive instead of on the family's own roads.
             minutes: when a drive is over, if its script ends later.
             max_steps: actions, waits among them, after which nobody watches.
+            errands: whether people aboard also ask for things on the way.
             channels: as in ``SessionSetup``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
@@ -69,11 +71,12 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         """
         family_named(family)
         under = Conditions.named(conditions)
+        told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value}
         self._spec = DriveSpec(
             family,
             conditions=under,
             scenario=scenario,
-            settings=checked(DriveSettings, {} if minutes is None else {"minutes": minutes}, _named),
+            settings=checked(DriveSettings, told, _named),
             max_steps=max_steps,
         )
         self._setup = SessionSetup(frozenset(map(Channel, channels)), under)

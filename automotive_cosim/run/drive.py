@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Element, Json
 from automotive_cosim.contracts.given import Clock
 from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
-from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, facts_of, judge
+from automotive_cosim.drives.judge import ORDER, JudgedAct, JudgedEvent, facts_of, judge
 from automotive_cosim.drives.result import DriveResult, judged_since, result_of
 from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.script import DriveScript
@@ -82,7 +82,7 @@ class JudgedDrive:
             self.events,
             self.acts,
             self.due_anyway,
-            lambda kind, time_s: facts[kind.name, time_s],
+            lambda kind, time_s: facts.get((kind.name, time_s), ORDER),
             self.commands,
             self.untouched,
         )
