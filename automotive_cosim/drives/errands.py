@@ -44,8 +44,8 @@ class ErrandWords:
     """By the reply that is wanted (``REPLIES``)."""
     call: str
     place: str
-    no: str
-    """What the driver adds to what is declined."""
+    no: tuple[str, str]
+    """What the driver adds to what is declined: the driver's own, or the passenger's."""
 
 
 WORDS: Mapping[Language, ErrandWords] = {
@@ -58,7 +58,7 @@ WORDS: Mapping[Language, ErrandWords] = {
         ),
         "I can't talk to {about} now, please decline the call.",
         "Change of plan: guide me to work, please.",
-        "The driver says: No, leave that as it is.",
+        ("No, wait, leave it as it is.", "The driver says: No, leave it as it is."),
     ),
     Language.FRENCH: ErrandWords(
         "Mets {wanted} degrés de mon côté, s'il te plaît.",
@@ -69,7 +69,7 @@ WORDS: Mapping[Language, ErrandWords] = {
         ),
         "Je ne peux pas parler à {about} maintenant, refuse l'appel.",
         "Changement de programme : guide-moi au travail, s'il te plaît.",
-        "Le conducteur dit : Non, laisse ça comme c'est.",
+        ("Non, attends, laisse ça comme c'est.", "Le conducteur dit : Non, laisse ça comme c'est."),
     ),
     Language.GERMAN: ErrandWords(
         "Stell bitte {wanted} Grad auf meiner Seite ein.",
@@ -80,7 +80,7 @@ WORDS: Mapping[Language, ErrandWords] = {
         ),
         "Ich kann jetzt nicht mit {about} reden, lehn den Anruf bitte ab.",
         "Planänderung: Führ mich bitte zur Arbeit.",
-        "Der Fahrer sagt: Nein, lass das, wie es ist.",
+        ("Nein, warte, lass es, wie es ist.", "Der Fahrer sagt: Nein, lass es, wie es ist."),
     ),
     Language.JAPANESE: ErrandWords(
         "こちら側を{wanted}度にして。",
@@ -88,7 +88,7 @@ WORDS: Mapping[Language, ErrandWords] = {
         ("{about}に、今向かっていると返信して。", "{about}に、10分遅れると返信して。"),
         "今は{about}と話せない。電話を断って。",
         "予定変更。職場まで案内して。",
-        "運転者：いや、そのままにしておいて。",
+        ("あ、やっぱりそのままにしておいて。", "運転者：いや、そのままにしておいて。"),
     ),
 }
 
@@ -97,7 +97,8 @@ def said(errand: Errand, language: Language) -> str:
     """What is said; with the driver's no, if it is declined."""
     words = WORDS[language]
     text = _form(errand, words).format(about=errand.about, wanted=errand.wanted)
-    return f"{text} {words.no}" if errand.is_declined else text
+    no = words.no[errand.about == "passenger"]
+    return f"{text} {no}" if errand.is_declined else text
 
 
 def understood(text: str) -> Errand | None:
