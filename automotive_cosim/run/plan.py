@@ -80,8 +80,17 @@ class PlannedTrial:
         named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
         if self.drive:
             family_named(self.drive)
-            setup = DriveSetup(self.drive, self.seed, agent, named, self.conditions, self.scenario, self.settings)
-            return DriveJob(replace(setup, max_steps=limits.drive_steps), self.repeat + repeat, limits.of_drives)
+            setup = DriveSetup(
+                self.drive,
+                self.seed,
+                self.conditions,
+                self.scenario,
+                self.settings,
+                limits.drive_steps,
+                agent=agent,
+                model=named,
+            )
+            return DriveJob(setup, self.repeat + repeat, limits.of_drives)
         if self.settings != AS_SCRIPTED:
             raise UserError(f"{self.task}: {self.settings.words} can be set for drives alone; omit it")
         if self.task not in CATALOGUE:
@@ -281,9 +290,8 @@ class Plan(ConditionLists):
             self.agents, self.models, self._driven(), self.seeds, combined(self), range(self.repeats)
         ):
             named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
-            setup = DriveSetup(
-                family, seed, agent, named, conditions, scenario, self.settings, self.limits.drive_steps
-            )
+            most = self.limits.drive_steps
+            setup = DriveSetup(family, seed, conditions, scenario, self.settings, most, agent=agent, model=named)
             yield DriveJob(setup, repeat, self.limits.of_drives)
 
     def _single(self) -> Iterator[TrialJob]:
