@@ -7,8 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES
+from automotive_cosim.cockpit.language import word
 from automotive_cosim.contracts import Action, ActionType, Element, Observation
 from automotive_cosim.contracts.errand import Errand, ErrandKind
+from automotive_cosim.contracts.given import Language
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.drives.errands import understood
 
@@ -23,15 +25,15 @@ class Touch:
 
     key: str
     """Of the element, or how those of a list begin."""
-    text: str = ""
-    """What the element of the list says."""
+    texts: tuple[str, ...] = ()
+    """What the element of the list says, in any language."""
 
     def on(self, elements: Sequence[Element]) -> int | None:
         """The element's index; None if it is not there."""
         for index, element in enumerate(elements):
             key = key_of(element.resource_id)
             if element.is_enabled and (
-                key == self.key if not self.text else key.startswith(self.key) and element.text == self.text
+                key.startswith(self.key) and element.text in self.texts if self.texts else key == self.key
             ):
                 return index
         return None
@@ -94,12 +96,12 @@ def _way(errand: Errand) -> Iterator[Touch]:
             yield Touch("call.decline")
         case ErrandKind.PLACE:
             yield Touch("dock.map")
-            yield Touch("map.place.", errand.about)
+            yield Touch("map.place.", tuple(word(errand.about, language) for language in Language))
             yield Touch("place.start")
         case ErrandKind.MESSAGE:
             yield Touch("dock.phone")
             yield Touch("phone.tab.messages")
-            yield Touch("phone.thread.", errand.about)
+            yield Touch("phone.thread.", (errand.about,))
             yield Touch(f"thread.answer.{[str(text) for text in TEMPLATES].index(errand.wanted)}")
         case ErrandKind.CLIMATE:
             pass

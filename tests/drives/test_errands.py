@@ -4,22 +4,30 @@ from __future__ import annotations
 
 from dataclasses import replace
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
+import numpy as np
 import pytest
 
-from automotive_cosim.cockpit.signals import HVAC
-from automotive_cosim.contracts import Observation
+from automotive_cosim.cockpit.actions import perform
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.signals import HMI, HVAC
+from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.errands import AFTER_S, ASKED_APART_S, SPARE_S, said, understood, with_errands
 from automotive_cosim.drives.events import KINDS, Tracker, WatchAct
 from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.hands import Hands
 from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth, facts_of, judge
 from automotive_cosim.drives.score import score
 from automotive_cosim.drives.script import DriveScript, read_script, script_json
 from automotive_cosim.drives.settings import DriveSettings
+from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.traffic.fork import Simulations
+from tests.cockpit.conftest import outside, town
 from tests.drives.scenes import moment
 from tests.laws import over
 
@@ -122,10 +130,47 @@ def test_what_nobody_asks_for_is_charged() -> None:
     assert (act.worth, act.reason) == (Worth.FALSE, "nobody has asked for it")
 
 
-def test_an_agent_hears_what_is_asked_and_a_wait_ends(simulations: Simulations) -> None:
-    from automotive_cosim.contracts import Action, ActionType
-    from automotive_cosim.drives.specification import DriveSpec
+@pytest.mark.parametrize("language", Language)
+def test_the_watcher_s_hands_do_what_is_asked_in_every_language(language: Language) -> None:
+    errands = (
+        replace(WARMTH, about="passenger", wanted="19"),
+        WARMTH,
+        MESSAGE,
+        replace(MESSAGE, wanted="I'll be 10 minutes late"),
+        Errand(ErrandKind.CALL, 0.0, "Tom Hale"),
+        Errand(ErrandKind.PLACE, 0.0, "Work"),
+        replace(WARMTH, wanted="24", is_declined=True),
+    )
+    for errand in errands:
+        cockpit = Cockpit(
+            town(),
+            rng=np.random.default_rng(1),
+            signals={HMI.LANGUAGE.path: str(language)},
+            arrivals=[Arrival("message", 1.0, "Mia Frost", "Where are you?"), Arrival("call", 1.0, "Tom Hale")],
+        )
+        cockpit.sense(outside(), 0.0)
+        cockpit.sense(outside(902.0), 2.0)
+        hands, requests = Hands(), []
+        for second in range(20):
+            elements = cockpit.elements()
+            seen: Any = SimpleNamespace(time_s=float(second), said=(said(errand, language),), elements=elements)
+            hands.hear(seen)
+            action = hands.act(seen)
+            if action is None:
+                break
+            perform(action, cockpit, elements)
+            requests += cockpit.drain_requests()
+        state = cockpit.commands()
+        assert state[DRIVER] == (23.0 if errand == WARMTH else 21.0)
+        if errand != WARMTH:  # which the passenger's side follows
+            assert state[HVAC.PASSENGER_TEMPERATURE.path] == (19.0 if errand.about == "passenger" else 21.0)
+        wanted = [{"to": errand.about, "text": errand.wanted}] if errand.kind is ErrandKind.MESSAGE else []
+        assert state["messages.sent"] == wanted
+        assert state["calls.declined"] == (["Tom Hale"] if errand.kind is ErrandKind.CALL else [])
+        assert len(requests) == (errand.kind is ErrandKind.PLACE)
 
+
+def test_an_agent_hears_what_is_asked_and_a_wait_ends(simulations: Simulations) -> None:
     heard: dict[Language, Observation] = {}
     script: DriveScript = replace(FAMILIES["grid_june"].draw(0), errands=(replace(WARMTH, at_s=8.0),))
     for language in (Language.ENGLISH, Language.GERMAN):
