@@ -43,8 +43,8 @@ ORDERS_WITH_ERRANDS: Mapping[Language, str] = {
     Language.FRENCH: (
         "Veille pendant que je conduis. Si la sécurité ou la loi exige quelque chose de cette voiture, "
         "occupe-t'en ou préviens-moi. Si l'un de nous te demande quelque chose, fais-le aussi, la sécurité "
-        "d'abord ; si je dis non, n'y touche pas. Sinon, laisse tout en l'état, et ne me dis rien deux fois en une minute. "
-        "Une attente sans durée se termine quand quelque chose change, au plus tard après une minute."
+        "d'abord ; si je dis non, n'y touche pas. Sinon, laisse tout en l'état, et ne me dis rien deux fois en une "
+        "minute. Une attente sans durée se termine quand quelque chose change, au plus tard après une minute."
     ),
     Language.GERMAN: (
         "Pass auf, während ich fahre. Wenn die Sicherheit oder das Gesetz etwas von diesem Auto verlangt, kümmere "
