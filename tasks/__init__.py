@@ -13,6 +13,7 @@ from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasks import (
     apps,
     apps_asking,
+    clarify,
     comms,
     comms_aboard,
     comms_asking,
@@ -83,6 +84,7 @@ for _module in (
     system_aboard,
     hard,
     limits,
+    clarify,
 ):
     CATALOGUE.add(*map(spoken.spoken, _module.TASKS))
 

@@ -116,6 +116,10 @@ def evaluate(
             help="How many times to run each episode.", metavar="N", parser=whole_number(1, 1000), show_default="1"
         ),
     ] = None,
+    rephrase: Annotated[
+        bool,
+        typer.Option("--rephrase", help="Say each repeat in another phrasing, with other content in the car."),
+    ] = False,
     held_out: Annotated[
         bool,
         typer.Option("--held-out", help="Use only each task's last phrasing, which `rules` is not built from."),
@@ -207,7 +211,8 @@ def evaluate(
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
     values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
-    single = {"suite": suite, "split": split, "repeats": repeats, "held_out": held_out, "everywhere": everywhere}
+    single = {"suite": suite, "split": split, "repeats": repeats, "rephrase": rephrase}
+    single |= {"held_out": held_out, "everywhere": everywhere}
     values |= {name: value for name, value in single.items() if value not in (None, False)}
     values |= values_of(conditions)
     told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value}
@@ -338,7 +343,7 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     for each in TABLE:
         table.add_row(each.words.heading.lower(), ", ".join(map(each.told, lists_of(plan)[each.name])))
-    table.add_row("repeats", str(plan.repeats))
+    table.add_row("repeats", f"{plan.repeats}{', each in another phrasing' if plan.rephrase else ''}")
     table.add_row("phrasings", "held out" if plan.held_out else "any")
     table.add_row("split", "development and test" if plan.split == "both" else plan.split)
     limits = plan.limits

@@ -154,7 +154,7 @@ class EpisodeJob(PlannedJob[EpisodeSetup]):
     @property
     def split(self) -> Split:
         """The set that it belongs to, by its seed and its phrasing."""
-        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out)
+        return split_of(self.task, self.setup.seed, held_out=self.setup.held_out, redrawn=self.setup.redrawn)
 
     @property
     def kind(self) -> Hashable:
@@ -221,7 +221,8 @@ class EpisodeJob(PlannedJob[EpisodeSetup]):
     def _named(self, half: str) -> str:
         setup = self.setup
         held_out = ["held_out"] if setup.held_out else []
-        return self.named(setup.task, half, rest=(setup.scenario or "own", *held_out))
+        redrawn = [f"redrawn{setup.redrawn}"] if setup.redrawn else []
+        return self.named(setup.task, half, rest=(setup.scenario or "own", *held_out, *redrawn))
 
 
 @dataclass(frozen=True, slots=True)

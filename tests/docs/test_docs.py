@@ -282,7 +282,12 @@ def test_pages_count_the_tasks_as_they_are():
     standard, hard = (CATALOGUE.of(suite) for suite in (Suite.STANDARD, Suite.HARD))
     pairs, hard_pairs = (sum(task.second is not None for task in tasks) for tasks in (standard, hard))
     limits = len(CATALOGUE.of(Suite.LIMITS))
-    assert f"has {limits} pairs about what a car cannot do" in (TOP / "docs/reference/tasks.md").read_text("utf-8")
+    reference = (TOP / "docs/reference/tasks.md").read_text("utf-8")
+    assert f"has {limits} pairs about what a car cannot do" in reference
+    clarify = len(CATALOGUE.of(Suite.CLARIFY))
+    asking = sum("asking" in task.tags for task in standard)
+    assert f"has {clarify} pairs about wishes that leave something open" in reference
+    assert f"has {asking} more pairs of this form" in reference
     told = {
         "README.md": f"{len(standard)} tasks in eight modules. {pairs} are pairs",
         "docs/report.md": f"{len(standard)} tasks in eight modules; {pairs} of them are pairs, so there are "
