@@ -81,7 +81,14 @@ class PlannedTrial:
         if self.drive:
             family_named(self.drive)
             setup = DriveSetup(
-                self.drive, self.seed, self.conditions, self.scenario, self.settings, agent=agent, model=named
+                self.drive,
+                self.seed,
+                self.conditions,
+                self.scenario,
+                self.settings,
+                limits.drive_steps,
+                agent=agent,
+                model=named,
             )
             return DriveJob(setup, self.repeat + repeat, limits.of_drives)
         if self.settings != AS_SCRIPTED:
@@ -286,7 +293,8 @@ class Plan(ConditionLists):
             self.agents, self.models, self._driven(), self.seeds, combined(self), range(self.repeats)
         ):
             named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
-            setup = DriveSetup(family, seed, conditions, scenario, self.settings, agent=agent, model=named)
+            most = self.limits.drive_steps
+            setup = DriveSetup(family, seed, conditions, scenario, self.settings, most, agent=agent, model=named)
             yield DriveJob(setup, repeat, self.limits.of_drives)
 
     def _single(self) -> Iterator[TrialJob]:
