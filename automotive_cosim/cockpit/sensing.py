@@ -91,7 +91,8 @@ def _park(state: State, surroundings: Surroundings) -> None:
 def _road(state: State, driving: DrivingState) -> None:
     signals, road = state.signals, driving.road
     limit = road.limit.posted_mps
-    signals[ADAS.LIMIT_SIGN] = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
+    seen_kmh = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
+    signals[ADAS.LIMIT_SIGN] = state.injected.get(ADAS.LIMIT_SIGN.path, seen_kmh)
     if state.sign_camera:
         _read_sign(state, driving)
     leader = _in_sight(driving.around.leader)

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.tasking.checks import Check
 from automotive_cosim.tasking.moves import Move, Open, Tap
 from automotive_cosim.tasking.parameters import Choices
-from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Suite, Task
+from automotive_cosim.tasking.task import Ability, Basis, Deadline, Dimension, Half, Module, Start, Suite, Task
 from automotive_cosim.tasking.triggers import Driving, Trigger
 from automotive_cosim.tasks.forms import AT_REST, NO_PARAMETERS
 
@@ -107,8 +107,10 @@ def hard(
     tags: frozenset[str] = frozenset(),
     dimension: Dimension = Dimension.EXPLICIT_CONTROL,
     only_english: str = "",
+    ability: Ability,
+    guess_loses: str,
 ) -> Task:
-    """A task of the hard suite."""
+    """A task of the hard suite: what it is hard by, and why a guess loses, come last."""
     return Task(
         task_id,
         module,
@@ -121,4 +123,6 @@ def hard(
         tags=tags,
         suite=Suite.HARD,
         only_english=only_english,
+        ability=ability,
+        guess_loses=guess_loses,
     )
