@@ -10,6 +10,7 @@ from automotive_cosim.tasks.hard import (
     over_time,
     pictured,
     prepared,
+    ruled,
     several,
     side_effects,
 )
@@ -17,6 +18,7 @@ from automotive_cosim.tasks.hard import (
 _MODULES = (
     carried,
     prepared,
+    ruled,
     interrupted,
     side_effects,
     over_time,

@@ -25,21 +25,15 @@ from automotive_cosim.tasks.hard.forms import (
     WANDA,
     YUSUF,
     Moves,
+    answer,
     done,
     figure,
     hard,
     knowing,
     letter,
     with_papers,
-    write_to,
     wrote,
 )
-
-
-def answer(who: str, text: str) -> Moves:
-    """Sends a reply to a favourite."""
-    return (*write_to(who), Tap(text=text))
-
 
 BOTH = (*letter(BEA), *letter(YUSUF))
 

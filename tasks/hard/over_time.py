@@ -6,10 +6,9 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.signals import CALL, HMI, LIGHTS, LINK, MEDIA, SEAT, VOICE
-from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.history import Lasted, NotBefore, While
-from automotive_cosim.tasking.moves import Do, Open, Slide, Tap
+from automotive_cosim.tasking.moves import Open, Slide, Tap
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.task import Ability, Deadline, Module
 from automotive_cosim.tasks.hard.forms import (
@@ -17,19 +16,13 @@ from automotive_cosim.tasks.hard.forms import (
     ON_THE_ROAD,
     OSKAR,
     PRIYA,
-    Moves,
     done,
     hard,
     knowing,
+    wait,
     with_papers,
     write_to,
 )
-
-
-def wait(seconds: int) -> Moves:
-    """Waits, at most ten seconds at a time."""
-    return tuple(Do(Action(ActionType.WAIT, seconds=min(10, seconds - past))) for past in range(0, seconds, 10))
-
 
 PLAYING = {
     MEDIA.SOURCE.path: "DAB",

@@ -30,12 +30,12 @@ from automotive_cosim.tasks.hard.forms import (
     WANDA,
     YUSUF,
     Moves,
+    answer,
     done,
     figure,
     hard,
     knowing,
     letter,
-    write_to,
 )
 
 
@@ -69,11 +69,6 @@ def pictured(
         ability=Ability.CONTENT,
         guess_loses=guess_loses,
     )
-
-
-def answer(who: str, text: str) -> Moves:
-    """Sends a reply to a favourite."""
-    return (*write_to(who), Tap(text=text))
 
 
 STAYS = {"half an hour": 30, "an hour": 60, "two hours": 120, "four hours": 240}
