@@ -13,12 +13,12 @@ from automotive_cosim.tasks.hard import (
     ruled,
     several,
     side_effects,
+    watched,
 )
 
 _MODULES = (
     carried,
     prepared,
-    ruled,
     interrupted,
     side_effects,
     over_time,
@@ -28,6 +28,8 @@ _MODULES = (
     aboard,
     pictured,
     decided,
+    ruled,
+    watched,
 )
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)
 """All of them."""

@@ -8,7 +8,7 @@ from typing import Any
 from automotive_cosim.cockpit.apps.calendar.state import Appointment
 from automotive_cosim.cockpit.signals import ADAS, LINK, TYRE
 from automotive_cosim.contracts import AlertKind, Weather
-from automotive_cosim.tasking.checks import AlertGiven, AllOf, AnyOf, AppDataIs, Check, Entered, SignalIs
+from automotive_cosim.tasking.checks import AlertGiven, AllOf, AppDataIs, Check, Entered, SignalIs
 from automotive_cosim.tasking.moves import Move, Open, Tap, TapUntil, Warn
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import AppDataAt
@@ -172,6 +172,7 @@ NATIONAL_DAY = hard(
     guess_loses="The sign excepts holidays, and the date is one in one country and a plain Tuesday in the other.",
 )
 
+EVENING = "2026-11-18T20:10:00"
 ENDINGS = ("0142", "0163", "0177", "0128", "0185")
 
 
@@ -187,16 +188,18 @@ def _dials(prefix: str) -> Moves:
     return (*letter(MALIK), Open("phone"), Tap("phone.tab.keypad"), *fixed, *last, Tap("phone.call_number"))
 
 
-def _rung(origin: tuple[float, float], country: str, goal: Check, *ways: Moves, wrong: Moves) -> Half:
+def _rung(origin: tuple[float, float], country: str, prefix: str, wrong: str) -> Half:
     start = with_letter(
-        replace(_street(origin), parked=True), MALIK, "I'm in the Leeds office today:", "0113 496 {ending}"
+        replace(_street(origin, EVENING), parked=True),
+        MALIK,
+        "I'm in the Leeds office tonight:",
+        "0113 496 {ending}",
     )
     return done(
         start,
-        goal,
-        ways[0],
-        ways=ways[1:],
-        slips=(wrong, (Open("phone"), Tap(text=MALIK), Tap("contact.call"))),
+        Entered("calls", param("ending", _dialled(prefix))),
+        _dials(prefix),
+        slips=(_dials(wrong), _dials("0"), (Open("phone"), Tap(text=MALIK), Tap("contact.call"))),
         deadline=AS_A_PASSENGER,
         trigger=_in(country, Parked()),
     )
@@ -207,29 +210,20 @@ FROM_ABROAD = hard(
     Module.COMMS,
     (
         "Ring Malik on the number he has written, from the keypad, the way it has to be dialled from here.",
-        "Malik is in Leeds today and has sent his line there. Key it in so that it gets through, and call.",
-        "Call Malik's office number, it's in his message; dial the digits that it takes from where we stand.",
+        "Malik is in Leeds and has sent his line there. Key it in so that it gets through from this country, and"
+        " call.",
+        "Call Malik's office number, it's in his message; dial all the digits that it takes from where we stand.",
         "Dial Malik at the English number that he texted. Type what has to be typed in this country.",
     ),
-    _rung(LYON, "FR", Entered("calls", param("ending", _dialled("0044"))), _dials("0044"), wrong=_dials("0")),
-    _rung(
-        LEEDS,
-        "GB",
-        AnyOf(
-            (
-                Entered("calls", param("ending", _dialled("0"))),
-                Entered("calls", param("ending", _dialled("0044"))),
-            )
-        ),
-        _dials("0"),
-        _dials("0044"),
-        wrong=_dials("044"),
-    ),
-    "place: France, from where it takes the country's code, or England",
+    _rung(LYON, "FR", "0044", "01144"),
+    _rung(BUFFALO, "US", "01144", "0044"),
+    "place: France, from where calls abroad begin with 00, or the United States, where they do with 011",
     parameters={"ending": ENDINGS},
     tags=PLACE,
     ability=Ability.RULE,
-    guess_loses="As it is written the number works in England alone; abroad the 0 goes and 0044 comes.",
+    guess_loses=(
+        "As it is written the number works in England alone, and the way out of the country differs by country."
+    ),
 )
 
 NETWORKS = {"Garage": "Coffee-Guest", "CityFree": "Garage", "Coffee-Guest": "CityFree", "Home-5G": "Garage"}
@@ -242,7 +236,7 @@ def _joins(network: Any) -> Moves:
 
 def _guest(origin: tuple[float, float], country: str, network: Any, other: Any) -> Half:
     start = with_papers(
-        replace(_street(origin), parked=True),
+        replace(_street(origin, EVENING), parked=True),
         contacts=knowing(OSKAR),
         memos=(
             param(
