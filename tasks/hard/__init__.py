@@ -10,6 +10,7 @@ from automotive_cosim.tasks.hard import (
     over_time,
     pictured,
     prepared,
+    remembered,
     ruled,
     several,
     side_effects,
@@ -29,6 +30,7 @@ _MODULES = (
     pictured,
     decided,
     ruled,
+    remembered,
     watched,
 )
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)

@@ -348,7 +348,7 @@ TELL_BEA = answer(BEA, "{words}")
 
 def _sunday(origin: tuple[float, float], country: str, goal: tuple[Check, ...], moves: Moves, wrong: Moves) -> Half:
     start = with_papers(
-        _street(origin, "2026-11-15T12:40:00"),
+        Start("london", "bloomsbury", origin, start="2026-11-15T12:40:00", weather=GREY),
         contacts=knowing(BEA),
         details={MARKET: "Supermarket, 900 m², bakery, free parking"},
     )

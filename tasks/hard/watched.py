@@ -436,7 +436,7 @@ TOW_TRUCK = hard(
             STRANDED,
             CarChange(200.0, HMI.BRIGHTNESS.path, 70.0),
             (Watched(WATCH_S),),
-            (*LAMPS, Hear("only a delivery"), *wait(40)),
+            (*LAMPS, Hear("only a delivery"), *wait(46)),
             (*LAMPS, Hear("only a delivery"), Tap("lights.hazard"), Open("vehicle"), *wait(30)),
             (*LAMPS, Hear("only a delivery")),
         ),
