@@ -7,6 +7,7 @@ from automotive_cosim.tasks.hard import (
     dialogue,
     errands,
     interrupted,
+    ordered,
     over_time,
     pictured,
     prepared,
@@ -31,6 +32,7 @@ _MODULES = (
     decided,
     ruled,
     remembered,
+    ordered,
     watched,
 )
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)

@@ -57,7 +57,7 @@ DEGREES = {23: (4, 22, 2), 24: (6, 22, 2), 25: (8, 23, 4), 26: (10, 24, 6)}
 MOTHER = (Occupant(Seat.PASSENGER, Kind.ELDERLY),)
 
 
-def _for_mother(at: int, ups: dict[int, int]) -> Moves:
+def _for_mother(ups: dict[int, int]) -> Moves:
     return (
         *NOTES,
         Open("climate"),
@@ -67,7 +67,7 @@ def _for_mother(at: int, ups: dict[int, int]) -> Moves:
     )
 
 
-def _mother(withdrawn: str, at: int, degrees: dict[int, float], ups: dict[int, int], wrong: dict[int, int]) -> Half:
+def _mother(withdrawn: str, degrees: dict[int, float], ups: dict[int, int], wrong: dict[int, int]) -> Half:
     second = {first: withdrawn.format(degrees=later) for first, (_, later, _) in DEGREES.items()}
     start = _trips(
         replace(ON_THE_ROAD, aboard=MOTHER),
@@ -83,8 +83,8 @@ def _mother(withdrawn: str, at: int, degrees: dict[int, float], ups: dict[int, i
             SignalIs(SEAT.PASSENGER_HEATING, (100.0,)),
             told(ISLA, "On my way"),
         ),
-        _for_mother(at, ups),
-        _for_mother(at, wrong),
+        _for_mother(ups),
+        _for_mother(wrong),
         may_write=frozenset({HVAC.SYNC.path}),
     )
 
@@ -108,14 +108,12 @@ MY_MOTHER = hard(
     ),
     _mother(
         "Wed 18 Nov: That was too hot for my mother. {degrees} from now on, the seat as it was",
-        0,
         {first: float(later) for first, (_, later, _) in DEGREES.items()},
         LATER_UPS,
         FIRST_UPS,
     ),
     _mother(
         "Wed 18 Nov: For my father {degrees} will do, tell me when he gets in",
-        1,
         {first: float(first) for first in DEGREES},
         FIRST_UPS,
         LATER_UPS,
