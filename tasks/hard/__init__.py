@@ -13,6 +13,7 @@ from automotive_cosim.tasks.hard import (
     prepared,
     remembered,
     ruled,
+    sensed,
     several,
     side_effects,
     watched,
@@ -33,6 +34,7 @@ _MODULES = (
     ruled,
     remembered,
     ordered,
+    sensed,
     watched,
 )
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)
