@@ -261,7 +261,7 @@ def _tells_boss(boss: str) -> Moves:
 
 def _boss(note: str, boss: str, other: str) -> Half:
     start = _trips(
-        ON_THE_ROAD,
+        replace(ON_THE_ROAD, interruptions=(Arrival("message", 6.0, other, "Where are you? They're all here!"),)),
         note,
         "Tue 17 Nov: The sitter, that's Wanda",
         "Mon 16 Nov: When I say the boss I mean Priya",
@@ -467,7 +467,7 @@ def _night(note: str, colour: str, moves: Moves, wrong: Moves) -> Half:
         {glow: f"Mon 16 Nov: After dark ambient light {glow}, screen {each}" for glow, each in GLOWS.items()},
     )
     start = _trips(
-        ON_THE_ROAD,
+        replace(ON_THE_ROAD, interruptions=(Arrival("message", 7.0, OSKAR, "Don't you see well in red light?"),)),
         note,
         "Tue 17 Nov: And make the ambient light red at night",
         screen,
@@ -581,7 +581,9 @@ BENS, MIAS = (
 
 def _which_child(line: str, name: str, volume: Any, *wrong: Moves) -> Half:
     start = _trips(
-        replace(ON_THE_ROAD, aboard=CHILD),
+        replace(
+            ON_THE_ROAD, aboard=CHILD, interruptions=(Arrival("message", 9.0, WANDA, "And drive safely, you two!"),)
+        ),
         "Wed 18 Nov: Ben has outgrown Calm, he gets Sunday now, as loud as before",
         param(
             "soft",

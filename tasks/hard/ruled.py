@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.signals import ADAS, LINK, TYRE
 from automotive_cosim.contracts import AlertKind, Weather
 from automotive_cosim.tasking.checks import AlertGiven, AllOf, AppDataIs, Check, Entered, SignalIs
@@ -24,6 +25,7 @@ from automotive_cosim.tasking.triggers import (
     TriggerCondition,
 )
 from automotive_cosim.tasks.hard.forms import (
+    A_RED_LIGHT,
     AS_A_PASSENGER,
     BEA,
     ISLA,
@@ -133,7 +135,15 @@ def _bastille(origin: tuple[float, float], country: str, goal: Check, moves: Mov
         contacts=knowing(ISLA),
         memos=("Sign here: zone B, ticket 9 to 19, not on Sundays and public holidays", "Sun cream"),
     )
-    return done(start, goal, moves, slips=(wrong,), may_write=frozenset(), trigger=_in(country, Parked()))
+    return done(
+        start,
+        goal,
+        moves,
+        slips=(wrong,),
+        may_write=frozenset(),
+        deadline=A_RED_LIGHT,
+        trigger=_in(country, Parked()),
+    )
 
 
 NATIONAL_DAY = hard(
@@ -348,7 +358,14 @@ TELL_BEA = answer(BEA, "{words}")
 
 def _sunday(origin: tuple[float, float], country: str, goal: tuple[Check, ...], moves: Moves, wrong: Moves) -> Half:
     start = with_papers(
-        Start("london", "bloomsbury", origin, start="2026-11-15T12:40:00", weather=GREY),
+        Start(
+            "london",
+            "bloomsbury",
+            origin,
+            start="2026-11-15T12:40:00",
+            weather=GREY,
+            interruptions=(Arrival("message", 5.0, BEA, "And eggs, if you pass a shop!"),),
+        ),
         contacts=knowing(BEA),
         details={MARKET: "Supermarket, 900 m², bakery, free parking"},
     )
@@ -473,7 +490,13 @@ def _tows(at: int) -> Moves:
 
 def _towed(trip: str, at: int, *road: TriggerCondition) -> Half:
     start = with_letter(
-        replace(ALPS, trip=trip, origin=DARMSTADT, signals={ADAS.LIMITER_SPEED.path: 120.0}),
+        replace(
+            ALPS,
+            trip=trip,
+            origin=DARMSTADT,
+            signals={ADAS.LIMITER_SPEED.path: 120.0},
+            interruptions=(Arrival("message", 8.0, THEO, "And go slowly, wherever you are!"),),
+        ),
         THEO,
         "My caravan: motorway, country road, town,",
         "{speeds} at most",
@@ -585,7 +608,7 @@ def _door_frame(at: int, goal: Check, moves: Moves, wrong: Moves) -> Half:
         contacts=knowing(MALIK),
         memos=("Malik: tyres before the winter?", param("lead", noted)),
     )
-    return done(start, goal, moves, slips=(wrong,), may_write=frozenset(), deadline=AS_A_PASSENGER)
+    return done(start, goal, moves, slips=(wrong,), may_write=frozenset(), deadline=A_RED_LIGHT)
 
 
 BY_THE_HANDBOOK = hard(

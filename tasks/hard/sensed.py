@@ -128,7 +128,9 @@ SIGN_CAMERA = hard(
 
 SOFT = {"front left": TYRE.FRONT_LEFT, "rear right": TYRE.REAR_RIGHT, "front right": TYRE.FRONT_RIGHT}
 STUCK_LOW = replace(
-    ON_THE_ROAD, sensors=param("wheel", {wheel: {tyre.path: 171.0} for wheel, tyre in SOFT.items()})
+    ON_THE_ROAD,
+    interruptions=(Arrival("message", 7.0, OSKAR, "You have a flat tyre, I think!"),),
+    sensors=param("wheel", {wheel: {tyre.path: 171.0} for wheel, tyre in SOFT.items()}),
 )
 THANKS = answer(MALIK, "Thank you")
 BY_HAND = hard(

@@ -41,7 +41,7 @@ DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
 
 def _watched(
     start: Start,
-    event: Arrival | CarChange,
+    event: Arrival | CarChange | None,
     goal: tuple[Check, ...],
     moves: Moves,
     *slips: Moves,
@@ -49,7 +49,7 @@ def _watched(
     deadline: Deadline = THEN_ENOUGH,
 ) -> Half:
     return done(
-        replace(start, interruptions=(event,)),
+        start if event is None else replace(start, interruptions=(event,)),
         AllOf(goal),
         moves,
         slips=slips,
@@ -97,6 +97,7 @@ AFTER_THE_KERB = hard(
         (*LOOK, *wait(30), Warn(AlertKind.VEHICLE)),
         (*LOOK, Warn(AlertKind.VEHICLE)),
         (*LOOK, *wait(46)),
+        deadline=Deadline(70.0, "it is that soft after half a minute, and goes on rolling on its rim"),
     ),
     "events: a tyre falls to a little over 2 bar, or to far less",
     parameters={"wheel": tuple(WHEELS)},
@@ -305,7 +306,7 @@ ONCE_PLUGGED_IN = hard(
     ),
     _watched(
         AT_THE_POST,
-        CarChange(200.0, ENERGY.CABLE.path, True),
+        None,
         (Watched(60.0),),
         (Open("charging"), *wait(61)),
         (Open("charging"), CHARGES, *wait(61)),
@@ -412,55 +413,51 @@ PRIYA_MAY_END_IT = hard(
     guess_loses="The same words come in both halves, from her and from somebody who has no say in it.",
 )
 
-COLOURS = ("yellow", "white", "orange", "green")
 STRANDED = replace(PARKED, start="2026-11-17T17:40:00", signals={LIGHTS.HAZARD.path: True})
 LAMPS = (Open("vehicle"), Tap("vehicle.tab.lights"))
 TOW_TRUCK = hard(
     "hard_till_the_tow_truck",
     Module.ROAD,
     (
-        "The hazards stay on till the tow truck stands before us, then off, and the dome light on. Watch three"
-        " quarters"
-        " of a minute with me.",
-        "We're waiting for the tow truck. Once it's here: hazard lights off, dome light on. Until then nothing,"
-        " for the"
-        " next forty-five seconds.",
-        "Don't touch the hazards before the tow truck has come; when it has, off with them and light up the inside."
-        " Give it three quarters of a minute.",
-        "As soon as I see our tow truck, warning lights out and the dome lamp on. If it doesn't come in some"
-        " forty-five"
-        " seconds, all stays as it is.",
+        "The hazards stay on till the tow truck stands before us, then off, and the ambient light to {percent}."
+        " Watch three quarters of a minute with me.",
+        "We're waiting for the tow truck. Once it's here: hazard lights off, ambient light {percent}. Until then"
+        " nothing, for the next forty-five seconds.",
+        "Don't touch the hazards before the tow truck has come; when it has, off with them and put the ambient"
+        " light at {percent}. Give it three quarters of a minute.",
+        "As soon as I see our tow truck, warning lights out and {percent} for the ambient light. If it doesn't"
+        " come in some forty-five seconds, all stays as it is.",
     ),
     replace(
         _watched(
             STRANDED,
-            CarChange(200.0, HMI.BRIGHTNESS.path, 70.0),
+            None,
             (Watched(WATCH_S),),
             (*LAMPS, Hear("only a delivery"), *wait(46)),
             (*LAMPS, Hear("only a delivery"), Tap("lights.hazard"), Open("vehicle"), *wait(30)),
             (*LAMPS, Hear("only a delivery")),
         ),
-        says=(Says("There's a {colour} lorry. No, it's only a delivery for next door.", time_s=16.0),),
+        says=(Says("There's a lorry. No, it's only a delivery for next door.", time_s=16.0),),
     ),
     replace(
         _watched(
             STRANDED,
-            CarChange(200.0, HMI.BRIGHTNESS.path, 70.0),
-            (SignalIs(LIGHTS.HAZARD, (False,)), SignalIs(CABIN.DOME_LIGHT, (True,))),
+            None,
+            (SignalIs(LIGHTS.HAZARD, (False,)), SignalIs(CABIN.AMBIENT_LIGHT, (param("percent"),))),
             (
                 *LAMPS,
                 Hear("with a crane"),
                 Tap("lights.hazard"),
                 Tap("vehicle.tab.interior"),
-                Tap("light.dome"),
+                Slide("light.ambient", param("percent")),
             ),
             (*LAMPS, Hear("with a crane"), *wait(30)),
             (*LAMPS, Hear("with a crane"), Tap("lights.hazard")),
         ),
-        says=(Says("There's a {colour} lorry. Yes, with a crane, he's waving to us.", time_s=16.0),),
+        says=(Says("There's a lorry. Yes, with a crane, he's waving to us.", time_s=16.0),),
     ),
     "events: the lorry that comes is not theirs, or it is",
-    parameters={"colour": COLOURS},
+    parameters={"percent": (60, 70, 80, 90)},
     ability=Ability.RESTRAINT,
     guess_loses="A lorry comes in both halves; what the driver says of it tells whether it is the one.",
 )
