@@ -37,6 +37,9 @@ from automotive_cosim.tasks.hard.forms import (
 WATCH_S = 45.0
 THEN_ENOUGH = Deadline(85.0, "three quarters of a minute to watch, as he asked, and as long again to look about")
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
+NINE_S = wait(9)
+WATCHING = NINE_S * 5
+"""Enough of it, and not enough without the last."""
 
 
 def _watched(
@@ -86,7 +89,7 @@ AFTER_THE_KERB = hard(
         ON_THE_ROAD,
         CarChange(8.0, ITS_PATH, 226.0, over_s=20.0),
         (Watched(WATCH_S),),
-        (*LOOK, *wait(46)),
+        (*LOOK, *WATCHING),
         (*LOOK, *wait(40), Warn(AlertKind.VEHICLE)),
         LOOK,
     ),
@@ -96,7 +99,7 @@ AFTER_THE_KERB = hard(
         (After(SignalWithin(param("wheel", WHEELS), 0.0, 200.0), AlertGiven(AlertKind.VEHICLE)),),
         (*LOOK, *wait(30), Warn(AlertKind.VEHICLE)),
         (*LOOK, Warn(AlertKind.VEHICLE)),
-        (*LOOK, *wait(46)),
+        (*LOOK, *WATCHING),
         deadline=Deadline(70.0, "it is that soft after half a minute, and goes on rolling on its rim"),
     ),
     "events: a tyre falls to a little over 2 bar, or to far less",
@@ -128,7 +131,7 @@ LET_IT_RING = hard(
         NURSERY,
         Arrival("call", 9.0, OSKAR),
         (SOFT, Watched(WATCH_S)),
-        (*SOFTLY, *wait(45)),
+        (*SOFTLY, *WATCHING),
         (*SOFTLY, *wait(10), Tap("call.answer"), *wait(36)),
         (*SOFTLY, *wait(10), Tap("call.decline"), *wait(36)),
     ),
@@ -137,7 +140,7 @@ LET_IT_RING = hard(
         Arrival("call", 9.0, SCHOOL),
         (SOFT, Entered("calls.answered", SCHOOL)),
         (*SOFTLY, *wait(9), Tap("call.answer")),
-        (*SOFTLY, *wait(45)),
+        (*SOFTLY, *WATCHING),
         deadline=Deadline(38.0, "a call rings for 30 s (ETSI TS 122 082), and it comes after 9 s"),
     ),
     "events: a friend rings, or the school",
@@ -150,44 +153,40 @@ CHILDREN = (Occupant(Seat.REAR_LEFT, Kind.CHILD), Occupant(Seat.REAR_RIGHT, Kind
 BLOWING = (Open("climate"), Slide("hvac.fan", param("fan")))
 BLOWS = SignalIs(HVAC.FAN_SPEED, (param("fan"),))
 SHUT_ROOF = (*DOORS, Slide("window.sunroof", 0.0))
-THEIR_WINDOWS = hard(
-    "hard_windows_are_theirs",
+UP_TO_THIRTY = hard(
+    "hard_children_and_roof",
     Module.SYSTEM,
     (
-        "Fan to {fan}. The children have their windows as they like; keep watch for three quarters of a minute and"
-        " shut"
-        " the roof if they get at that.",
-        "Blower {fan}, then look after the roof for forty-five seconds: should they open it, close it. The side"
-        " windows"
-        " behind are their own affair.",
-        "Set {fan} on the fan. Whatever the kids do with the rear windows, let them; but an open sunroof you"
-        " close, for"
-        " the next three quarters of a minute.",
-        "{fan} for the fan, please. Watch the two behind for some forty-five seconds. Windows: up to them."
-        " Sunroof: it"
-        " stays shut, so undo it if they open it.",
+        "Fan to {fan}. The children may have the roof open up to 30; keep watch for three quarters of a minute,"
+        " and if they open it wider than that, shut it.",
+        "Blower {fan}, then mind the sunroof for forty-five seconds: up to 30 it's theirs, wider and you close it"
+        " altogether.",
+        "Set {fan} on the fan. Let the kids have some sky, 30 percent of roof at the most; beyond that it's to be"
+        " shut, for the next three quarters of a minute.",
+        "{fan} for the fan, please. Watch the roof for some forty-five seconds: open by 30 or less it stays as"
+        " they like it, by more than that it gets closed.",
     ),
     _watched(
         replace(ON_THE_ROAD, aboard=CHILDREN),
-        CarChange(12.0, CABIN.REAR_LEFT_WINDOW.path, 60.0),
+        CarChange(12.0, CABIN.SUNROOF.path, 30.0),
         (BLOWS, Watched(WATCH_S)),
-        (*BLOWING, *DOORS, *wait(46)),
-        (*BLOWING, *DOORS, *wait(20), Slide("window.rear_left", 0.0), *wait(26)),
+        (*BLOWING, *DOORS, *WATCHING),
+        (*BLOWING, *wait(20), *SHUT_ROOF, *wait(26)),
         (*BLOWING, *DOORS),
     ),
     _watched(
         replace(ON_THE_ROAD, aboard=CHILDREN),
-        CarChange(12.0, CABIN.SUNROOF.path, 40.0),
+        CarChange(12.0, CABIN.SUNROOF.path, 80.0),
         (BLOWS, SignalIs(CABIN.SUNROOF, (0.0,)), Watched(WATCH_S)),
-        (*BLOWING, *wait(15), *SHUT_ROOF, *wait(30)),
-        (*BLOWING, *wait(45)),
+        (*BLOWING, *wait(15), *SHUT_ROOF, *NINE_S, *NINE_S, *NINE_S),
+        (*BLOWING, *WATCHING),
         (*BLOWING, *DOORS),
         may_write=frozenset({CABIN.SUNROOF_SHADE.path}),
     ),
-    "events: a rear window comes down, or the roof slides open",
+    "events: the roof slides open by 30, or by 80",
     parameters={"fan": (20, 40, 50, 60, 70)},
     ability=Ability.RESTRAINT,
-    guess_loses="Something opens in both halves; one of them is the children's to open.",
+    guess_loses="The roof opens in both halves, and only beyond a figure is it to be shut.",
 )
 
 PLAYLISTS = ("Road trip", "Sunday", "Dance", "Calm", "Classics")
@@ -218,9 +217,9 @@ UP_TO_SIXTY = hard(
     ),
     _watched(
         HERS,
-        CarChange(18.0, MEDIA.VOLUME.path, 60.0, over_s=8.0),
+        CarChange(18.0, MEDIA.VOLUME.path, 55.0, over_s=8.0),
         (ON, Watched(WATCH_S)),
-        (*PLAYS, *wait(44)),
+        (*PLAYS, *WATCHING),
         (*PLAYS, *wait(26), Slide("media.volume", 30.0), *wait(20)),
         PLAYS,
         may_write=frozenset({MEDIA.SELECTED.path, MEDIA.SOURCE.path, "media.playlist"}),
@@ -229,12 +228,12 @@ UP_TO_SIXTY = hard(
         HERS,
         CarChange(18.0, MEDIA.VOLUME.path, 80.0, over_s=8.0),
         (ON, SignalIs(MEDIA.VOLUME, (60.0,)), Watched(WATCH_S)),
-        (*PLAYS, *wait(28), Slide("media.volume", 60.0), *wait(15)),
-        (*PLAYS, *wait(44)),
+        (*PLAYS, *wait(28), Slide("media.volume", 60.0), *NINE_S, *NINE_S),
+        (*PLAYS, *WATCHING),
         (*PLAYS, *wait(28), Slide("media.volume", 30.0), *wait(15)),
         may_write=frozenset({MEDIA.SELECTED.path, MEDIA.SOURCE.path, "media.playlist"}),
     ),
-    "events: the passenger turns it up to 60, or to 80",
+    "events: the passenger turns it up to 55, or to 80",
     parameters={"playlist": PLAYLISTS},
     tags=frozenset({"preference"}),
     ability=Ability.RESTRAINT,
@@ -266,7 +265,7 @@ WAIT_FOR_BEA = hard(
         PLATFORM,
         Arrival("message", 10.0, OSKAR, "{here}. Let me in, please"),
         (Watched(WATCH_S),),
-        (Open("phone"), Tap("phone.tab.messages"), *wait(12), Tap(text=OSKAR), *wait(32)),
+        (*SHE_COMES, Tap(text=OSKAR), *NINE_S, *NINE_S, *NINE_S, *NINE_S),
         (*SHE_COMES, *letter(OSKAR), *OPENS, *wait(30)),
         (*SHE_COMES, *answer(OSKAR, "No"), *wait(30)),
     ),
@@ -308,7 +307,7 @@ ONCE_PLUGGED_IN = hard(
         AT_THE_POST,
         None,
         (Watched(60.0),),
-        (Open("charging"), *wait(61)),
+        (Open("charging"), *(NINE_S * 7)),
         (Open("charging"), CHARGES, *wait(61)),
         (Open("charging"), *wait(61), CHARGES),
         deadline=A_MINUTE,
@@ -319,7 +318,7 @@ ONCE_PLUGGED_IN = hard(
         (After(PLUGGED_IN, SignalIs(ENERGY.CHARGE_LIMIT, (param("limit"),))),),
         (Open("charging"), *wait(24), CHARGES),
         (Open("charging"), CHARGES, *wait(61)),
-        (Open("charging"), *wait(61)),
+        (Open("charging"), *(NINE_S * 7)),
     ),
     "events: no cable comes, or one is plugged in after a while",
     parameters={"limit": LIMITS},
@@ -349,7 +348,7 @@ WHILE_PARKED = hard(
         replace(PARKED, aboard=CHILDREN),
         OPENED,
         (SignalIs(CABIN.WINDOW_LOCK, (True,)), Watched(WATCH_S)),
-        (*DOORS, Tap("window.lock"), Open("cabin"), *wait(44)),
+        (*DOORS, Tap("window.lock"), Open("cabin"), *WATCHING),
         (*DOORS, Tap("window.lock"), Open("cabin"), *wait(20), Warn(AlertKind.SEAT_BELT), *wait(20)),
         may_write=frozenset(),
     ),
@@ -361,7 +360,7 @@ WHILE_PARKED = hard(
             After(SignalIs(param("side", BELTS), (False,)), AlertGiven(AlertKind.SEAT_BELT)),
         ),
         (*DOORS, Tap("window.lock"), Open("cabin"), *wait(12), Warn(AlertKind.SEAT_BELT)),
-        (*DOORS, Tap("window.lock"), Open("cabin"), *wait(44)),
+        (*DOORS, Tap("window.lock"), Open("cabin"), *WATCHING),
         (*DOORS, Tap("window.lock"), Open("cabin"), Warn(AlertKind.SEAT_BELT)),
         may_write=frozenset(),
         deadline=Deadline(40.0, "it is undone after 10 s, and half a minute without a belt is too long"),
@@ -433,7 +432,7 @@ TOW_TRUCK = hard(
             STRANDED,
             None,
             (Watched(WATCH_S),),
-            (*LAMPS, Hear("only a delivery"), *wait(46)),
+            (*LAMPS, *NINE_S, *NINE_S, Hear("only a delivery"), *NINE_S, *NINE_S, *NINE_S),
             (*LAMPS, Hear("only a delivery"), Tap("lights.hazard"), Open("vehicle"), *wait(30)),
             (*LAMPS, Hear("only a delivery")),
         ),
@@ -484,7 +483,7 @@ LINKS = hard(
         PARKED,
         CarChange(14.0, LINK.BLUETOOTH.path, False),
         (DIM, Watched(WATCH_S)),
-        (*DIMMED, *wait(45)),
+        (*DIMMED, *WATCHING),
         (*DIMMED, *wait(15), Tap("link.bluetooth"), *wait(30)),
         DIMMED,
         may_write=frozenset(),
@@ -494,7 +493,7 @@ LINKS = hard(
         CarChange(14.0, LINK.MOBILE_DATA.path, False),
         (DIM, SignalIs(LINK.MOBILE_DATA, (True,)), Watched(WATCH_S)),
         (*DIMMED, *wait(15), Tap("link.mobile"), *wait(30)),
-        (*DIMMED, *wait(45)),
+        (*DIMMED, *WATCHING),
         DIMMED,
         may_write=frozenset(),
     ),
@@ -508,7 +507,7 @@ LINKS = hard(
 TASKS = (
     AFTER_THE_KERB,
     LET_IT_RING,
-    THEIR_WINDOWS,
+    UP_TO_THIRTY,
     UP_TO_SIXTY,
     WAIT_FOR_BEA,
     ONCE_PLUGGED_IN,

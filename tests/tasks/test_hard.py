@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections import Counter
+
 from automotive_cosim.cockpit.apps.phone.state import Thread
 from automotive_cosim.proof.gates import PACE
+from automotive_cosim.tasking.checks import AllOf, Check
+from automotive_cosim.tasking.history import Lasted, Watched
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Do, Tap, TapUntil
-from automotive_cosim.tasking.task import Half, Suite, Task
+from automotive_cosim.tasking.task import Ability, Half, Suite, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 
@@ -14,9 +18,46 @@ HARD = CATALOGUE.of(Suite.HARD)
 
 
 def test_the_suite_is_large_enough_and_named_apart():
-    assert len(HARD) >= 80
+    assert len(HARD) >= 120
     assert all(task.id.startswith("hard_") for task in HARD)
     assert not any(task.id.startswith("hard_") for task in CATALOGUE.of(Suite.STANDARD))
+
+
+def test_every_ability_has_ten_tasks_or_more():
+    counts = Counter(task.ability for task in HARD)
+    assert {ability: counts[ability] for ability in Ability if counts[ability] < 10} == {}
+
+
+@over(CATALOGUE.values())
+def test_only_a_hard_task_says_what_it_is_hard_by_and_why_a_guess_loses(task: Task):
+    is_hard = task.suite is Suite.HARD
+    assert (task.ability is not None) is is_hard
+    assert (len(task.guess_loses.split()) >= 6) is is_hard
+    assert not is_hard or task.guess_loses.endswith(".")
+
+
+def test_a_third_is_in_a_moving_car_and_a_quarter_is_interrupted():
+    halves = {task.id: [task.half(name) for name in task.halves] for task in HARD}
+    moving = [task for task, each in halves.items() if not all(half.start.parked for half in each)]
+    interrupted = [
+        task for task, each in halves.items() if any(half.start.interruptions or half.says for half in each)
+    ]
+    assert 3 * len(moving) >= len(HARD)
+    assert 4 * len(interrupted) >= len(HARD)
+
+
+@over(task for task in HARD if task.ability is Ability.RESTRAINT and task.second)
+def test_restraint_is_asked_for_as_long_as_an_act(task: Task):
+    """In one half at least there is nothing to do but to watch, or to leave it at what was set first."""
+    watches = [
+        name for name in task.halves if any(isinstance(each, Watched | Lasted) for each in _checks(task, name))
+    ]
+    assert watches
+
+
+def _checks(task: Task, name: str) -> tuple[Check, ...]:
+    goal = task.half(name).goal
+    return goal.checks if isinstance(goal, AllOf) else (goal,)
 
 
 @over(HARD)
