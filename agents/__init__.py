@@ -62,7 +62,7 @@ SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
     "always-ask": lambda settings: AlwaysAsk(),
     "human": lambda settings: Human(),
     "no-op": lambda settings: NoOp(),
-    "oracle": lambda settings: Oracle(),
+    "oracle": lambda settings: Oracle(settings.conditions.see),
     "press-everything": lambda settings: PressEverything(),
     "random": lambda settings: Random(settings.seed),
     "rule-perfect": lambda settings: RulePerfect(),

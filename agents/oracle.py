@@ -19,6 +19,7 @@ from automotive_cosim.contracts import (
     GoalStatus,
     Observation,
 )
+from automotive_cosim.contracts.given import See
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
@@ -49,9 +50,14 @@ class Oracle:
 
     name = "oracle"
     model = "none"
-    channels = frozenset({Channel.ELEMENTS, Channel.SCREENSHOT})
 
-    def __init__(self) -> None:
+    def __init__(self, see: See = See.BOTH) -> None:
+        """Nothing is known yet.
+
+        Args:
+            see: how it sees the screen; it has the picture drawn only where it gets no list.
+        """
+        self.channels = frozenset({Channel.SCREENSHOT if see is See.PICTURE else Channel.ELEMENTS})
         self._moves: deque[Move] = deque()
         self._end = Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)
         self._count = 0

@@ -49,6 +49,7 @@ def drive(
     from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.jobs import DriveJob
     from automotive_cosim.run.record import check_folder, stamped_folder
+    from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
 
     under = Conditions.named(given(conditions))
@@ -56,17 +57,18 @@ def drive(
     setup = DriveSetup(
         family,
         seed,
-        player.name,
-        player.model,
         under,
-        scenario=scenario,
-        settings=DriveSettings(minutes=minutes),
+        scenario,
+        DriveSettings(minutes=minutes),
+        agent=player.name,
+        model=player.model,
     )
     planned = DriveJob(setup).planned()
     folder = out or stamped_folder(f"{family}-{player.name}-seed{seed}")
     check_folder(folder, force=force)
-    with closing(DriveRecorder(folder, setup, player)) as recorder:
-        record = run_drive(planned, setup, player, observers=[recorder])
+    recorder, road = DriveRecorder(folder), RoadRecorder(folder, setup.about)
+    with closing(recorder), closing(road):
+        record = run_drive(planned, setup, player, observers=(recorder, road))
     if as_json:
         print_json({**row_json(record.row), "out": str(folder)})
         return

@@ -19,7 +19,8 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.text import amount_of_speed
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, Shot
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.words import (
     action_in_words,
     is_over,
@@ -97,12 +98,12 @@ class Live(EpisodeObserver):
             if self._begins is None:
                 self._release()
 
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
+    def begun(self, session: Episode, shot: Shot) -> None:
         """The driver's words."""
         self._hand_over_s = shot.step.moment.time_s
         self._begins = shot.step.moment
         self._title = "the agent acts"
-        self._goal = episode.instance.goal
+        self._goal = session.instance.goal
         if not self._console.is_terminal:
             moment = shot.step.moment
             self._console.print(f"{self._clock(moment)}  hand-over: {_drive(moment)}", soft_wrap=True)

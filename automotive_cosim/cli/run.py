@@ -234,15 +234,15 @@ def _recorded(
     recorder = Recorder(folder, setup, {**arguments, "out": str(folder)})
     # A panel that redraws itself would interfere with a person who types.
     view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
-    watchers = [recorder, RoadRecorder(folder, setup), Film(folder), Notes() if as_json else view, *more]
+    observers = [recorder, RoadRecorder(folder, setup.about), Film(folder), Notes() if as_json else view, *more]
     try:
-        result = run_episode(setup, player, watchers, simulations=simulations)
+        result = run_episode(setup, player, observers, simulations=simulations)
     except KeyboardInterrupt:
-        if recorder.begun:
+        if recorder.has_begun:
             write_page(folder)
             typer.echo(f"recorded so far: {folder}", err=True)
         raise
-    if recorder.begun:
+    if recorder.has_begun:
         write_page(folder)
     return result
 

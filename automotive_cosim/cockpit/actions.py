@@ -121,7 +121,9 @@ FIELDS: Mapping[ActionType, Takes] = {
     ActionType.REQUEST_SLOW_DOWN: Takes("ask for a lower speed", required=("speed_kmh",)),
     ActionType.REQUEST_REROUTE: Takes("ask for another route", optional=("destination",)),
     ActionType.PULL_OVER: Takes("ask the driver to stop at the side"),
-    ActionType.QUERY: Takes("ask for facts about place, rules, weather or traffic", required=("text",)),
+    ActionType.QUERY: Takes(
+        "ask for facts about the car's position, rules, hazards, weather or traffic", required=("text",)
+    ),
     ActionType.ESTIMATE_POSITION: Takes(
         'say where the car is, as "LON,LAT" in degrees, while GPS is out', required=("text",)
     ),

@@ -197,7 +197,7 @@ def levels(
     signals: Signals,
     steps: Sequence[tuple[float, str]],
 ) -> Tile:
-    """A tile that goes round its levels; a value that is none of them counts as the first."""
+    """A tile that goes round its levels; a value that is none of them counts as the first, 0 is off."""
     values = [value for value, _ in steps]
     now = signals[signal]
     at = values.index(now) if now in values else 0
@@ -207,7 +207,7 @@ def levels(
         key=key,
         text=name,
         icon=icon,
-        checked=at > 0,
+        checked=at > 0 and not values[0],
         level=steps[at][1],
         on_tap=Set(signal, following),
     )

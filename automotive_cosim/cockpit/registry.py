@@ -55,8 +55,10 @@ def docked() -> Mapping[str, str]:
 
 @cache
 def by_any_name() -> Mapping[str, tuple[str, str]]:
-    """By name and other name, the app that opens and the part that is shown."""
+    """By name, title and other name, the app that opens and the part that is shown."""
     known = apps().values()
-    return {app.name: (app.name, "") for app in known} | {
-        alias: (app.name, part) for app in known for alias, part in app.aliases.items()
-    }
+    return (
+        {app.title.lower(): (app.name, "") for app in known}
+        | {alias: (app.name, part) for app in known for alias, part in app.aliases.items()}
+        | {app.name: (app.name, "") for app in known}
+    )

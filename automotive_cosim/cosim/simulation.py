@@ -36,7 +36,7 @@ class CoSimulation:
     traffic: SharedTraffic
     car: Car
     moment: Moment
-    onlooker: Callable[[RoadSnapshot], None] | None = None
+    on_look: Callable[[RoadSnapshot], None] | None = None
     """Is shown the road after each tick; copies have none. The traffic is not asked unless there is one."""
 
     @property
@@ -62,8 +62,8 @@ class CoSimulation:
         while left_s > 1e-9 and self.moment.driving.end is None:
             tick_s = min(TICK_S, left_s)
             drive = self.traffic.advance(tick_s)
-            if self.onlooker is not None:
-                self.onlooker(self.traffic.look())
+            if self.on_look is not None:
+                self.on_look(self.traffic.look())
             self.moment = self.car.sense(self.traffic, drive.states, drive.events, tick_s)
             moments.append(self.moment)
             left_s -= tick_s

@@ -26,7 +26,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface
 from automotive_cosim.doors.shared import conditions_of, takes_conditions, trial
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
 from automotive_cosim.interface.functions import Function, action_json, offered
 from automotive_cosim.interface.observe import ALL, Channel
@@ -226,7 +226,7 @@ class CockpitTools:
         return _result(self._service.finish(episode_id).as_json())
 
 
-class _Progress(Listener):
+class _Progress(Observer):
     """Tells the client of the warm-up, from the thread of a tool."""
 
     def __init__(self, context: Context[Any, Any]) -> None:

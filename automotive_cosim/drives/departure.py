@@ -8,7 +8,7 @@ from datetime import datetime
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.simulation import CoSimulation, couple
 from automotive_cosim.drives.script import DriveScript
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.incidents import EmergencyVehicle
 from automotive_cosim.scenery import open_scenario
@@ -20,13 +20,13 @@ ADVICE_S = 120.0
 """How long a driver keeps to advice, and stops when asked to: our choice; a reason that lasts is told again."""
 
 
-def depart(script: DriveScript, simulations: Simulations, listener: Listener | None = None) -> CoSimulation:
+def depart(script: DriveScript, simulations: Simulations, observer: Observer | None = None) -> CoSimulation:
     """The drive at its first instant; whoever takes it over must close it.
 
     Args:
         script: the drive.
         simulations: warm traffic, shared with others.
-        listener: notified of progress.
+        observer: notified of progress.
 
     Raises:
         UnknownNameError: no such scenario, trip or driver.
@@ -35,17 +35,17 @@ def depart(script: DriveScript, simulations: Simulations, listener: Listener | N
         NoRoomError: no gap opened for the car.
         TrafficError: the traffic simulation failed.
     """
-    listener = listener or Listener()
+    observer = observer or Observer()
     scenario = open_scenario(script.scenario, origin=script.origin)
     if script.density != 1.0:
         scale = scenario.sumo.scale * script.density
         scenario = replace(scenario, sumo=replace(scenario.sumo, scale=scale))
     draws = Draws(script.family, script.seed)
     ego = _ego_plan(script, scenario, draws)
-    listener.loading(scenario)
+    observer.loading(scenario)
 
     def warming(done_s: float, total_s: float) -> None:
-        listener.warming(scenario.title, done_s, total_s)
+        observer.warming(scenario.title, done_s, total_s)
 
     with simulations.held(scenario, script.seed % SEED_LIMIT, warming) as simulation:
         traffic = simulation.depart(ego)
@@ -72,8 +72,8 @@ def depart(script: DriveScript, simulations: Simulations, listener: Listener | N
     except BaseException:
         traffic.close()
         raise
-    if listener.looks:
-        world.onlooker = listener.looked
+    if observer.looks:
+        world.on_look = observer.looked
     return world
 
 

@@ -14,7 +14,7 @@ from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.traffic.fork import Simulations
@@ -52,7 +52,7 @@ class DriveSpec:
         self,
         simulations: Simulations,
         channels: frozenset[Channel] = ALL,
-        listener: Listener | None = None,
+        observer: Observer | None = None,
         script: DriveScript | None = None,
     ) -> Watch:
         """Departs; the caller closes the watch.
@@ -60,7 +60,7 @@ class DriveSpec:
         Args:
             simulations: warm traffic, shared with others.
             channels: what the agent wants to see.
-            listener: notified of progress.
+            observer: notified of progress.
             script: used instead of its own.
 
         Raises:
@@ -71,9 +71,9 @@ class DriveSpec:
         if self.conditions.language is not Language.ENGLISH:
             drive = replace(drive, signals={HMI.LANGUAGE.path: str(self.conditions.language), **drive.signals})
         setup = SessionSetup(channels, self.conditions, MOST_STEPS, drive.duration_s)
-        world = depart(drive, simulations, listener)
+        world = depart(drive, simulations, observer)
         try:
-            return Watch.depart_with(world, setup, listener)
+            return Watch.depart_with(world, setup, observer)
         except BaseException:
             world.close()
             raise

@@ -23,8 +23,9 @@ from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
 from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
-from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.session import Session, beginning
+from automotive_cosim.episode.judged import JudgedSession
+from automotive_cosim.episode.observer import Observer
+from automotive_cosim.episode.session import beginning
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.interface.observe import Channel
 
@@ -71,11 +72,9 @@ class Twin:
 
 
 @dataclass(kw_only=True)
-class Watch(Session):
+class Watch(JudgedSession):
     """A session on a drive. Make one with ``depart_with``."""
 
-    baseline: Baseline
-    """The same drive from departure with nobody at the cockpit, for comparison."""
     tracker: Tracker
     alarm: Alarm
     acts: list[WatchAct] = field(default_factory=list)
@@ -102,19 +101,19 @@ class Watch(Session):
         cls,
         world: CoSimulation,
         setup: SessionSetup,
-        listener: Listener | None = None,
+        observer: Observer | None = None,
     ) -> Self:
         """The watch that begins at the present moment of a drive, and takes it over.
 
         Args:
             world: the running drive.
             setup: the agent's input, and the duration as ``max_sim_s``.
-            listener: notified of every second that passes.
+            observer: notified of every second that passes.
 
         Raises:
             TrafficError: the traffic simulation failed.
         """
-        begun: dict[str, Any] = beginning(world, STANDING_ORDERS[setup.conditions.language], setup, (), listener)
+        begun: dict[str, Any] = beginning(world, STANDING_ORDERS[setup.conditions.language], setup, (), observer)
         watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
         watch._read()
@@ -126,9 +125,9 @@ class Watch(Session):
         return self.tracker.events
 
     @property
-    def baseline_moments(self) -> tuple[Moment, ...]:
-        """The do-nothing drive from departure to now."""
-        return self.baseline.until(self.moments[-1].time_s)
+    def is_judged(self) -> bool:
+        """Whether the drive is over and judged."""
+        return self.judgement is not None
 
     @property
     def harms(self) -> tuple[Harm, Harm]:

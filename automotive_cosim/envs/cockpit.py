@@ -11,7 +11,7 @@ from automotive_cosim.contracts import Action
 from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of, spaces_of
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import ACTION_COST_S, EpisodeSpec, SeedSource, SessionSetup
 from automotive_cosim.errors import UserError
@@ -59,7 +59,7 @@ class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
         action_cost_s: float = ACTION_COST_S,
         render_mode: str | None = None,
         simulations: Simulations | None = None,
-        listener: Listener | None = None,
+        observer: Observer | None = None,
         **conditions: str,
     ) -> None:
         """Makes an environment for one task; nothing runs before ``reset``.
@@ -70,7 +70,7 @@ class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
             channels, max_steps, action_cost_s: as in ``SessionSetup``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
-            listener: told of progress.
+            observer: told of progress.
             conditions: ``geo``, ``see`` and so on, as in ``Conditions``.
 
         Raises:
@@ -88,8 +88,8 @@ class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
         wanted = frozenset(map(Channel, channels))
         self._setup = SessionSetup(wanted, under, max_steps, action_cost_s=action_cost_s)
         super().__init__(simulations, render_mode)
-        self._finder = SituationFinder(spec, self._simulations, task=given, listener=listener)
-        self._listener = listener
+        self._finder = SituationFinder(spec, self._simulations, task=given, observer=observer)
+        self._observer = observer
         self._seeds = SeedSource()
         self.observation_space, self.action_space = spaces_of(self._setup)
 
@@ -113,7 +113,7 @@ class CockpitEnv(SessionEnv[dict[str, Any], Any, Episode]):
             self._seeds = SeedSource(seed)
         self._seeds.traffic = traffic_seed(options, self._seeds.traffic)
         hand_over = self._finder.find(self._seeds.next())
-        self._episode = Episode.take_over(hand_over, self._setup, self._listener)
+        self._episode = Episode.take_over(hand_over, self._setup, self._observer)
         return self._encoded(), self._info()
 
     def step(self, action: Action | Mapping[str, Any] | str) -> StepResult:

@@ -14,7 +14,7 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of, spaces_of
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.formats.checked import Steps, checked
 from automotive_cosim.formats.toml import dotted
@@ -46,7 +46,7 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         channels: Iterable[str] = ALL,
         render_mode: str | None = None,
         simulations: Simulations | None = None,
-        listener: Listener | None = None,
+        observer: Observer | None = None,
         **conditions: str,
     ) -> None:
         """Makes an environment of one family; nothing runs before ``reset``.
@@ -58,7 +58,7 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
             channels: as in ``SessionSetup``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
-            listener: told of progress.
+            observer: told of progress.
             conditions: ``geo``, ``see`` and so on, as in ``Conditions``.
 
         Raises:
@@ -74,7 +74,7 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
             settings=checked(DriveSettings, {} if minutes is None else {"minutes": minutes}, _named),
         )
         self._setup = SessionSetup(frozenset(map(Channel, channels)), under)
-        self._listener = listener
+        self._observer = observer
         super().__init__(simulations, render_mode)
         self.observation_space, self.action_space = spaces_of(self._setup)
 
@@ -91,7 +91,7 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         self._end()
         drawn = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
         self._spec = replace(self._spec, seed=drawn)
-        self._episode = self._spec.begin(self._simulations, self._setup.channels, self._listener)
+        self._episode = self._spec.begin(self._simulations, self._setup.channels, self._observer)
         return self._encoded(), info_of(self.episode)
 
     def step(self, action: Action | Mapping[str, Any] | str) -> StepResult:

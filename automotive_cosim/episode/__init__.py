@@ -3,7 +3,7 @@
     EpisodeSpec -> SituationFinder -> HandOver -> Episode -> play(episode, actor) -> verdict
 
 specification  what to run, and under which conditions; seeds
-listener       watches the progress of an episode
+observer       watches the progress of an episode
 situation      drives until a task's trigger holds, and hands over
 session        an agent at the cockpit: perform, advance, observe
 baseline       the same drive with nobody at the cockpit

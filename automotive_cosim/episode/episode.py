@@ -11,8 +11,9 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.counterfactual import counterfactual
-from automotive_cosim.episode.listener import Listener
-from automotive_cosim.episode.session import Session, beginning
+from automotive_cosim.episode.judged import JudgedSession
+from automotive_cosim.episode.observer import Observer
+from automotive_cosim.episode.session import beginning
 from automotive_cosim.episode.situation import HandOver
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
@@ -22,13 +23,12 @@ from automotive_cosim.tasking.verdict import Verdict, judge
 
 
 @dataclass(kw_only=True)
-class Episode(Session):
+class Episode(JudgedSession):
     """A session on a task, from its hand-over. Make one with ``take_over``."""
 
     instance: Instance
     at_hand_over: Cockpit
     """The cockpit as the agent took it over, which nobody touches."""
-    baseline: Baseline
     owns_baseline: bool = True
     """Whether it owns the baseline run; false for a branch, which shares it."""
     verdict: Verdict | None = None
@@ -37,7 +37,7 @@ class Episode(Session):
     """What the driver may still say by himself."""
 
     @classmethod
-    def take_over(cls, hand_over: HandOver, setup: SessionSetup, listener: Listener | None = None) -> Episode:
+    def take_over(cls, hand_over: HandOver, setup: SessionSetup, observer: Observer | None = None) -> Episode:
         """The episode that begins at a hand-over, and takes over its drive.
 
         Raises:
@@ -46,7 +46,7 @@ class Episode(Session):
         instance, world = hand_over.instance, hand_over.world
         if setup.max_steps is None:
             setup = replace(setup, max_steps=instance.task.max_steps)
-        begun: dict[str, Any] = beginning(world, instance.goal, setup, hand_over.drive, listener)
+        begun: dict[str, Any] = beginning(world, instance.goal, setup, hand_over.drive, observer)
         return cls(
             **begun,
             instance=instance,
@@ -90,9 +90,9 @@ class Episode(Session):
         self.world.close()
 
     @property
-    def baseline_moments(self) -> tuple[Moment, ...]:
-        """The baseline run from the hand-over to now."""
-        return self.baseline.until(self.moments[-1].time_s)
+    def is_judged(self) -> bool:
+        """Whether it has a verdict."""
+        return self.verdict is not None
 
     @property
     def questions(self) -> tuple[Question, ...]:

@@ -1,4 +1,4 @@
-"""The loop: plays any actor to the end of a session, with observers."""
+"""The loop: plays any actor to the end of a session, and says when it has acted."""
 
 from __future__ import annotations
 
@@ -26,22 +26,13 @@ class Actor(Protocol):
         ...
 
 
-S = TypeVar("S", bound=Session, contravariant=True)
 T = TypeVar("T", bound=Session)
-
-
-class StepObserver(Protocol[S]):
-    """Called after each step."""
-
-    def __call__(self, session: S, seen: Sequence[Element], /) -> None:
-        """The last of ``session.steps`` has just been made; ``seen`` is the screen that the actor acted on."""
-        ...
 
 
 def play(
     session: T,
     actor: Actor,
-    observers: Sequence[StepObserver[T]] = (),
+    stepped: Callable[[T, Sequence[Element]], None] = lambda session, seen: None,
     thought_s: Callable[[], float] = lambda: 0.0,
 ) -> End:
     """Lets an actor act until the session is over, and returns why it is.
@@ -49,7 +40,7 @@ def play(
     Args:
         session: the session, which may be under way.
         actor: the actor, which has been told the goal.
-        observers: called after each step, including the last.
+        stepped: called after each step, including the last, with the session and the screen that was acted on.
         thought_s: gives the simulated seconds that the actor's last answer took, which pass before its action.
 
     Raises:
@@ -72,7 +63,6 @@ def play(
         else:
             session.think(thought_s())
             session.step(action)
-        for observer in observers:
-            observer(session, seen)
+        stepped(session, seen)
     assert session.end is not None
     return session.end

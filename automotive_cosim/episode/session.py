@@ -28,7 +28,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
 from automotive_cosim.geo import sensor
 from automotive_cosim.geo.locate import Geo
@@ -52,7 +52,7 @@ class Session:
     setup: SessionSetup
     drive: tuple[Moment, ...]
     """The drive from departure to the beginning, included, for the virtual sensor and reports."""
-    listener: Listener
+    observer: Observer
     shown: Shown
     """Turns the receivers' readings into what the agent is told."""
     moments: list[Moment]
@@ -86,7 +86,7 @@ class Session:
         goal: str,
         setup: SessionSetup,
         drive: Sequence[Moment] = (),
-        listener: Listener | None = None,
+        observer: Observer | None = None,
     ) -> Self:
         """A session that begins now.
 
@@ -95,9 +95,9 @@ class Session:
             goal: what the driver says.
             setup: the agent's input, conditions and limits.
             drive: moments from departure to now, if known.
-            listener: notified of every second that passes.
+            observer: notified of every second that passes.
         """
-        return cls(**beginning(world, goal, setup, drive, listener))
+        return cls(**beginning(world, goal, setup, drive, observer))
 
     # --- the loop -----------------------------------------------------------------------------------------
 
@@ -289,12 +289,12 @@ class Session:
 
     def _heard(self, moments: tuple[Moment, ...]) -> tuple[Moment, ...]:
         for moment in moments:
-            self.listener.moved(moment, self.world.cockpit)
+            self.observer.moved(moment, self.world.cockpit)
         return moments
 
 
 def beginning(
-    world: CoSimulation, goal: str, setup: SessionSetup, drive: Sequence[Moment], listener: Listener | None
+    world: CoSimulation, goal: str, setup: SessionSetup, drive: Sequence[Moment], observer: Observer | None
 ) -> dict[str, Any]:
     """The fields of a session that begins now, on the screen that its conditions ask for."""
     first = world.moment
@@ -309,7 +309,7 @@ def beginning(
         "goal": goal,
         "setup": setup,
         "drive": tuple(drive),
-        "listener": listener or Listener(),
+        "observer": observer or Observer(),
         "shown": told,
         "moments": [first],
         "elements": elements,

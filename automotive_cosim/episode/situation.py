@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import DRIVE, HMI, MOTION
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import EpisodeSpec, Seeds
 from automotive_cosim.errors import NoRoomError, TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
@@ -55,7 +55,7 @@ class SituationFinder:
         simulations: Simulations,
         *,
         task: Task | None = None,
-        listener: Listener | None = None,
+        observer: Observer | None = None,
     ) -> None:
         """Reads the scenario; nothing runs before ``find``.
 
@@ -63,7 +63,7 @@ class SituationFinder:
             spec: the situation to find; its ``seed`` and ``conditions`` are ignored.
             simulations: warm traffic, shared with others.
             task: used instead of the catalogue's task of that name.
-            listener: notified of progress.
+            observer: notified of progress.
 
         Raises:
             UnknownNameError: no such task, half or scenario.
@@ -94,7 +94,7 @@ class SituationFinder:
         self._has_signs = False
         """Whether a limit was posted anywhere on the way."""
         self._simulations = simulations
-        self._listener = listener or Listener()
+        self._observer = observer or Observer()
 
     def find(self, seeds: Seeds) -> HandOver:
         """Drives until the trigger holds, if necessary with later departures into the same traffic.
@@ -107,7 +107,7 @@ class SituationFinder:
         """
         draws = Draws(self.task.id, seeds.instance)
         half = self._draw(draws).half
-        self._listener.loading(self.scenario)
+        self._observer.loading(self.scenario)
         trips, waits_s = self._trips(half, draws), WAITS_S[:1] if half.start.parked else WAITS_S
         with self._simulations.held(self.scenario, seeds.traffic, self._warming) as simulation:
             full: dict[Trip, NoRoomError] = {}
@@ -208,8 +208,8 @@ class SituationFinder:
             departure=plan.start or self.scenario.start,
             links=self.scenario.connectivity,
         )
-        if self._listener.looks:
-            world.onlooker = self._listener.looked
+        if self._observer.looks:
+            world.on_look = self._observer.looked
         return world
 
     def _drive_up(self, begun: _Drive, half: Half) -> _Drive | None:
@@ -261,11 +261,11 @@ class SituationFinder:
     def _advanced(self, world: CoSimulation) -> tuple[Moment, ...]:
         moments = world.advance(TICK_S)
         for moment in moments:
-            self._listener.moved(moment, world.cockpit)
+            self._observer.moved(moment, world.cockpit)
         return moments
 
     def _warming(self, done_s: float, total_s: float) -> None:
-        self._listener.warming(self.scenario.title, done_s, total_s)
+        self._observer.warming(self.scenario.title, done_s, total_s)
 
 
 @dataclass(frozen=True, slots=True)

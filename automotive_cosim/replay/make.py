@@ -21,7 +21,8 @@ from automotive_cosim.models import ChatMessage, ModelReply, Rules
 from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, ProviderApi
 from automotive_cosim.models.base import estimated_tokens
 from automotive_cosim.models.replay import SUFFIX, text_digest
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, Shot, run_episode
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, run_episode
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.traffic.fork import Simulations
 
 SETUP = EpisodeSetup("hvac_fan_max", scenario="grid")

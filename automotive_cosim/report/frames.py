@@ -16,7 +16,8 @@ from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import NIGHT
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, Shot
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.words import action_in_words
 
 BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
@@ -70,11 +71,11 @@ class Frames(EpisodeObserver):
         elif not self._after or at_s - self._after[-1].at_s >= AFTER_EVERY_S:
             self._after.append(self._frame(at_s, cockpit.screenshot(), AFTER, "the drive continues", AFTER_MS))
 
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
+    def begun(self, session: Episode, shot: Shot) -> None:
         """The first frame of the episode, with the driver's words."""
-        self.map = RoadMap(episode.network)
+        self.map = RoadMap(session.network)
         self._hand_over_s = shot.step.moment.time_s
-        words = f"“{episode.instance.goal}”"
+        words = f"“{session.instance.goal}”"
         self._steps.append(self._frame(0.0, shot.screenshot, "The driver says", words, STEP_MS))
 
     def stepped(self, shot: Shot) -> None:

@@ -10,7 +10,8 @@ from automotive_cosim.agents import make_agent
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.report.contactsheet import SheetTile, sheet
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, Shot, run_episode
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, run_episode
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.words import action_in_words
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.traffic.fork import Simulations
@@ -26,9 +27,9 @@ class Storyboard(EpisodeObserver):
         self.tiles: list[SheetTile] = []
         self._title = title
 
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
+    def begun(self, session: Episode, shot: Shot) -> None:
         """Adds the screen at the hand-over."""
-        self.tiles.append((f"{self._title}: “{episode.instance.goal}”", Image.fromarray(shot.screenshot)))
+        self.tiles.append((f"{self._title}: “{session.instance.goal}”", Image.fromarray(shot.screenshot)))
 
     def stepped(self, shot: Shot) -> None:
         """Adds the screen after an action."""

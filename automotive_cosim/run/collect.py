@@ -17,11 +17,12 @@ from automotive_cosim.cosim.exposed import states_of, stretches
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.measures import exposure, following_figures
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, Shot
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.harm import overspeed
 from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.tasking.dialogue import Question
 
@@ -53,10 +54,10 @@ class Collector(EpisodeObserver):
         if self._episode is not None:
             self._moments.append(moment)
 
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
+    def begun(self, session: Episode, shot: Shot) -> None:
         """Starts collecting: everything from the hand-over counts."""
-        self._episode = episode
-        self._moments = [episode.moments[0]]
+        self._episode = session
+        self._moments = [session.moments[0]]
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:

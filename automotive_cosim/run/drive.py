@@ -5,52 +5,47 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
-from dataclasses import dataclass, fields, replace
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
-from automotive_cosim.agents import Agent, Thinker
+from automotive_cosim.agents import Agent
 from automotive_cosim.cockpit.actions import to_json
-from automotive_cosim.contracts import Element, Json
-from automotive_cosim.contracts.given import Clock
+from automotive_cosim.contracts import Json
 from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
+from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, facts_of, judge
 from automotive_cosim.drives.result import DriveResult, judged_since, result_of
 from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.script import DriveScript
-from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.watch import Watch
-from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.episode.listener import Listener, Listeners
-from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.observer import Observers
 from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import Step, canonical, plain
-from automotive_cosim.models.base import ModelReply
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode import Replayed, Timed
+from automotive_cosim.run.observer import Answers, TrialObserver, play_observed
 from automotive_cosim.traffic.fork import Simulations
 
 
 @dataclass(frozen=True, slots=True)
-class DriveSetup:
-    """One drive to run, by name."""
+class DriveSetup(DriveSpec):
+    """A specification of a drive and an agent, by name; the same setup gives the same trace."""
 
-    family: str
-    seed: int = 0
     agent: str = ""
     model: str = "none"
-    conditions: Conditions = Conditions()  # noqa: RUF009, frozen
-    scenario: str = ""
-    """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
-    settings: DriveSettings = AS_SCRIPTED
-    """What is set otherwise than the family's script has it."""
 
     @property
-    def spec(self) -> DriveSpec:
-        """The drive, whoever is at the cockpit."""
-        return DriveSpec(self.family, self.seed, self.conditions, self.scenario, self.settings)
+    def about(self) -> Json:
+        """What is run, by name, as the file of its road tells it."""
+        return {
+            "task": self.family,
+            "scenario": self.scenario or family_named(self.family).scenario,
+            "agent": self.agent,
+            "model": self.model,
+            "seed": self.seed,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,17 +115,8 @@ class DriveRecord:
         return [*self.steps, {"result": {"timeline": self.timeline}}]
 
 
-class DriveObserver(Listener):
-    """Sees a drive while it runs, e.g. to show or record it. It changes nothing."""
-
-    def departed(self, watch: Watch) -> None:
-        """The drive begins."""
-
-    def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
-        """The agent has acted on a screen with these elements."""
-
-    def arrived(self, watch: Watch, record: DriveRecord) -> None:
-        """The drive is over, and judged."""
+DriveObserver = TrialObserver[Watch, DriveRecord]
+"""Observes a drive."""
 
 
 def judged_row(
@@ -172,66 +158,23 @@ def run_drive(
         UserError: something in the setup does not exist.
         InfrastructureError: traffic or model failed.
     """
-    listener = Listeners(observers)
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
-        watch = setup.spec.begin(own, agent.channels, listener, plan)
+        watch = setup.begin(own, agent.channels, Observers(observers), plan)
         ends.callback(watch.close)
-        meter, channels = _Meter(setup, agent), tuple(sorted(agent.channels))
+        answers, channels = Answers(agent, setup.conditions), tuple(sorted(agent.channels))
         agent.reset(watch.goal)
-        for observer in observers:
-            observer.departed(watch)
-        end = play(watch, agent, (meter.stepped, *(observer.acted for observer in observers)), meter.thought_s)
+        end = play_observed(watch, agent, answers, observers)
         result = result_of(watch)
         record = DriveRecord(
-            row=judged_row(planned, end, channels, result, **meter.totals()),
+            row=judged_row(planned, end, channels, result, **asdict(answers.usage)),
             timeline=timeline(watch),
             steps=tuple(_steps(watch)),
             judged=JudgedDrive.of(watch),
         )
         for observer in observers:
-            observer.arrived(watch, record)
+            observer.finished(record)
         return record
-
-
-class _Meter:
-    """What the agent's answers cost."""
-
-    def __init__(self, setup: DriveSetup, agent: Agent) -> None:
-        self._setup, self._agent = setup, agent
-        self._replies: list[ModelReply] = []
-        self._thought_s = 0.0
-
-    def thought_s(self) -> float:
-        """Simulated seconds of the last answer."""
-        seconds = self._setup.conditions.latency_s
-        agent = self._agent
-        if isinstance(agent, Replayed):
-            seconds = agent.thought_s
-        elif self._setup.conditions.clock is Clock.MODEL and isinstance(agent, Timed):
-            seconds += agent.answer_s
-        elif self._setup.conditions.clock is Clock.MODEL and isinstance(agent, Thinker):
-            seconds += sum(stage.reply.seconds for stage in agent.stages if stage.reply is not None)
-        seconds = round(seconds, 1)
-        self._thought_s += seconds
-        return seconds
-
-    def stepped(self, session: Watch, seen: Sequence[Element]) -> None:
-        """Notes the model's replies of a step."""
-        if isinstance(self._agent, Thinker):
-            self._replies += [stage.reply for stage in self._agent.stages if stage.reply is not None]
-
-    def totals(self) -> dict[str, Any]:
-        """The fields of the row."""
-        replies = self._replies
-        return {
-            "calls": len(replies),
-            "thought_s": round(self._thought_s, 3),
-            "tokens_in": sum(reply.tokens_in for reply in replies),
-            "tokens_out": sum(reply.tokens_out for reply in replies),
-            "cost_usd": sum(reply.cost_usd for reply in replies),
-            "model_seconds": round(sum(reply.seconds for reply in replies), 3),
-        }
 
 
 def _steps(watch: Watch) -> list[Json]:

@@ -5,7 +5,7 @@
     steps.jsonl     each action with hashes of what followed, for a replay
     shown.jsonl     one line per step as a page shows it, written step by step
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it
-    road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
+    road.jsonl.gz   the road with every vehicle (``run.road_recorder`` writes it)
 
 Row, timeline and steps are written when the drive is over.
 """
@@ -21,19 +21,15 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
-from automotive_cosim.agents import Agent, Thinker
 from automotive_cosim.cockpit.actions import to_json
-from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import KMH_PER_MPS, Element, Json, RoadSnapshot
-from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.families import family_named
+from automotive_cosim.contracts import KMH_PER_MPS, Element
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.interface.trace import plain
 from automotive_cosim.run.collect import PICTURE_QUALITY
-from automotive_cosim.run.drive import DriveObserver, DriveRecord, DriveSetup
+from automotive_cosim.run.drive import DriveObserver, DriveRecord
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.record import remove, write_whole
 from automotive_cosim.run.road import NAME
-from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.words import action_in_words
 
@@ -45,93 +41,59 @@ OURS = ("row.json", "timeline.json", "steps.jsonl", SHOWN, "screenshots", NAME)
 class DriveRecorder(DriveObserver):
     """Records a drive while it runs."""
 
-    looks = True
-
-    def __init__(self, folder: Path, setup: DriveSetup, agent: Agent) -> None:
+    def __init__(self, folder: Path) -> None:
         """Nothing is written before the departure.
 
         Args:
             folder: the drive's, which may not exist yet.
-            setup: what is run.
-            agent: its reasons are recorded, if it gives any.
         """
         self.folder = folder
-        self._setup = setup
-        self._agent = agent
-        self._road: RoadWriter | None = None
         self._lines: IO[str] | None = None
-        self._looked: dict[float, RoadSnapshot] = {}
         self._pictured: tuple[int, npt.NDArray[np.uint8]] | None = None
         """The last picture, and the number of its step."""
 
-    def departed(self, watch: Watch) -> None:
+    def begun(self, session: Watch, shot: Shot) -> None:
         """Creates the folder and begins its files."""
-        setup = self._setup
         for name in OURS:
             remove(self.folder / name)
         (self.folder / "screenshots").mkdir(parents=True, exist_ok=True)
-        about: Json = {
-            "task": setup.family,
-            "scenario": setup.scenario or family_named(setup.family).scenario,
-            "agent": setup.agent,
-            "model": setup.model,
-            "seed": setup.seed,
-            "goal": watch.goal,
-        }
-        self._road = RoadWriter(self.folder / NAME, watch.world.traffic, about, watch.moments[0].time_s)
         self._lines = (self.folder / SHOWN).open("w", encoding="utf-8", newline="\n")
-        self.acted(watch, ())
+        self.stepped(shot)
 
-    def looked(self, snapshot: RoadSnapshot) -> None:
-        """Keeps it until its second is reported."""
-        self._looked[snapshot.time_s] = snapshot
-
-    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Writes a second of the road."""
-        snapshot = self._looked.pop(moment.time_s)
-        if self._road is not None:
-            self._road.second(moment.driving, RoadFacts.of(moment), snapshot)
-
-    def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
+    def stepped(self, shot: Shot) -> None:
         """Writes a step."""
         assert self._lines is not None
-        step = watch.steps[-1]
-        picture = watch.screenshot()
+        step, watch, picture = shot.step, shot.session, shot.screenshot
         if self._pictured is None or picture is not self._pictured[1]:
             path = self.folder / "screenshots" / f"step_{step.number:03d}.jpg"
             Image.fromarray(picture).save(path, quality=PICTURE_QUALITY, subsampling=0)
             self._pictured = step.number, picture
-        stages = self._agent.stages if isinstance(self._agent, Thinker) and step.number else ()
         line = {
             "number": step.number,
             "picture": self._pictured[0],
             "at_s": round(step.moment.time_s - watch.moments[0].time_s, 2),
             "local_time": step.moment.local_time.isoformat(timespec="seconds"),
-            "words": action_in_words(step.action, seen) if step.number else "departure",
+            "words": action_in_words(step.action, shot.seen) if step.number else "departure",
             "action": None if step.action is None else to_json(step.action),
-            "target": _target(step.action.index if step.action else None, seen),
+            "target": _target(step.action.index if step.action else None, shot.seen),
             "feedback": plain(step.feedback),
             "thought": "",
-            "stages": [stage.as_json() for stage in stages],
+            "stages": [stage.as_json() for stage in shot.stages],
             "context": watch.observation.context or "",
             "speed_kmh": round(step.moment.driving.speed_mps * KMH_PER_MPS, 1),
         }
         self._lines.write(json.dumps(line, ensure_ascii=False) + "\n")
         self._lines.flush()
 
-    def arrived(self, watch: Watch, record: DriveRecord) -> None:
-        """Adds the do-nothing drive, and writes the row."""
-        if self._road is not None:
-            self._road.baseline(watch.baseline_moments)
-        steps = "".join(json.dumps(step) + "\n" for step in record.steps)
-        write_whole(self.folder / "timeline.json", json.dumps(record.timeline) + "\n")
+    def finished(self, result: DriveRecord) -> None:
+        """Writes the row, the steps and the timeline."""
+        steps = "".join(json.dumps(step) + "\n" for step in result.steps)
+        write_whole(self.folder / "timeline.json", json.dumps(result.timeline) + "\n")
         write_whole(self.folder / "steps.jsonl", steps)
-        write_whole(self.folder / "row.json", json.dumps(as_json(record.row), indent=1) + "\n")
+        write_whole(self.folder / "row.json", json.dumps(as_json(result.row), indent=1) + "\n")
 
     def close(self) -> None:
         """Completes the files, even after a drive that was broken off; may be called again."""
-        if self._road is not None:
-            self._road.close()
         if self._lines is not None:
             self._lines.close()
 

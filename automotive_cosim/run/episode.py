@@ -8,36 +8,31 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
-from typing import Annotated, Any, Protocol, runtime_checkable
-
-import numpy as np
-import numpy.typing as npt
+from typing import Annotated, Any
 
 from automotive_cosim import geo
-from automotive_cosim.agents import Agent, Learner, Privileged, Stage, StageName, Thinker
-from automotive_cosim.contracts import Element, Json
-from automotive_cosim.contracts.given import Clock
+from automotive_cosim.agents import Agent, Learner, Privileged
+from automotive_cosim.contracts import Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.listener import Listener, Listeners
-from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.observer import Observers
 from automotive_cosim.episode.situation import HandOver, SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import InfrastructureError, TriggerNotReachedError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.geo.breaches import Violation
-from automotive_cosim.interface import trace
-from automotive_cosim.models import ModelReply
 from automotive_cosim.run.estimates import PositionEstimate, estimates
 from automotive_cosim.run.former import setup_values
 from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
+from automotive_cosim.run.observer import Answers, TrialObserver, play_observed
 from automotive_cosim.run.row import formerly
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.verdict import Verdict
+from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
 AFTERMATH_S = 12.0
@@ -55,6 +50,18 @@ class EpisodeSetup(EpisodeSpec):
     spare_traffic: tuple[int, ...] = ()
     """Seeds of traffic to try in turn, with the same instance, if the situation does not occur in the seed's own
     traffic. No agent acts before it does, so every agent gets the same traffic."""
+
+    @property
+    def about(self) -> Json:
+        """What is run, by name, as the file of its road tells it."""
+        return {
+            "task": self.task,
+            "half": self.half,
+            "scenario": self.scenario or CATALOGUE[self.task].half(self.half).start.scenario,
+            "agent": self.agent,
+            "model": self.model,
+            "seed": self.seed,
+        }
 
 
 def read_setup(values: Mapping[str, Any], where: str) -> EpisodeSetup:
@@ -129,58 +136,14 @@ class EpisodeResult:
         return asdict(self) | {"verdict": self.verdict and self.verdict.as_json()}
 
 
-@dataclass(frozen=True, slots=True)
-class Shot:
-    """One step as passed to a watcher."""
-
-    step: trace.Step
-    seen: tuple[Element, ...]
-    """The elements the agent saw when it acted."""
-    screenshot: npt.NDArray[np.uint8]
-    """The cockpit after the step, (height, width, 3)."""
-    thought: str
-    """The agent's own reason for the action; empty if it gives none."""
-    stages: tuple[Stage, ...] = ()
-    """The stages of the agent's reasoning, for agents that report them."""
-
-
-@runtime_checkable
-class Timed(Protocol):
-    """An agent whose answers are timed from outside, so that it cannot influence the measurement."""
-
-    @property
-    def answer_s(self) -> float:
-        """Wall seconds that its last answer took."""
-        ...
-
-
-@runtime_checkable
-class Replayed(Protocol):
-    """An agent that repeats a recording, including the time that each answer took."""
-
-    @property
-    def thought_s(self) -> float:
-        """Simulated seconds that the answer it gave last took."""
-        ...
-
-
-class EpisodeObserver(Listener):
-    """Observes a trial while it runs, e.g. to show or record it. It sees everything and changes nothing."""
-
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
-        """The trigger holds; the agent begins."""
-
-    def stepped(self, shot: Shot) -> None:
-        """The agent has acted."""
-
-    def finished(self, result: EpisodeResult) -> None:
-        """The episode is over, its aftermath too; also called after an error or an interruption."""
+EpisodeObserver = TrialObserver[Episode, EpisodeResult]
+"""Observes an episode. ``finished`` is called after its aftermath, and after an error or an interruption too."""
 
 
 def run_episode(
     setup: EpisodeSetup,
     agent: Agent,
-    watchers: Sequence[EpisodeObserver] = (),
+    observers: Sequence[EpisodeObserver] = (),
     *,
     simulations: Simulations | None = None,
 ) -> EpisodeResult:
@@ -189,17 +152,17 @@ def run_episode(
     Args:
         setup: what to run; ``agent`` and ``model`` are only written into the result.
         agent: the agent that acts.
-        watchers: notified of everything as it happens.
+        observers: notified of everything as it happens.
         simulations: warm simulations to use; by default its own, closed with the episode.
 
     Raises:
-        UserError: something in the setup does not exist or is invalid; no watcher has been notified of a hand-over.
-        KeyboardInterrupt: passed on after the watchers have received the result so far.
+        UserError: something in the setup does not exist or is invalid; no observer has seen a hand-over.
+        KeyboardInterrupt: passed on after the observers have received the result so far.
     """
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
-        finder = SituationFinder(setup, own, listener=Listeners(watchers))
-        run = _Run(setup, finder, agent, watchers)
+        finder = SituationFinder(setup, own, observer=Observers(observers))
+        run = _Run(setup, finder, agent, observers)
         ends.callback(run.close)
         try:
             end = run.play()
@@ -215,15 +178,15 @@ class _Run:
     """One episode and the data collected along with it."""
 
     def __init__(
-        self, setup: EpisodeSetup, finder: SituationFinder, agent: Agent, watchers: Sequence[EpisodeObserver]
+        self, setup: EpisodeSetup, finder: SituationFinder, agent: Agent, observers: Sequence[EpisodeObserver]
     ) -> None:
         self._setup = setup
         self._finder = finder
         self._agent = agent
-        self._watchers = watchers
+        self._observers = observers
         self._episode: Episode | None = None
         self._traffic_seed: int | None = None
-        self._replies: list[ModelReply] = []
+        self._answers = Answers(agent, setup.conditions)
         self._after: list[Moment] = []
         self._baseline: tuple[Moment, ...] = ()
 
@@ -235,16 +198,11 @@ class _Run:
         except BaseException:  # its process cannot be started
             hand_over.world.close()
             raise
-        episode = self._episode = Episode.take_over(hand_over, session, Listeners(self._watchers))
+        episode = self._episode = Episode.take_over(hand_over, session, Observers(self._observers))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
             agent.brief(episode.instance, drawn=episode.world.cockpit.drawn)
-        first = Shot(episode.steps[0], (), episode.screenshot(), "")
-        for watcher in self._watchers:
-            watcher.handed_over(episode, first)
-        end = play(episode, agent, (self._stepped,), self._thought_s)
-        if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
-            self._stages()  # of the turn that it did not finish
+        end = play_observed(episode, agent, self._answers, self._observers)
         if isinstance(agent, Learner) and episode.verdict is not None:
             agent.learn(episode.verdict.success)
         self._watch_aftermath(episode)
@@ -270,31 +228,9 @@ class _Run:
 
     def finish(self, end: End, error: InfrastructureError | None = None) -> EpisodeResult:
         result = self._result(end, error)
-        for watcher in self._watchers:
-            watcher.finished(result)
+        for observer in self._observers:
+            observer.finished(result)
         return result
-
-    def _stepped(self, episode: Episode, seen: Sequence[Element]) -> None:
-        stages = self._stages()
-        shot = Shot(episode.steps[-1], tuple(seen), episode.screenshot(), _thought(stages), stages)
-        for watcher in self._watchers:
-            watcher.stepped(shot)
-
-    def _thought_s(self) -> float:
-        """Simulated seconds that the agent's last answer took."""
-        if isinstance(self._agent, Replayed):
-            return self._agent.thought_s
-        seconds = self._setup.conditions.latency_s
-        if self._setup.conditions.clock is Clock.MODEL and isinstance(self._agent, Timed):
-            seconds += self._agent.answer_s
-        elif self._setup.conditions.clock is Clock.MODEL and isinstance(self._agent, Thinker):
-            seconds += sum(stage.reply.seconds for stage in self._agent.stages if stage.reply is not None)
-        return round(seconds, 1)  # the shortest step of a scenario
-
-    def _stages(self) -> tuple[Stage, ...]:
-        stages = tuple(self._agent.stages) if isinstance(self._agent, Thinker) else ()
-        self._replies += [stage.reply for stage in stages if stage.reply is not None]
-        return stages
 
     def _watch_aftermath(self, episode: Episode) -> None:
         try:
@@ -312,7 +248,7 @@ class _Run:
         return [*episode.moments, *self._after]
 
     def _result(self, end: End, error: InfrastructureError | None) -> EpisodeResult:
-        setup, episode = self._setup, self._episode
+        setup, episode, usage = self._setup, self._episode, self._answers.usage
         named: dict[str, Any] = {
             "task": setup.task,
             "half": setup.half,
@@ -327,10 +263,10 @@ class _Run:
             "error_kind": None if error is None else type(error).__name__,
             "conditions": setup.conditions,
             "without": setup.without,
-            "tokens_in": sum(reply.tokens_in for reply in self._replies),
-            "tokens_out": sum(reply.tokens_out for reply in self._replies),
-            "model_seconds": round(sum(reply.seconds for reply in self._replies), 3),
-            "cost_usd": sum(reply.cost_usd for reply in self._replies),
+            "tokens_in": usage.tokens_in,
+            "tokens_out": usage.tokens_out,
+            "model_seconds": usage.model_seconds,
+            "cost_usd": usage.cost_usd,
         }
         if episode is None:
             return EpisodeResult(
@@ -374,9 +310,3 @@ class _Run:
                 for found in geo.violations(moments)
             ),
         )
-
-
-def _thought(stages: Sequence[Stage]) -> str:
-    """The agent's action, or what was wrong with its answer."""
-    said = {stage.name: stage.text for stage in stages}
-    return said.get(StageName.INTERPRET, said.get(StageName.ACT, ""))

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import hashlib
 import re
+from abc import ABC, abstractmethod
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Generic, TypeVar
 
 from annotated_types import Ge, Gt, Le
 
@@ -61,18 +62,57 @@ class Limits:
         return replace(self, wall_s=self.drive_wall_s, agent_s=self.drive_agent_s, tokens=self.drive_tokens)
 
 
-@dataclass(frozen=True, slots=True)
-class EpisodeJob:
-    """One episode of a plan."""
+SetupT = TypeVar("SetupT", EpisodeSetup, DriveSetup)
 
-    setup: EpisodeSetup
-    repeat: int
-    limits: Limits
+
+@dataclass(frozen=True, slots=True)
+class PlannedJob(ABC, Generic[SetupT]):
+    """One trial of a plan, of either kind."""
+
+    setup: SetupT
+    repeat: int = 0
+    limits: Limits = field(default_factory=Limits)
 
     @property
     def model(self) -> str:
-        """The agent, as given to ``make_agent``."""
+        """The model, as given to ``make_agent``."""
         return "rules" if self.setup.model == NO_MODEL else self.setup.model
+
+    @property
+    def simulation(self) -> tuple[str, int]:
+        """The warm simulation that it starts from: scenario and seed."""
+        return self.scenario, self.setup.seed
+
+    @property
+    @abstractmethod
+    def scenario(self) -> str:
+        """Name or folder of its scenario."""
+
+    @property
+    @abstractmethod
+    def id(self) -> str:
+        """Its id, which can be a file name."""
+
+    def named(self, *what: str, rest: Iterable[str]) -> str:
+        """A file name from what is run, by whom and how: readable words, then a digest of everything.
+
+        Args:
+            what: what is run, which comes first.
+            rest: what distinguishes it besides agent, model, seed, repeat and conditions.
+        """
+        setup = self.setup
+        conditions: Conditions = setup.conditions
+        return file_name(
+            (
+                *what, setup.agent, setup.model, conditions.geo, f"s{setup.seed}", f"r{self.repeat}", *rest,
+                *replace(conditions, geo=GeoInput.FULL).tags,
+            )
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeJob(PlannedJob[EpisodeSetup]):
+    """One episode of a plan."""
 
     @property
     def scenario(self) -> str:
@@ -88,11 +128,6 @@ class EpisodeJob:
     def split(self) -> Split:
         """The set that it belongs to, by its seed and its phrasing."""
         return split_of(self.task, self.setup.seed, held_out=self.setup.held_out)
-
-    @property
-    def simulation(self) -> tuple[str, int]:
-        """The warm simulation that it starts from: scenario and seed."""
-        return self.scenario, self.setup.seed
 
     @property
     def kind(self) -> Hashable:
@@ -158,29 +193,16 @@ class EpisodeJob:
         )
 
     def _named(self, half: str) -> str:
-        """Readable words, then a digest of everything else."""
-        setup, conditions = self.setup, self.setup.conditions
-        exactly = (
-            setup.task, half, setup.agent, setup.model, conditions.geo, f"s{setup.seed}", f"r{self.repeat}",
-            setup.scenario or "own",
-            *(["held_out"] if setup.held_out else []),
-            *replace(conditions, geo=GeoInput.FULL).tags,
-        )  # fmt: skip
-        return file_name(exactly)
+        setup = self.setup
+        held_out = ["held_out"] if setup.held_out else []
+        return self.named(setup.task, half, rest=(setup.scenario or "own", *held_out))
 
 
 @dataclass(frozen=True, slots=True)
-class DriveJob:
+class DriveJob(PlannedJob[DriveSetup]):
     """One drive of a plan."""
 
-    setup: DriveSetup
-    repeat: int = 0
     limits: Limits = field(default_factory=lambda: Limits().of_drives)
-
-    @property
-    def model(self) -> str:
-        """The model, as given to ``make_agent``."""
-        return "rules" if self.setup.model == NO_MODEL else self.setup.model
 
     @property
     def scenario(self) -> str:
@@ -191,11 +213,6 @@ class DriveJob:
     def split(self) -> Split:
         """The set that it belongs to, by its seed."""
         return split_of_seed(self.setup.seed)
-
-    @property
-    def simulation(self) -> tuple[str, int]:
-        """The warm simulation that it starts from: scenario and seed."""
-        return self.scenario, self.setup.seed
 
     @property
     def situation(self) -> Hashable:
@@ -221,21 +238,8 @@ class DriveJob:
     def id(self) -> str:
         """Its id, which can be a file name."""
         setup = self.setup
-        return file_name(
-            (
-                *(
-                    setup.family,
-                    setup.agent,
-                    setup.model,
-                    setup.conditions.geo,
-                    f"s{setup.seed}",
-                    f"r{self.repeat}",
-                ),
-                *([setup.scenario] if setup.scenario else []),
-                *setup.settings.tags,
-                *replace(setup.conditions, geo=GeoInput.FULL).tags,
-            )
-        )
+        scenario = [setup.scenario] if setup.scenario else []
+        return self.named(setup.family, rest=(*scenario, *setup.settings.tags))
 
     def planned(self) -> DriveTrialRow:
         """What is known about it before it runs."""

@@ -182,6 +182,9 @@ def _changed(before: Mapping[str, Any], new: Mapping[str, Any], gone: Sequence[s
     return {key: value for key, value in before.items() if key not in gone} | dict(new)
 
 
+PLAIN = frozenset((type(None), bool, int, float, str))
+
+
 class _Writer:
     """Turns values into JSON and fills the pool."""
 
@@ -192,11 +195,18 @@ class _Writer:
         self._places: dict[str, int] = {}
 
     def value(self, value: Any) -> Any:
+        kind = type(value)
+        if kind in PLAIN:
+            return value
+        if kind is tuple:
+            made = ["t", *map(self.value, value)]
+            return self._once(made) if len(value) > LONG else made
+        if is_dataclass(kind):
+            names = self.classes[self._class(kind)][1]
+            return self._once([self._numbers[kind], *(self.value(getattr(value, name)) for name in names)])
         match value:
-            case None | bool() | int() | float():
-                return value
             case Enum():
-                return ["e", self._class(type(value)), value.value]
+                return ["e", self._class(kind), value.value]
             case str():
                 return str(value)
             case datetime():
@@ -205,17 +215,14 @@ class _Writer:
             case Mapping():
                 return ["d", *([self.value(key), self.value(each)] for key, each in value.items())]
             case tuple():
-                made = ["t", *map(self.value, value)]
-                return self._once(made) if len(value) > LONG else made
+                return self.value(tuple(value))
             case list():
                 return ["l", *map(self.value, value)]
             case frozenset() | set():
                 return ["f", *sorted(map(self.value, value), key=repr)]
-        if not is_dataclass(value) or isinstance(value, type):
-            raise TypeError(f"cannot store a {type(value).__name__}")
-        return self._once(
-            [self._class(type(value)), *(self.value(getattr(value, each.name)) for each in fields(value))]
-        )
+            case bool() | int() | float():
+                return value
+        raise TypeError(f"cannot store a {kind.__name__}")
 
     def _class(self, kind: type) -> int:
         if kind not in self._numbers:
@@ -225,7 +232,7 @@ class _Writer:
         return self._numbers[kind]
 
     def _once(self, made: list[Any]) -> list[Any]:
-        key = json.dumps(made, separators=(",", ":"))
+        key = repr(made)
         if key not in self._places:
             self._places[key] = len(self.pool)
             self.pool.append(made)

@@ -80,7 +80,9 @@ class PlannedTrial:
         named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
         if self.drive:
             family_named(self.drive)
-            setup = DriveSetup(self.drive, self.seed, agent, named, self.conditions, self.scenario, self.settings)
+            setup = DriveSetup(
+                self.drive, self.seed, self.conditions, self.scenario, self.settings, agent=agent, model=named
+            )
             return DriveJob(setup, self.repeat + repeat, limits.of_drives)
         if self.settings != AS_SCRIPTED:
             raise UserError(f"{self.task}: {self.settings.words} can be set for drives alone; omit it")
@@ -281,7 +283,7 @@ class Plan(ConditionLists):
             self.agents, self.models, self._driven(), self.seeds, combined(self), range(self.repeats)
         ):
             named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
-            setup = DriveSetup(family, seed, agent, named, conditions, scenario, self.settings)
+            setup = DriveSetup(family, seed, conditions, scenario, self.settings, agent=agent, model=named)
             yield DriveJob(setup, repeat, self.limits.of_drives)
 
     def _single(self) -> Iterator[TrialJob]:

@@ -25,7 +25,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.plain import plain
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.versions import installed
 
 OURS = ("episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html")
@@ -85,11 +86,11 @@ class Recorder(EpisodeObserver):
         self._started = datetime.now().astimezone()
 
     @property
-    def begun(self) -> bool:
+    def has_begun(self) -> bool:
         """Whether the folder has been created."""
         return self._lines is not None
 
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
+    def begun(self, session: Episode, shot: Shot) -> None:
         """Creates the folder and writes step 0."""
         self.folder.mkdir(parents=True, exist_ok=True)
         for name in OURS:

@@ -140,7 +140,9 @@ def _single_drive(folder: Path, drive: str) -> list[Compared]:
         raise UserError(f"cannot read the drive in {folder}: {error}") from error
     own = family_named(row.family).scenario
     scenario = "" if row.scenario == own else row.scenario
-    setup = DriveSetup(row.family, row.seed, row.agent, row.model, row.conditions, scenario, row.settings)
+    setup = DriveSetup(
+        row.family, row.seed, row.conditions, scenario, row.settings, agent=row.agent, model=row.model
+    )
     return _drive_again(row, DriveJob(setup, row.repeat), steps)
 
 

@@ -28,11 +28,11 @@ from automotive_cosim.contracts import (
     Weather,
 )
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.formats.files import open_file
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot
+from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.road import FORMAT, NAME
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.base import Traffic
@@ -45,32 +45,32 @@ AHEAD_M = 200.0
 """Lanes come into sight this much before they can have a vehicle on them; new ones are sought as often."""
 
 
-class RoadRecorder(EpisodeObserver):
-    """Writes the road of an episode into its record's folder while it runs."""
+class RoadRecorder(TrialObserver[JudgedSession, object]):
+    """Writes the road of a trial into its record's folder while it runs."""
 
     looks = True
 
-    def __init__(self, folder: Path, setup: EpisodeSetup) -> None:
-        """Nothing is written before the hand-over.
+    def __init__(self, folder: Path, about: Json) -> None:
+        """Nothing is written before the agent takes over.
 
         Args:
-            folder: where the file goes; a watcher that empties it comes first.
-            setup: what is run.
+            folder: where the file goes; an observer that empties it comes first.
+            about: what is run, by name, as the file tells it.
         """
         self._path = folder / NAME
-        self._setup = setup
+        self._about = about
         self._looked: dict[float, RoadSnapshot] = {}
         """Snapshots whose second has not been reported yet."""
         self._before: list[tuple[Moment, RoadSnapshot]] = []
         self._writer: RoadWriter | None = None
-        self._episode: Episode | None = None
+        self._session: JudgedSession | None = None
 
     def looked(self, snapshot: RoadSnapshot) -> None:
         """Keeps it until its second is reported."""
         self._looked[snapshot.time_s] = snapshot
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """Writes a second of the drive, or keeps it until the hand-over."""
+        """Writes a second of the drive, or keeps it until the agent takes over."""
         snapshot = self._looked.pop(moment.time_s)
         if self._writer is not None:
             self._writer.second(moment.driving, RoadFacts.of(moment), snapshot)
@@ -79,31 +79,23 @@ class RoadRecorder(EpisodeObserver):
             self._before.pop()  # an earlier departure, at which the situation did not arise
         self._before.append((moment, snapshot))
 
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
+    def begun(self, session: JudgedSession, shot: Shot) -> None:
         """Begins the file with the drive so far."""
-        departed_s, now_s = episode.drive[0].time_s, shot.step.moment.time_s
-        self._episode = episode
+        now_s = shot.step.moment.time_s
+        departed_s = session.drive[0].time_s if session.drive else now_s
+        self._session = session
         self._path.parent.mkdir(parents=True, exist_ok=True)
-        setup, instance = self._setup, episode.instance
-        about: Json = {
-            "task": instance.task.id,
-            "half": setup.half,
-            "scenario": setup.scenario or instance.half.start.scenario,
-            "agent": setup.agent,
-            "model": setup.model,
-            "seed": setup.seed,
-            "goal": episode.goal,
-        }
-        self._writer = RoadWriter(self._path, episode.world.traffic, about, now_s)
+        about = self._about | {"goal": session.goal}
+        self._writer = RoadWriter(self._path, session.world.traffic, about, now_s)
         for moment, snapshot in self._before:
             if moment.time_s > departed_s:
                 self._writer.second(moment.driving, RoadFacts.of(moment), snapshot)
         self._before = []
 
-    def finished(self, result: EpisodeResult) -> None:
-        """Adds the baseline run of a judged episode, and completes the file."""
-        if self._writer is not None and self._episode is not None and self._episode.verdict is not None:
-            self._writer.baseline(self._episode.baseline_moments)
+    def finished(self, result: object) -> None:
+        """Adds the baseline run of a judged session, and completes the file."""
+        if self._writer is not None and self._session is not None and self._session.is_judged:
+            self._writer.baseline(self._session.baseline_moments)
         self.close()
 
     def close(self) -> None:

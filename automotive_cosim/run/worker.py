@@ -10,16 +10,18 @@ from pathlib import Path
 
 from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
 from automotive_cosim.contracts import Json
+from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.collect import Collector, Pictures
-from automotive_cosim.run.drive import DriveObserver, JudgedDrive, run_drive
+from automotive_cosim.run.drive import DriveRecord, JudgedDrive, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
-from automotive_cosim.run.episode import EpisodeObserver, run_episode
+from automotive_cosim.run.episode import EpisodeResult, run_episode
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob, Limits, TrialJob, failed
 from automotive_cosim.run.meter import Metered, MeterHandle
 from automotive_cosim.run.moments import Judged, judged_file, write_judged, write_value
+from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.store import write_trace
@@ -30,8 +32,8 @@ WARM = 2
 """Warm simulations that a worker keeps; the episodes come sorted, so one is in use and one may be used again."""
 
 
-class TrialObserver(EpisodeObserver, DriveObserver):
-    """Observes a trial of either kind."""
+AnyTrialObserver = TrialObserver[JudgedSession, EpisodeResult | DriveRecord]
+"""Observes a trial of either kind."""
 
 
 @contextmanager
@@ -63,7 +65,7 @@ def run_with(
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
-    observers: Sequence[TrialObserver] = (),
+    observers: Sequence[AnyTrialObserver] = (),
 ) -> TrialRow:
     """Runs one trial, writes its trace, screenshots and road, and returns its row; an error becomes a row too.
 
@@ -116,10 +118,10 @@ def _played(
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
-    observers: Sequence[TrialObserver],
+    observers: Sequence[AnyTrialObserver],
 ) -> _Kept:
     collector = Collector(pictures)
-    road = RoadRecorder(folder / "pictures" / job.id, job.setup)
+    road = RoadRecorder(folder / "pictures" / job.id, job.setup.about)
     everyone = (*observers, collector, *(() if pictures is Pictures.NONE else (road,)))
     with closing(road):
         result = run_episode(job.setup, agent, everyone, simulations=simulations)
@@ -139,11 +141,12 @@ def _driven(
     folder: Path,
     pictures: Pictures,
     simulations: Simulations,
-    observers: Sequence[TrialObserver],
+    observers: Sequence[AnyTrialObserver],
 ) -> _Kept:
-    recorder = DriveRecorder(folder / "pictures" / job.id, job.setup, agent)
-    everyone = (*observers, *(() if pictures is Pictures.NONE else (recorder,)))
-    with closing(recorder):
+    recorder = DriveRecorder(folder / "pictures" / job.id)
+    road = RoadRecorder(recorder.folder, job.setup.about)
+    everyone = (*observers, *(() if pictures is Pictures.NONE else (recorder, road)))
+    with closing(recorder), closing(road):
         record = run_drive(job.planned(), job.setup, agent, simulations=simulations, observers=everyone)
 
     def keep() -> None:

@@ -1,6 +1,6 @@
 """``automotive-cosim serve``: runs, results, tasks and scenarios as pages in a browser.
 
-shelf      finds recorded episodes and evaluations in the folders given, and reads nothing outside them
+records    finds recorded episodes and evaluations in the folders given, and reads nothing outside them
 content    what the pages show of them, as plain values
 decisions  the same of a study's decisions
 catalogue  the same of tasks and scenarios

@@ -9,7 +9,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.geo.place import shipped
-from automotive_cosim.serve.shelf import NotHereError
+from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.tasking.catalogue import described
 from automotive_cosim.tasking.task import Basis, Half
 from automotive_cosim.tasking.words import choices_in_words, half_in_words

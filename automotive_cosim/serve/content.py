@@ -28,7 +28,7 @@ from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
 from automotive_cosim.run.words import action_in_words
 from automotive_cosim.serve.decisions import decision_map, decisions, drives_under_way
-from automotive_cosim.serve.shelf import NotHereError, Shelf, ShelfEntry
+from automotive_cosim.serve.records import NotHereError, RecordEntry, RecordFolders
 from automotive_cosim.serve.spectators import Spectators
 from automotive_cosim.studies.live import LIVE, WATCHED
 
@@ -49,14 +49,14 @@ OWN_ROAD = ("limit_kmh", "speed_kmh", "road")
 class Content:
     """Reads records for the pages."""
 
-    def __init__(self, shelf: Shelf) -> None:
-        """Content of a shelf; files are read when they are first asked for."""
-        self.shelf = shelf
+    def __init__(self, records: RecordFolders) -> None:
+        """Content of these folders; files are read when they are first asked for."""
+        self.records = records
         self.spectators = Spectators()
 
     def runs(self) -> Json:
         """All records, the newest first, each on one line."""
-        return {"records": [_safely(entry, self._line) for entry in self.shelf.entries()]}
+        return {"records": [_safely(entry, self._line) for entry in self.records.entries()]}
 
     def run(self, name: str, episode: str | None = None) -> Json:
         """One recorded episode, or one of an evaluation, without its steps.
@@ -64,7 +64,7 @@ class Content:
         Raises:
             UserError: it is not here, or cannot be read.
         """
-        entry = self.shelf.entry(name)
+        entry = self.records.entry(name)
         drive = self._drive_in(entry, episode)
         if drive is not None:
             return self._drive(entry, drive, episode)
@@ -91,17 +91,17 @@ class Content:
         Raises:
             UserError: it is not here, or cannot be read.
         """
-        entry = self.shelf.entry(name)
+        entry = self.records.entry(name)
         drive = self._drive_in(entry, episode)
         if drive is not None:
-            path = self.shelf.file(entry, *drive, DRIVE_STEPS)
+            path = self.records.file(entry, *drive, DRIVE_STEPS)
             lines = _json_lines(path, *_stamp(path))[skip:]
             return {
                 "steps": [{**line, "has_picture": "picture" in line} for line in lines],
                 "running": self._is_running(entry, episode),
             }
         lines = self._lines(entry, episode)
-        steps = _steps(entry, self.shelf, episode, lines)
+        steps = _steps(entry, self.records, episode, lines)
         return {"steps": steps[skip:], "running": self._is_running(entry, episode)}
 
     def road(self, name: str, episode: str | None, skip: int) -> Iterable[Json]:
@@ -110,7 +110,7 @@ class Content:
         Raises:
             UserError: it is not here, or cannot be read.
         """
-        entry = self.shelf.entry(name)
+        entry = self.records.entry(name)
         try:
             path = self._road(entry, episode)
         except NotHereError:
@@ -124,7 +124,7 @@ class Content:
         Raises:
             UserError: it is not here, or cannot be read.
         """
-        entry = self.shelf.entry(name)
+        entry = self.records.entry(name)
         if not entry.is_evaluation:
             raise NotHereError(f"record {name!r} is not an evaluation")
         manifest = read_manifest(entry.folder)
@@ -163,7 +163,7 @@ class Content:
             UserError: a record cannot be read.
         """
         found: dict[str, Json] = {}
-        for entry in self.shelf.entries():
+        for entry in self.records.entries():
             for half, episode in _safely(entry, lambda each: self._solved(each, task)).get("solved", ()):
                 if half not in found:
                     steps = self.steps(entry.id, episode, 0)["steps"]
@@ -187,7 +187,7 @@ class Content:
         """
         folder = self._study(name)
         with suppress(NotHereError):  # it is older
-            self.spectators.watch(self.shelf.file(self.shelf.entry(name), LIVE, WATCHED))
+            self.spectators.watch(self.records.file(self.records.entry(name), LIVE, WATCHED))
         return drives_under_way(folder)
 
     def decision_map(self, name: str, decision: str) -> Json:
@@ -200,7 +200,7 @@ class Content:
 
     # --- inside -----------------------------------------------------------------------------------------------
 
-    def _line(self, entry: ShelfEntry) -> Json:
+    def _line(self, entry: RecordEntry) -> Json:
         shared = {"id": entry.id, "name": entry.folder.name, "folder": str(entry.folder)}
         if entry.is_evaluation:
             manifest = read_manifest(entry.folder)
@@ -219,7 +219,7 @@ class Content:
                 **{name: drive[name] for name in (*HEAD, "running", "value", "started")},
             }
         path = entry.folder / "episode.json"
-        head = _head_of(self.shelf.file(entry, path.name), *_stamp(path)) if path.is_file() else None
+        head = _head_of(self.records.file(entry, path.name), *_stamp(path)) if path.is_file() else None
         return {
             **shared,
             "kind": "run",
@@ -227,18 +227,18 @@ class Content:
             **(head or self._unfinished(entry, None)),
         }
 
-    def _result(self, entry: ShelfEntry, episode: str | None) -> Json | None:
+    def _result(self, entry: RecordEntry, episode: str | None) -> Json | None:
         """The whole result; None while it runs, or if it was killed."""
         try:
             if episode is not None:
                 return dict(self._trace(entry, episode)[-1]["result"])
-            return _object(self.shelf.file(entry, "episode.json"))
+            return _object(self.records.file(entry, "episode.json"))
         except NotHereError:
             if episode is not None:
                 self._road(entry, episode)
             return None
 
-    def _solved(self, entry: ShelfEntry, task: str) -> Json:
+    def _solved(self, entry: RecordEntry, task: str) -> Json:
         """Half and id of each episode of a record in which the oracle solves a task and that has pictures."""
         solved: list[tuple[str, str | None]] = []
         if entry.is_evaluation:
@@ -246,22 +246,22 @@ class Content:
             is_told = _kind(plan) == "evaluation" and "oracle" in plan["agents"]
             for row in read_trials(entry.folder).values() if is_told else ():
                 is_solved = (row.subject, row.agent, row.outcome) == (task, "oracle", True)
-                if is_solved and isinstance(row, EpisodeRow) and _has_picture(self.shelf, entry, row.id, 0):
+                if is_solved and isinstance(row, EpisodeRow) and _has_picture(self.records, entry, row.id, 0):
                     solved.append((row.half, row.id))
         elif not entry.is_drive and (entry.folder / "episode.json").is_file():
             path = entry.folder / "episode.json"
-            head = _head_of(self.shelf.file(entry, path.name), *_stamp(path))
+            head = _head_of(self.records.file(entry, path.name), *_stamp(path))
             if (head["task"], head["agent"], head["success"]) == (task, "oracle", True):
                 solved.append((head["half"], None))
         return {"solved": solved}
 
     def _study(self, name: str) -> Path:
-        entry = self.shelf.entry(name)
+        entry = self.records.entry(name)
         if not entry.is_evaluation or _kind(read_manifest(entry.folder)["plan"]) != "study":
             raise NotHereError(f"record {name!r} is not a study")
         return entry.folder
 
-    def _drives(self, entry: ShelfEntry, manifest: Json) -> Json:
+    def _drives(self, entry: RecordEntry, manifest: Json) -> Json:
         """The plan and the rows of an evaluation of drives."""
         rows = read_rows(entry.folder, DriveTrialRow)
         return {
@@ -273,7 +273,7 @@ class Content:
             "rows": self._drive_rows(entry, rows.values()),
         }
 
-    def _drive_rows(self, entry: ShelfEntry, rows: Iterable[DriveTrialRow]) -> list[Json]:
+    def _drive_rows(self, entry: RecordEntry, rows: Iterable[DriveTrialRow]) -> list[Json]:
         names = ("id", "family", "scenario", "season", "agent", "model", "seed", "repeat",
                  "value", "error", "error_kind", "end", "steps")  # fmt: skip
         return [
@@ -288,21 +288,21 @@ class Content:
             for row in rows
         ]
 
-    def _drive_in(self, entry: ShelfEntry, episode: str | None) -> tuple[str, ...] | None:
+    def _drive_in(self, entry: RecordEntry, episode: str | None) -> tuple[str, ...] | None:
         """Where in a record the drive is; None if it is not a drive."""
         if entry.is_drive:
             return ()
         for kept in () if episode is None else (("pictures", episode), (LIVE, episode)):
             with suppress(NotHereError):
-                self.shelf.file(entry, *kept, DRIVE_STEPS)
+                self.records.file(entry, *kept, DRIVE_STEPS)
                 return kept
         return None
 
-    def _drive(self, entry: ShelfEntry, parts: tuple[str, ...], episode: str | None) -> Json:
+    def _drive(self, entry: RecordEntry, parts: tuple[str, ...], episode: str | None) -> Json:
         """A drive, with its events and acts once it is over."""
         head = self._unfinished(entry, episode)
         try:
-            row = _object(self.shelf.file(entry, *parts, "row.json"))
+            row = _object(self.records.file(entry, *parts, "row.json"))
         except NotHereError:
             row = {}
         events, acts = row.get("events", ()), row.get("acts", ())
@@ -335,31 +335,31 @@ class Content:
             "trace_sha256": row.get("trace_sha256"),
         }
 
-    def _trace(self, entry: ShelfEntry, episode: str) -> list[Json]:
-        self.shelf.file(entry, "traces", f"{episode}.jsonl.gz")
+    def _trace(self, entry: RecordEntry, episode: str) -> list[Json]:
+        self.records.file(entry, "traces", f"{episode}.jsonl.gz")
         return read_trace(entry.folder, episode)
 
-    def _lines(self, entry: ShelfEntry, episode: str | None) -> list[Json]:
+    def _lines(self, entry: RecordEntry, episode: str | None) -> list[Json]:
         if episode is not None:
             return self._trace(entry, episode)[:-1] if self._result(entry, episode) else []
-        path = self.shelf.file(entry, "steps.jsonl")
+        path = self.records.file(entry, "steps.jsonl")
         return _json_lines(path, *_stamp(path))
 
-    def _road(self, entry: ShelfEntry, episode: str | None) -> Path:
+    def _road(self, entry: RecordEntry, episode: str | None) -> Path:
         if episode is None:
-            return self.shelf.file(entry, ROAD)
+            return self.records.file(entry, ROAD)
         with suppress(NotHereError):
-            return self.shelf.file(entry, LIVE, episode, ROAD)
-        return self.shelf.file(entry, "pictures", episode, ROAD)
+            return self.records.file(entry, LIVE, episode, ROAD)
+        return self.records.file(entry, "pictures", episode, ROAD)
 
-    def _is_running(self, entry: ShelfEntry, episode: str | None) -> bool:
+    def _is_running(self, entry: RecordEntry, episode: str | None) -> bool:
         """Whether the episode is being recorded now."""
         try:
             return is_being_written(self._road(entry, episode))
         except NotHereError:
             return False
 
-    def _unfinished(self, entry: ShelfEntry, episode: str | None) -> Json:
+    def _unfinished(self, entry: RecordEntry, episode: str | None) -> Json:
         """What is known about an episode that is running or was killed."""
         try:
             begun = next(iter(read_road(self._road(entry, episode))), {})
@@ -439,7 +439,7 @@ def _object(path: Path) -> Json:
     return made
 
 
-def _safely(entry: ShelfEntry, describe: Any) -> Json:
+def _safely(entry: RecordEntry, describe: Any) -> Json:
     """A line for a record, even if it cannot be read."""
     try:
         made: Json = describe(entry)
@@ -448,7 +448,7 @@ def _safely(entry: ShelfEntry, describe: Any) -> Json:
     return made
 
 
-def _steps(entry: ShelfEntry, shelf: Shelf, episode: str | None, lines: Sequence[Json]) -> list[Json]:
+def _steps(entry: RecordEntry, records: RecordFolders, episode: str | None, lines: Sequence[Json]) -> list[Json]:
     """What the page shows of each step; an action refers to the elements of the step before."""
     shown = []
     seen: tuple[Element, ...] = ()
@@ -467,7 +467,7 @@ def _steps(entry: ShelfEntry, shelf: Shelf, episode: str | None, lines: Sequence
                 "stages": [_stage(stage) for stage in line.get("stages", ())],
                 "context": line.get("context", ""),
                 "speed_kmh": round(line["traffic"]["speed_mps"] * KMH_PER_MPS, 1),
-                "has_picture": _has_picture(shelf, entry, episode, line["step"]),
+                "has_picture": _has_picture(records, entry, episode, line["step"]),
             }
         )
         seen = tuple(map(element, line["elements"]))
@@ -489,9 +489,9 @@ def _target(action: Json | None, step: int, seen: Sequence[Element]) -> list[int
     return [box.x_min, box.y_min, box.x_max, box.y_max]
 
 
-def _has_picture(shelf: Shelf, entry: ShelfEntry, episode: str | None, step: int) -> bool:
+def _has_picture(records: RecordFolders, entry: RecordEntry, episode: str | None, step: int) -> bool:
     try:
-        shelf.picture(entry, episode, step)
+        records.picture(entry, episode, step)
     except NotHereError:
         return False
     return True

@@ -13,7 +13,7 @@ from automotive_cosim.run.road import NAME as ROAD
 from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
-from automotive_cosim.serve.shelf import NotHereError
+from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.studies.decisions import told
 from automotive_cosim.studies.live import LIVE
 from automotive_cosim.studies.results import Study, all_decisions, choices_at, read_study

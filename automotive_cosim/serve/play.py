@@ -9,7 +9,7 @@ slower than real time, the clock slips. Leaving an episode that counts is a fail
 from __future__ import annotations
 
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass, fields, replace
 from datetime import datetime
@@ -24,22 +24,22 @@ from PIL import Image
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import ActionType, Element, Json, Observation
+from automotive_cosim.contracts import Json, Observation
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.watch import Watch
-from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
 from automotive_cosim.run.collect import Pictures
-from automotive_cosim.run.drive import DriveSetup, run_drive
+from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, Shot, run_episode
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
 from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, TrialJob
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.record import Recorder, default_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
-from automotive_cosim.run.worker import TrialObserver, run_with
+from automotive_cosim.run.worker import AnyTrialObserver, run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
 from automotive_cosim.serve.played import (
     DRIVES,
@@ -101,7 +101,7 @@ class PlayScene:
     """Simulated seconds per second."""
 
 
-class Game(TrialObserver):
+class Game(AnyTrialObserver):
     """One person's episodes, one at a time. Any method may be called from any thread."""
 
     def __init__(self, folder: Path, scenario: str | None = None, simulations: Simulations | None = None) -> None:
@@ -174,7 +174,7 @@ class Game(TrialObserver):
         if name or not practice:
             check_code_name(name)
         if practice:
-            setup = DriveSetup(family, seed, HUMAN, name or NO_MODEL)
+            setup = DriveSetup(family, seed, agent=HUMAN, model=name or NO_MODEL)
             stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
             folder = self._folder / f"{stamp}-{family}-{HUMAN}-seed{seed}"
             person = Person(setup.model)
@@ -274,39 +274,22 @@ class Game(TrialObserver):
         if self._scene.state in (PlayState.WARMING, PlayState.DRIVING):
             self._check_stays()
 
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
+    def begun(self, session: JudgedSession, shot: Shot) -> None:
         """Shows the screen, and starts the clock."""
-        self._cockpit = episode.world.cockpit
+        self._cockpit = session.world.cockpit
         self._preview.follow(self._cockpit)
-        self._show(episode.observation, shot.screenshot)
+        self._show(session.observation, shot.screenshot)
         self._person.listen(self._show_told)
 
     def stepped(self, shot: Shot) -> None:
-        """Shows the screen after a second."""
-        action = shot.step.action
-        has_declared = action is not None and action.action_type is ActionType.STATUS
-        self._follow(shot.screenshot, is_over=has_declared)
-
-    def departed(self, watch: Watch) -> None:
-        """Shows the screen, and starts the clock of a drive."""
-        self._cockpit = watch.world.cockpit
-        self._preview.follow(self._cockpit)
-        self._show(watch.observation, watch.screenshot())
-        self._person.listen(self._show_told)
-
-    def acted(self, watch: Watch, seen: Sequence[Element]) -> None:
-        """Shows the screen after a second of a drive."""
-        self._follow(watch.screenshot(), is_over=watch.end is not None)
-
-    def _follow(self, screenshot: npt.NDArray[np.uint8], *, is_over: bool) -> None:
-        """Shows the real screen, unless a waiting act has changed what the person sees."""
+        """Shows the screen after a second, unless a waiting act has changed what the person sees."""
         with self._hand:
             if not self._person.has_acts:
                 assert self._cockpit is not None
                 self._preview.follow(self._cockpit)
-                self._shown.show(screenshot)
+                self._shown.show(shot.screenshot)
                 self._tell(screen=self._shown.jpeg, look=self._shown.look)
-            if is_over:
+            if shot.session.end is not None:
                 self._tell(state=PlayState.ENDING)
 
     def _check_stays(self) -> None:
@@ -343,10 +326,10 @@ class Game(TrialObserver):
     def _practise(self, setup: EpisodeSetup, folder: Path) -> None:
         """Plays an episode and records it as ``run`` does."""
         recorder = Recorder(folder, setup, {})
-        watchers = (self, recorder, RoadRecorder(folder, setup), Film(folder))  # the person first
+        observers = (self, recorder, RoadRecorder(folder, setup.about), Film(folder))  # the person first
         with suppress(PersonLeftError):
-            run_episode(setup, self._person, watchers, simulations=self._simulations)
-        if not recorder.begun:
+            run_episode(setup, self._person, observers, simulations=self._simulations)
+        if not recorder.has_begun:
             self._tell(state=PlayState.FAILED, error=self._scene.error or "the situation did not arise")
             return
         with suppress(UserError, OSError):
@@ -355,9 +338,10 @@ class Game(TrialObserver):
 
     def _practise_drive(self, job: DriveJob, folder: Path, person: Person) -> None:
         """Plays a drive and records it as ``drive`` does."""
-        recorder = DriveRecorder(folder, job.setup, person)
-        with suppress(PersonLeftError), closing(recorder):
-            run_drive(job.planned(), job.setup, person, simulations=self._simulations, observers=(self, recorder))
+        recorder, road = DriveRecorder(folder), RoadRecorder(folder, job.setup.about)
+        observers = (self, recorder, road)
+        with suppress(PersonLeftError), closing(recorder), closing(road):
+            run_drive(job.planned(), job.setup, person, simulations=self._simulations, observers=observers)
         self._tell(state=PlayState.OVER, folder=folder)
 
     def _count(self, job: TrialJob, folder: Path, keep: Callable[[Any], None]) -> None:
@@ -370,9 +354,9 @@ class Game(TrialObserver):
         else:
             self._tell(state=PlayState.OVER, folder=folder, episode=job.id)
 
-    def finished(self, result: EpisodeResult) -> None:
+    def finished(self, result: EpisodeResult | DriveRecord) -> None:
         """Keeps the error of an episode that could not be judged."""
-        if result.error is not None:
+        if isinstance(result, EpisodeResult) and result.error is not None:
             self._tell(error=result.error)
 
     def _tell(self, **changes: object) -> None:

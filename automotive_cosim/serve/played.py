@@ -179,7 +179,7 @@ class PlayedDrives(PlayedRows[DriveTrialRow]):
         """
 
         def at(repeat: int) -> DriveJob:
-            return DriveJob(DriveSetup(family, seed, HUMAN, name, CONDITIONS), repeat)
+            return DriveJob(DriveSetup(family, seed, CONDITIONS, agent=HUMAN, model=name), repeat)
 
         return at(self._first(lambda repeat: at(repeat).id))
 

@@ -31,7 +31,7 @@ from automotive_cosim.formats.files import parse_json
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
 from automotive_cosim.serve.play import Game
-from automotive_cosim.serve.shelf import NotHereError, Shelf
+from automotive_cosim.serve.records import NotHereError, RecordFolders
 from automotive_cosim.serve.study import PeopleStudy
 from automotive_cosim.service.own_names import ANY, is_own, own_names
 
@@ -99,7 +99,7 @@ class Site:
         """
         self._game = game
         self._study = study
-        self._content = Content(Shelf(folders))
+        self._content = Content(RecordFolders(folders))
         static = Path(str(files("automotive_cosim.serve") / "static"))
         self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
         run, episode = r"(?P<run>[0-9a-f]{12})", r"(?:/episodes/(?P<episode>[\w.+-]+))?"
@@ -259,7 +259,7 @@ class Site:
         shown |= {"practice": scene.is_practice, "paused": scene.is_paused, "speed": scene.speed}
         shown |= {"look": scene.look, "told": scene.told}
         if "seat" not in query:
-            record = None if scene.folder is None else self._content.shelf.of(scene.folder).id
+            record = None if scene.folder is None else self._content.records.of(scene.folder).id
             shown |= {"record": record, "episode": scene.episode}
         return _json(shown)
 
@@ -275,8 +275,8 @@ class Site:
         return WebAnswer(self._static[name], mimetypes.guess_type(name)[0] or "application/octet-stream")
 
     def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
-        shelf = self._content.shelf
-        picture, kind = shelf.picture(shelf.entry(path["run"]), path["episode"], int(path["step"]))
+        records = self._content.records
+        picture, kind = records.picture(records.entry(path["run"]), path["episode"], int(path["step"]))
         return WebAnswer(picture.read_bytes(), kind, 60)
 
 

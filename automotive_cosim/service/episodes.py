@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.actions import check, parse
 from automotive_cosim.contracts import Action, Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.listener import Listener
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
@@ -59,7 +59,7 @@ class AnyOutcome(Protocol):
 class Startable(Protocol):
     """What the service can run."""
 
-    def begin(self, simulations: Simulations, channels: frozenset[Channel], listener: Listener | None) -> Session:
+    def begin(self, simulations: Simulations, channels: frozenset[Channel], observer: Observer | None) -> Session:
         """The session, which the service closes."""
         ...
 
@@ -74,9 +74,9 @@ class _OnTask:
 
     spec: EpisodeSpec
 
-    def begin(self, simulations: Simulations, channels: frozenset[Channel], listener: Listener | None) -> Episode:
+    def begin(self, simulations: Simulations, channels: frozenset[Channel], observer: Observer | None) -> Episode:
         spec = self.spec
-        hand_over = SituationFinder(spec, simulations, listener=listener).find(SeedSource(spec.seed).next())
+        hand_over = SituationFinder(spec, simulations, observer=observer).find(SeedSource(spec.seed).next())
         try:
             return Episode.take_over(hand_over, spec.session(channels))
         except BaseException:
@@ -138,14 +138,14 @@ class EpisodeService:
         threading.Thread(target=self._sweep, name="expiry of idle episodes", daemon=True).start()
 
     def start(
-        self, spec: EpisodeSpec | Startable, channels: frozenset[Channel] = ALL, listener: Listener | None = None
+        self, spec: EpisodeSpec | Startable, channels: frozenset[Channel] = ALL, observer: Observer | None = None
     ) -> EpisodeTurn:
         """Drives to a task's hand-over, or begins what else is given, and returns the first turn, with its id.
 
         Args:
             spec: the task's episode, or something else to run.
             channels: what the agent wants to see.
-            listener: notified of the progress up to the hand-over, on this thread.
+            observer: notified of the progress up to the hand-over, on this thread.
 
         Raises:
             UserError: something in the specification does not exist, or there are too many episodes.
@@ -154,7 +154,7 @@ class EpisodeService:
         """
         with self._room() as episode_id:
             startable = _OnTask(spec) if isinstance(spec, EpisodeSpec) else spec
-            episode = startable.begin(self._simulations, channels, listener)
+            episode = startable.begin(self._simulations, channels, observer)
             with self._lock:
                 self._running[episode_id] = _Running(startable, episode, self._clock())
                 self._starting.discard(episode_id)

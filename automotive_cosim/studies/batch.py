@@ -21,7 +21,7 @@ from automotive_cosim.studies.results import choices
 from automotive_cosim.studies.rows import DriveRow
 from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.studies.traffic import PULSE_S
-from automotive_cosim.traffic.accounts import Pulse
+from automotive_cosim.traffic.accounts import TrafficSummary
 from automotive_cosim.traffic.fork import Forked
 
 STRIDE = 5
@@ -104,7 +104,7 @@ class _Warm:
         self._simulation: Forked | None = None
         self._key: tuple[str, int] | None = None
         self._now_s = 0.0
-        self._pulses: list[Pulse] = []
+        self._pulses: list[TrafficSummary] = []
 
     def run(self, job: StudyJob, folder: Path) -> DriveRow:
         """Runs a drive; an error becomes a row too. Tracks, if wanted, and what is watched are also kept."""
@@ -124,7 +124,7 @@ class _Warm:
             self._simulation.close()
         self._simulation = self._key = None
 
-    def _at(self, job: StudyJob) -> tuple[Forked, Sequence[Pulse]]:
+    def _at(self, job: StudyJob) -> tuple[Forked, Sequence[TrafficSummary]]:
         """The traffic at the departure, and its measurements so far."""
         if self._simulation is None or self._key != job.simulation or job.departure_s < self._now_s:
             self.close()
@@ -136,8 +136,8 @@ class _Warm:
             self._key, self._now_s, self._pulses = job.simulation, 0.0, []
         while self._now_s < job.departure_s:
             onward_s = min(job.departure_s, (self._now_s // PULSE_S + 1) * PULSE_S) - self._now_s
-            pulse = self._simulation.run_on(onward_s)
+            summary = self._simulation.run_on(onward_s)
             self._now_s += onward_s
             if self._now_s % PULSE_S == 0:
-                self._pulses.append(pulse)
+                self._pulses.append(summary)
         return self._simulation, tuple(self._pulses)

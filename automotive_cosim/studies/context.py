@@ -84,17 +84,17 @@ def traffic(study: Study) -> Table:
     rows: list[TableRow] = []
     for share in sorted({row.share for row in study.rows}):
         points = [point for point in all_decisions(study.rows) if point.drive.share == share]
-        pulses = [pulse for point in points if (pulse := point.decision.traffic) is not None]
-        if pulses:
+        summaries = [summary for point in points if (summary := point.decision.traffic) is not None]
+        if summaries:
             rows.append(
                 (
                     f"{share:.0%}",
-                    str(len(pulses)),
-                    f"{fmean(each.running for each in pulses):.0f}",
-                    f"{fmean(each.halted / max(1, each.running) for each in pulses):.0%}",
-                    str(max(each.stuck for each in pulses)),
-                    str(max(each.backlog for each in pulses)),
-                    str(max(each.teleported for each in pulses)),
+                    str(len(summaries)),
+                    f"{fmean(each.running for each in summaries):.0f}",
+                    f"{fmean(each.halted / max(1, each.running) for each in summaries):.0%}",
+                    str(max(each.stuck for each in summaries)),
+                    str(max(each.backlog for each in summaries)),
+                    str(max(each.teleported for each in summaries)),
                 )
             )
     columns = (
@@ -123,8 +123,8 @@ def by_departure(study: Study) -> Table:
     for departure_s in departures_s if len(departures_s) > 1 else ():
         here = [each for each in chosen if each.departure_s == departure_s]
         ids = {each.id for each in here}
-        pulses = [point.decision.traffic for point in study.decisions if point.id in ids]
-        running = [pulse.running for pulse in pulses if pulse is not None]
+        summaries = [point.decision.traffic for point in study.decisions if point.id in ids]
+        running = [summary.running for summary in summaries if summary is not None]
         cells = [mean_cell((each for each in here if each.policy == name), time_saved_s) for name in named]
         on_road = f"{fmean(running):.0f}" if running else NONE
         rows.append((f"{warm_up_s + departure_s:g}", str(len(ids)), on_road, *cells))

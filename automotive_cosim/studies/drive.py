@@ -30,7 +30,7 @@ from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.rows import Decision, DriveRow, News
 from automotive_cosim.studies.tracks import write_tracks
 from automotive_cosim.studies.whole import whole_drives
-from automotive_cosim.traffic.accounts import Pulse
+from automotive_cosim.traffic.accounts import TrafficSummary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.divert import section
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
@@ -63,7 +63,7 @@ def planned(job: StudyJob) -> DriveRow:
 def run_drive(
     job: StudyJob,
     simulation: Forked,
-    history: Sequence[Pulse],
+    history: Sequence[TrafficSummary],
     tracks: Path | None = None,
     study: Path | None = None,
 ) -> DriveRow:
@@ -184,7 +184,7 @@ class _Drive:
         if not ways and not plan.agents:
             self.looks += 1
             return False
-        group, pulse = traffic.others()
+        group, summary = traffic.others()
         numbers: dict[tuple[str, ...], int] = {}
         agents: dict[str, int] = {}
         turned: list[str] = []
@@ -246,7 +246,7 @@ class _Drive:
             agents_rerouted=tuple(turned),
             planned_draws=1 + plan.draws.start if replicates else 1,
         )
-        point = Point(decision, group, pulse, replicates=replicates, together=diverted, shut=shut)
+        point = Point(decision, group, summary, replicates=replicates, together=diverted, shut=shut)
         self._live.decided(decision)
         self._running.append((point, begun))
         self.wait(but=AT_ONCE)

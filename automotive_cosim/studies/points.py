@@ -13,7 +13,7 @@ from automotive_cosim.studies.plan import AUTO_ERRORS
 from automotive_cosim.studies.rows import Branch, Closed, Decision, Replicate, Together
 from automotive_cosim.studies.together import together
 from automotive_cosim.studies.traffic import gridlock
-from automotive_cosim.traffic.accounts import Pulse
+from automotive_cosim.traffic.accounts import TrafficSummary
 
 GRIDLOCK = "gridlock"
 NOT_ARRIVED = "ego did not arrive"
@@ -29,7 +29,7 @@ class Point:
     """The decision without the results of its branches."""
     group: tuple[str, ...]
     """The other vehicles that were present."""
-    pulse: Pulse
+    summary: TrafficSummary
     branches: list[Future | None] = field(default_factory=list)
     """The future of each branch; None if nothing in it differs from the drive itself."""
     placebo: Future | None = None
@@ -75,7 +75,7 @@ class Drawn:
         return [compare.gains(self.stay, branch).time_s for branch in self.branches]
 
 
-def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
+def compared(point: Point, stay: Future, history: Sequence[TrafficSummary]) -> Decision:
     """A decision with the gains of its branches.
 
     Args:
@@ -88,8 +88,8 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
     scored = drawn[: point.decision.planned_draws or len(drawn)]
     pairs = [(each.stay, branch) for each in drawn for branch in each.branches]
     pairs += [(stay, point.placebo)] if point.placebo else []
-    pulses = [*history, point.pulse]
-    excluded, why = exclusion(pairs, pulses)
+    summaries = [*history, point.summary]
+    excluded, why = exclusion(pairs, summaries)
     return replace(
         point.decision,
         excluded=point.decision.excluded or excluded,
@@ -108,18 +108,18 @@ def compared(point: Point, stay: Future, history: Sequence[Pulse]) -> Decision:
             spread([(each.stay, each.branches[number]) for each in scored], point.group, point.decision.at_s)
             for number in range(len(branches))
         ),
-        traffic=point.pulse,
-        together=tuple(_together(each, drawn[each.draw].stay, point, pulses) for each in point.together),
-        closed=tuple(_closed(each, drawn[each.draw], point, pulses) for each in point.shut),
+        traffic=point.summary,
+        together=tuple(_together(each, drawn[each.draw].stay, point, summaries) for each in point.together),
+        closed=tuple(_closed(each, drawn[each.draw], point, summaries) for each in point.shut),
     )
 
 
-def _closed(shut: Shut, open_: Drawn, point: Point, pulses: Sequence[Pulse]) -> Closed:
+def _closed(shut: Shut, open_: Drawn, point: Point, summaries: Sequence[TrafficSummary]) -> Closed:
     """The cost of a closure, unless one of its futures does not count; the decision itself still counts."""
     other = open_.branches[shut.branch]
     times_s = [future.totals().time_s for future in (open_.stay, other, shut.stay, shut.other)]
     stay_s, other_s, stay_closed_s, other_closed_s = times_s
-    excluded, _ = exclusion([(open_.stay, shut.stay), (open_.stay, shut.other)], pulses)
+    excluded, _ = exclusion([(open_.stay, shut.stay), (open_.stay, shut.other)], summaries)
     until_s = min(open_.stay.settled.time_s, shut.stay.settled.time_s)
     arrivals = [
         [min(future.settled.arrivals_s.get(each, until_s), until_s) for future in (open_.stay, shut.stay)]
@@ -138,26 +138,26 @@ def _closed(shut: Shut, open_: Drawn, point: Point, pulses: Sequence[Pulse]) -> 
     )
 
 
-def _together(diverted: Diverted, stay: Future, point: Point, pulses: Sequence[Pulse]) -> Together:
+def _together(diverted: Diverted, stay: Future, point: Point, summaries: Sequence[TrafficSummary]) -> Together:
     """What many cars gain, unless that future does not count; the decision itself still counts."""
     pair = stay, diverted.future
-    excluded, _ = exclusion([pair], pulses)
+    excluded, _ = exclusion([pair], summaries)
     return together(diverted.share, diverted.draw, pair, point.group, diverted.took, diverted.could, excluded)
 
 
-def exclusion(pairs: Sequence[tuple[Future, Future]], pulses: Sequence[Pulse]) -> tuple[str, str]:
+def exclusion(pairs: Sequence[tuple[Future, Future]], summaries: Sequence[TrafficSummary]) -> tuple[str, str]:
     """Why futures are excluded from the averages, with the figures; both empty if they count.
 
     Args:
         pairs: each future with the one in which the ego keeps its route, which comes first.
-        pulses: measurements of the traffic up to their fork.
+        summaries: measurements of the traffic up to their fork.
     """
     futures = [future for pair in pairs for future in pair]
     if not all(future.has_arrived for future in futures):
         ends = sorted({str(future.last.end) for future in futures if not future.has_arrived})
         return NOT_ARRIVED, f"it ended as {', '.join(ends)}"
     for stay, _ in pairs:
-        jam = gridlock([*pulses, stay.settled.pulse])
+        jam = gridlock([*summaries, stay.settled.summary])
         if jam is not None:
             return f"{GRIDLOCK}: {jam.rule}", jam.why
     if not all(future.settled.is_complete for future in futures):

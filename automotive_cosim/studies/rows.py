@@ -8,7 +8,7 @@ from statistics import fmean
 from typing import Annotated, Any
 
 from automotive_cosim.run.row import InColumns, JobRow
-from automotive_cosim.traffic.accounts import Pulse
+from automotive_cosim.traffic.accounts import TrafficSummary
 from automotive_cosim.traffic.chance import Fresh
 
 
@@ -268,7 +268,7 @@ class Decision:
     """Number of draws that did not depend on the results so far; 0 for all."""
     spreads: tuple[Spread, ...] = ()
     """How each branch affects everyone."""
-    traffic: Pulse | None = None
+    traffic: TrafficSummary | None = None
     """The traffic as a whole at the decision."""
     together: tuple[Together, ...] = ()
     """Futures in which others take the quickest other route too, at the first decision of a drive."""

@@ -34,8 +34,8 @@ def networks(studies: Sequence[Study]) -> Table:
         for share in sorted({row.share for row in study.rows}):
             here = [e for e in study.choices if e.share == share and e.age_s == study.plan.ages_s[0]]
             always = [each for each in here if each.policy == "always"]
-            pulses = [p.decision.traffic for p in study.decisions if p.drive.share == share]
-            running = [pulse.running for pulse in pulses if pulse is not None]
+            summaries = [p.decision.traffic for p in study.decisions if p.drive.share == share]
+            running = [summary.running for summary in summaries if summary is not None]
             gaps = [each.gap for each in read_demand(study.folder) if each.share == share]
             rows.append(
                 (

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from automotive_cosim.traffic.accounts import HALTED_MPS, STUCK_S, Pulse
+from automotive_cosim.traffic.accounts import HALTED_MPS, STUCK_S, TrafficSummary
 
 PULSE_S = 300.0
 """Time between two measurements of the traffic as a whole."""
@@ -36,21 +36,21 @@ class Gridlock:
     """The figures behind it."""
 
 
-def gridlock(pulses: Sequence[Pulse]) -> Gridlock | None:
+def gridlock(summaries: Sequence[TrafficSummary]) -> Gridlock | None:
     """Why the traffic counts as gridlocked; None while it flows.
 
     Args:
-        pulses: measurements of one simulation, in order, about ``PULSE_S`` apart.
+        summaries: measurements of one simulation, in order, about ``PULSE_S`` apart.
     """
-    if not pulses:
+    if not summaries:
         return None
-    last = pulses[-1]
+    last = summaries[-1]
     if last.stuck > STUCK_SHARE * max(FEW, last.running):
         why = f"{last.stuck} of {last.running} vehicles have been waiting for {STUCK_S:g} s or longer"
         return Gridlock("waiting for long", why)
     if last.teleported > TELEPORTED_SHARE * last.departed:
         return Gridlock("teleports", f"{last.teleported} teleports in {last.departed} departures")
-    recent = pulses[-STANDING:]
+    recent = summaries[-STANDING:]
     if len(recent) == STANDING and all(each.halted > STANDING_SHARE * max(FEW, each.running) for each in recent):
         told = ", then ".join(f"{each.halted} of {each.running}" for each in recent)
         return Gridlock("standing", f"{told} vehicles are slower than {HALTED_MPS:g} m/s")

@@ -21,7 +21,7 @@ from automotive_cosim.studies.plan import StudyJob
 from automotive_cosim.studies.points import branched, exclusion
 from automotive_cosim.studies.policies import Policy, PolicyRule, parse_policy
 from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, WholeDrive
-from automotive_cosim.traffic.accounts import Pulse
+from automotive_cosim.traffic.accounts import TrafficSummary
 from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
 from automotive_cosim.traffic.fork import RemoteTraffic
 
@@ -30,7 +30,7 @@ SAME = Branch(gains=NOTHING, totals=NOTHING, others=NOBODY)
 
 
 def whole_drives(
-    job: StudyJob, traffic: RemoteTraffic, fresh: Fresh | None, history: Sequence[Pulse]
+    job: StudyJob, traffic: RemoteTraffic, fresh: Fresh | None, history: Sequence[TrafficSummary]
 ) -> tuple[WholeDrive, ...]:
     """Drives every policy but ``never`` and ``best`` from the departure to the destination.
 
@@ -56,14 +56,14 @@ def _drawn(
     traffic: RemoteTraffic,
     fresh: Fresh | None,
     draw: int,
-    history: Sequence[Pulse],
+    history: Sequence[TrafficSummary],
 ) -> list[WholeDrive]:
     """All policies at every compliance with the same random numbers."""
     entropy = (*job.entropy, 5, draw)
     with closing(traffic.branch()) as start:
         if fresh is not None:
             start.renew(fresh, int(np.random.default_rng(entropy).integers(SEED_RANGE)))
-        group, pulse = start.others()
+        group, summary = start.others()
         made: list[tuple[Policy, float, int, Future | None]] = []
         for policy, compliance in product(policies, job.plan.compliance):
             with closing(start.branch()) as copy:
@@ -75,7 +75,7 @@ def _drawn(
         excluded = why = ""
         branch = SAME
         if future is not None and stay is not None:
-            excluded, why = exclusion([(stay, future)], [*history, pulse])
+            excluded, why = exclusion([(stay, future)], [*history, summary])
             branch = branched(stay, future, group)
         drives.append(
             WholeDrive(

@@ -15,7 +15,7 @@ LOUD_DB = 65.0
 
 
 @dataclass(frozen=True, slots=True)
-class Pulse:
+class TrafficSummary:
     """The state of the traffic as a whole. Counts of events begin when the ledger is opened."""
 
     time_s: float
@@ -78,7 +78,7 @@ class Settled:
     arrivals_s: dict[str, float]
     """Simulation time at which each awaited vehicle arrived, without those that have not."""
     ego: Account
-    pulse: Pulse
+    summary: TrafficSummary
     consumptions: dict[str, Consumption] = field(default_factory=dict)
     """Of each awaited vehicle and the ego, if the ledger keeps them."""
     track: tuple[TrackPoint, ...] = ()

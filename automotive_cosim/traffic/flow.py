@@ -12,7 +12,7 @@ from zlib import crc32
 import numpy as np
 from annotated_types import Ge, Le
 
-from automotive_cosim.traffic.accounts import Pulse
+from automotive_cosim.traffic.accounts import TrafficSummary
 from automotive_cosim.traffic.congestion import OLDEST_NEWS_S
 from automotive_cosim.traffic.divert import LEAST_LEFT_M
 from automotive_cosim.traffic.router import Router
@@ -56,10 +56,10 @@ class SignalControl:
 
 
 @dataclass(frozen=True, slots=True)
-class FlowPulse:
+class FlowSummary:
     """The traffic at the end of a period."""
 
-    pulse: Pulse
+    summary: TrafficSummary
     arrived: int
     """Vehicles that have arrived since the simulation began."""
     slowed: dict[str, float]

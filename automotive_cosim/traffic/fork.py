@@ -30,12 +30,12 @@ from automotive_cosim.contracts import (
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.incidents import Closure, Incident
-from automotive_cosim.traffic.accounts import Account, Pulse, Settled
+from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.chance import Fresh, Trial
 from automotive_cosim.traffic.divert import Edges
 from automotive_cosim.traffic.drive import Call
-from automotive_cosim.traffic.flow import Advice, FlowPulse, SignalControl
+from automotive_cosim.traffic.flow import Advice, FlowSummary, SignalControl
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
@@ -112,14 +112,14 @@ class Forked:
             raise SetupError("studies branch a running simulation, which requires fork: use Linux")
         self._source.warm_call("watch", consumptions, tracks)
 
-    def run_on(self, duration_s: float) -> Pulse:
+    def run_on(self, duration_s: float) -> TrafficSummary:
         """Lets the watched traffic run, so that later drives depart later; returns its state.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
         """
-        pulse: Pulse = self._source.warm_call("run_on", duration_s)
-        return pulse
+        summary: TrafficSummary = self._source.warm_call("run_on", duration_s)
+        return summary
 
     def fresh(self) -> Fresh:
         """How copies of the watched traffic get random numbers of their own, proven here at the first call."""
@@ -226,9 +226,9 @@ class RemoteTraffic:
             edges: tuple[str, ...] = copy._process.call("own_choice")
             return edges
 
-    def others(self) -> tuple[tuple[str, ...], Pulse]:
+    def others(self) -> tuple[tuple[str, ...], TrafficSummary]:
         """The other vehicles on the road or due, and the state of the traffic, in a watched simulation."""
-        seen: tuple[tuple[str, ...], Pulse] = self._process.call("others")
+        seen: tuple[tuple[str, ...], TrafficSummary] = self._process.call("others")
         return seen
 
     def account(self) -> Account:
@@ -341,14 +341,14 @@ class RemoteFlow:
         """
         self._process.send("flow", duration_s, every_s)
 
-    def ended(self) -> tuple[FlowPulse, ...]:
+    def ended(self) -> tuple[FlowSummary, ...]:
         """Waits for the end; returns the traffic at the beginning and at the end of every period.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
         """
-        pulses: tuple[FlowPulse, ...] = self._process.receive()
-        return pulses
+        summaries: tuple[FlowSummary, ...] = self._process.receive()
+        return summaries
 
     def close(self) -> None:
         """Ends the process."""

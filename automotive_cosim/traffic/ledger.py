@@ -14,9 +14,9 @@ from automotive_cosim.traffic.accounts import (
     STUCK_S,
     Account,
     Consumption,
-    Pulse,
     Settled,
     TrackPoint,
+    TrafficSummary,
 )
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.sumo import EGO, LibSumo
@@ -93,7 +93,7 @@ class Ledger:
         return found
 
     def consumed_by_class(self) -> dict[str, tuple[int, float, float, float, float, float]]:
-        """What all vehicles so far have emitted and consumed, see ``flow.FlowPulse``; empty if not recorded."""
+        """What all vehicles so far have emitted and consumed, see ``flow.FlowSummary``; empty if not recorded."""
         found: dict[str, tuple[int, float, float, float, float, float]] = {}
         for each in self.consumptions(self._consumed or ()).values():
             count, *sums = found.get(each.emission_class, (0, 0.0, 0.0, 0.0, 0.0, 0.0))
@@ -130,11 +130,11 @@ class Ledger:
         """Figures of the ego's drive, up to now or to its end."""
         return self._ego
 
-    def pulse(self) -> Pulse:
+    def summary(self) -> TrafficSummary:
         """The present state of the traffic."""
         vehicle = self._sumo.vehicle
         running = vehicle.getIDList()
-        return Pulse(
+        return TrafficSummary(
             self._sumo.time(),
             len(running),
             sum(self._sumo.speed(each) <= HALTED_MPS for each in running),
@@ -193,10 +193,10 @@ def settle(
             each.difference_update(ledger.arrived)
     everybody = {vehicle for group in groups for vehicle in group}
     arrivals_s = {vehicle: at_s for vehicle, at_s in ledger.arrivals_s.items() if vehicle in everybody}
-    pulse = ledger.pulse()
+    summary = ledger.summary()
     consumptions = ledger.consumptions([EGO, *everybody])
     account = ledger.account()
-    return Settled(pulse.time_s, is_complete(), arrivals_s, account, pulse, consumptions, ledger.track)
+    return Settled(summary.time_s, is_complete(), arrivals_s, account, summary, consumptions, ledger.track)
 
 
 def own_choice(sumo: LibSumo) -> tuple[str, ...]:

@@ -24,14 +24,14 @@ from typing import Any
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, ScenarioError, TrafficError
 from automotive_cosim.scenarios.incidents import Incident
-from automotive_cosim.traffic.accounts import Account, Pulse, Settled
+from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
 from automotive_cosim.traffic.divert import Edges, divert
 from automotive_cosim.traffic.drive import Call, EgoDrive
-from automotive_cosim.traffic.flow import Advice, Advisor, FlowPulse, SignalControl, control
+from automotive_cosim.traffic.flow import Advice, Advisor, FlowSummary, SignalControl, control
 from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.sumo import load_library
@@ -174,19 +174,19 @@ class Server:
         assert self._world is not None
         self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions, tracks=tracks)
 
-    def do_run_on(self, duration_s: float) -> Pulse:
+    def do_run_on(self, duration_s: float) -> TrafficSummary:
         """Lets the traffic run without an ego."""
         assert self._world is not None
         assert self._ledger is not None
         for _ in range(round(duration_s / self._world.step_s)):
             self._world.step()
             self._after_step()
-        return self._ledger.pulse()
+        return self._ledger.summary()
 
-    def do_others(self) -> tuple[tuple[str, ...], Pulse]:
+    def do_others(self) -> tuple[tuple[str, ...], TrafficSummary]:
         """The other vehicles, and the state of the traffic."""
         assert self._ledger is not None
-        return self._ledger.others(), self._ledger.pulse()
+        return self._ledger.others(), self._ledger.summary()
 
     def do_account(self) -> Account:
         """Figures of the ego's drive so far."""
@@ -233,19 +233,21 @@ class Server:
         if not control(load_library(), signals):
             raise ScenarioError("the network has no signals to control in another way")
 
-    def do_flow(self, duration_s: float, every_s: float) -> tuple[FlowPulse, ...]:
+    def do_flow(self, duration_s: float, every_s: float) -> tuple[FlowSummary, ...]:
         """Lets the traffic run without an ego; returns its state now and at the end of every period."""
-        pulses = [self._flow_pulse()]
+        summaries = [self._flow_summary()]
         for _ in range(round(duration_s / every_s)):
             self.do_run_on(every_s)
-            pulses.append(self._flow_pulse())
-        return tuple(pulses)
+            summaries.append(self._flow_summary())
+        return tuple(summaries)
 
-    def _flow_pulse(self) -> FlowPulse:
+    def _flow_summary(self) -> FlowSummary:
         assert self._ledger is not None
         assert self._world is not None
         ledger = self._ledger
-        return FlowPulse(ledger.pulse(), len(ledger.arrivals_s), self._world.slowed(), ledger.consumed_by_class())
+        return FlowSummary(
+            ledger.summary(), len(ledger.arrivals_s), self._world.slowed(), ledger.consumed_by_class()
+        )
 
     def do_bare_steps(self, count: int) -> None:
         """Steps of SUMO only."""

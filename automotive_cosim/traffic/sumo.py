@@ -43,7 +43,7 @@ class LibSumo:
         self.option: Callable[[str], str] = simulation.getOption
         self.start: Callable[[list[str]], tuple[int, str]] = library.start
         self.close: Callable[[], None] = library.close
-        # without the library's list of listeners, which is unused here
+        # without the library's list of observers, which is unused here
         self.step: Callable[[], object] = compiled("simulation_step")
         self.time: Callable[[], float] = compiled("simulation_getTime")
         self.arrived: Callable[[], Sequence[str]] = compiled("simulation_getArrivedIDList")

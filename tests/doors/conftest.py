@@ -7,8 +7,9 @@ from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.run.drive import DriveSetup, run_drive
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, Shot, run_episode
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, run_episode
 from automotive_cosim.run.jobs import DriveJob
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.traffic.fork import Simulations
 
 DRIVE: Json = {"drive": "grid_june", "seed": 3, "minutes": 0.5}
@@ -19,7 +20,7 @@ WAIT: Json = {"action_type": "wait"}
 @pytest.fixture(scope="module")
 def drive_trace(simulations: Simulations) -> str:
     """The trace of waiting on that drive until it is over."""
-    setup = DriveSetup("grid_june", 3, "silent", settings=DriveSettings(minutes=0.5))
+    setup = DriveSetup("grid_june", 3, agent="silent", settings=DriveSettings(minutes=0.5))
     row = run_drive(DriveJob(setup).planned(), setup, make_agent("silent"), simulations=simulations).row
     assert row.trace_sha256
     return row.trace_sha256

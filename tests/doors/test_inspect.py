@@ -183,7 +183,7 @@ class Seeing(RulePerfect):
 @pytest.fixture
 def watched(short: str, simulations: Simulations) -> DriveRecord:
     """The rule-perfect watcher's drive on the command line."""
-    setup = DriveSetup(short, 43, "rule-perfect")
+    setup = DriveSetup(short, 43, agent="rule-perfect")
     return run_drive(DriveJob(setup).planned(), setup, Seeing(), simulations=simulations)
 
 

@@ -13,8 +13,8 @@ from automotive_cosim.contracts import Action, ActionType, AlertKind, FeedbackCo
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import Session
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource, SessionSetup
@@ -48,9 +48,9 @@ class Acts:
 def begin(simulations) -> Iterator[Callable[..., Episode]]:
     begun: list[Episode] = []
 
-    def begin_(conditions: SessionSetup = BLIND, listener: Listener | None = None, seed: int = 0) -> Episode:
-        hand_over = SituationFinder(SPEC, simulations, listener=listener).find(SeedSource(seed).next())
-        begun.append(Episode.take_over(hand_over, conditions, listener))
+    def begin_(conditions: SessionSetup = BLIND, observer: Observer | None = None, seed: int = 0) -> Episode:
+        hand_over = SituationFinder(SPEC, simulations, observer=observer).find(SeedSource(seed).next())
+        begun.append(Episode.take_over(hand_over, conditions, observer))
         return begun[-1]
 
     yield begin_
@@ -118,10 +118,10 @@ def test_where_the_first_road_is_full_another_trip_is_tried():
         assert tried == names[: full + 1]
 
 
-def test_the_loop_steps_refuses_and_tells_every_observer(begin):
+def test_the_loop_steps_refuses_and_tells_each_step(begin):
     seen = []
     episode = begin()
-    end = play(episode, Acts(WAIT, ActionError("no JSON"), DONE), [lambda session, was: seen.append(was)])
+    end = play(episode, Acts(WAIT, ActionError("no JSON"), DONE), lambda session, was: seen.append(was))
     assert end is episode.end is End.DECLARED
     assert [step.feedback.code for step in episode.steps][2] is FeedbackCode.MALFORMED
     assert len(seen) == len(episode.steps) - 1 == 3
@@ -209,7 +209,7 @@ def test_the_baseline_run_is_the_drive_that_nobody_touched(begin, acts, cost_s):
 
 
 def test_a_listener_hears_of_every_second_in_order(begin):
-    class Times(Listener):
+    class Times(Observer):
         def __init__(self):
             self.times_s: list[float] = []
 
@@ -217,7 +217,7 @@ def test_a_listener_hears_of_every_second_in_order(begin):
             self.times_s.append(moment.time_s)
 
     heard = Times()
-    episode = begin(listener=heard)
+    episode = begin(observer=heard)
     episode.step(replace(WAIT, seconds=5))
     episode.step(DONE)
     after = episode.aftermath(2.0)

@@ -202,7 +202,9 @@ def test_lanes_lie_where_they_are_in_sumo_and_meet_in_junctions(drawn):
 @pytest.mark.sumo
 def test_an_episode_is_exported_by_command(tmp_path, simulations, cli):
     setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", agent="oracle", model="none")
-    run_episode(setup, make_agent("oracle"), [RoadRecorder(tmp_path / "kept", setup)], simulations=simulations)
+    run_episode(
+        setup, make_agent("oracle"), [RoadRecorder(tmp_path / "kept", setup.about)], simulations=simulations
+    )
     told = cli("export", tmp_path / "kept", "--openscenario", "1.3", "--opendrive", "--fcd", "--csv")
     assert told.code == 0, told.err
     folder = tmp_path / "kept" / "exchange"

@@ -37,7 +37,7 @@ def _film(
         film.moved(cast("Any", SimpleNamespace(time_s=time_s)), cockpit)
     episode = SimpleNamespace(network=NETWORK, instance=SimpleNamespace(goal=""))
     step = SimpleNamespace(moment=SimpleNamespace(time_s=100.0))
-    film.handed_over(cast("Any", episode), cast("Any", SimpleNamespace(step=step, screenshot=SCREEN)))
+    film.begun(cast("Any", episode), cast("Any", SimpleNamespace(step=step, screenshot=SCREEN)))
     path = tuple(Sample(at_s, 50.0, 50.0, "", 0.0, 0.0, 0.0) for at_s in path_s)
     film.finished(cast("Any", SimpleNamespace(path=path)))
     return shown

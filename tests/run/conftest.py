@@ -8,7 +8,8 @@ import pytest
 
 from automotive_cosim.agents import Agent, make_agent
 from automotive_cosim.episode.conditions import TABLE, Conditions
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, Shot, run_episode
+from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup, run_episode
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
 
@@ -26,7 +27,7 @@ class Memory(EpisodeObserver):
     def moved(self, moment, cockpit):
         self.moved_s.append(moment.time_s)
 
-    def handed_over(self, env, shot):
+    def begun(self, session, shot):
         self.shots.append(shot)
 
     def stepped(self, shot):

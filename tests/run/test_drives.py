@@ -38,6 +38,7 @@ from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.rerun import compare_drives, driven, rerun
 from automotive_cosim.run.road import read_road
+from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.row import as_json, from_json, from_line, steady
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.store import read_rows, read_trace
@@ -270,7 +271,7 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
     assert replayed.exit_code == 0, replayed.output
     assert f"all {row.steps + 1} steps are the same" in replayed.output
     *steps, _ = read_trace(folder, row.id)
-    job = DriveJob(DriveSetup(row.family, row.seed, row.agent, row.model, settings=row.settings))
+    job = DriveJob(DriveSetup(row.family, row.seed, settings=row.settings, agent=row.agent, model=row.model))
     quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
     different = compare_drives(steps, driven(job, row, quiet).steps)
     assert "action" in next(step for step in different if step.differs).differs
@@ -294,14 +295,15 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
         def answer_s(self) -> float:
             return 0.4 + 1.7 * (len(self._told) % 4)
 
-    setup = DriveSetup("grid_june", 1, "slow", conditions=Conditions(clock=Clock.MODEL, latency_s=0.5))
+    setup = DriveSetup("grid_june", 1, Conditions(clock=Clock.MODEL, latency_s=0.5), agent="slow")
     agent = Slow()
     with (
         closing(Simulations()) as simulations,
-        closing(DriveRecorder(tmp_path / "drive", setup, agent)) as recorder,
+        closing(DriveRecorder(tmp_path / "drive")) as recorder,
+        closing(RoadRecorder(tmp_path / "drive", setup.about)) as road_recorder,
     ):
         job = DriveJob(setup)
-        first = run_drive(job.planned(), setup, agent, simulations=simulations, observers=(recorder,))
+        first = run_drive(job.planned(), setup, agent, simulations=simulations, observers=(recorder, road_recorder))
         again = driven(job, first.row, first.steps, simulations)
     assert len({step["thought_s"] for step in first.steps}) > 2
     assert not [step for step in compare_drives(first.steps, again.steps) if step.differs]

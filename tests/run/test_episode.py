@@ -183,8 +183,8 @@ def test_a_road_that_fails_after_the_end_is_an_error_too(simulations):
     class Fails(EpisodeObserver):
         episode = None
 
-        def handed_over(self, episode, shot):
-            self.episode = episode
+        def begun(self, session, shot):
+            self.episode = session
 
         def moved(self, moment, cockpit):
             if self.episode is not None and self.episode.end is not None:

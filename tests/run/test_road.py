@@ -20,7 +20,9 @@ from automotive_cosim.run.road_recorder import RoadRecorder, RoadWriter, along
 def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
     setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", agent="oracle", model="none")
     blind = run_episode(setup, make_agent("oracle"), simulations=simulations)
-    seeing = run_episode(setup, make_agent("oracle"), [RoadRecorder(tmp_path, setup)], simulations=simulations)
+    seeing = run_episode(
+        setup, make_agent("oracle"), [RoadRecorder(tmp_path, setup.about)], simulations=simulations
+    )
     assert seeing == blind, "the trace's hash included"
     record = read_record(tmp_path / NAME)
     assert [second.at_s for second in record.seconds] == [sample.at_s for sample in blind.path[1:]]
@@ -86,7 +88,7 @@ def test_the_ground_is_told_once_as_it_comes_into_sight_and_read_in_its_drawing_
 
 
 def test_of_several_departures_only_the_last_is_kept(tmp_path):
-    recorder = RoadRecorder(tmp_path, EpisodeSetup())
+    recorder = RoadRecorder(tmp_path, EpisodeSetup().about)
     drives = [[(1.0, "first"), (2.0, "first"), (3.0, "first")], [(2.0, "second"), (3.0, "second")]]
     for drive in drives:
         for time_s, name in drive:

@@ -44,7 +44,7 @@ def test_every_space_can_be_searched(name: str) -> None:
         for value in ends:
             job = trial_of({**space.nominal, factor.name: value}).job("silent", "none", 0, Limits(), ())
             assert isinstance(job, DriveJob)
-            assert job.setup.spec.script.staged == () or staged != "nothing"
+            assert job.setup.script.staged == () or staged != "nothing"
 
 
 def test_neither_a_file_nor_a_name_is_refused(tmp_path: Path) -> None:

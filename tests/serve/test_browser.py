@@ -18,7 +18,8 @@ import pytest
 from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.run.episode import EpisodeObserver, Shot
+from automotive_cosim.run.episode import EpisodeObserver
+from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
@@ -203,9 +204,9 @@ class Overseen(Game):
 
     episode: Episode
 
-    def handed_over(self, episode: Episode, shot: Shot) -> None:
-        self.episode = episode
-        super().handed_over(episode, shot)
+    def begun(self, session: Episode, shot: Shot) -> None:
+        self.episode = session
+        super().begun(session, shot)
 
     @property
     def acts(self) -> int:

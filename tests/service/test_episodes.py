@@ -14,8 +14,8 @@ from automotive_cosim.agents import Oracle
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import FeedbackCode, Json
 from automotive_cosim.episode.episode import Episode
-from automotive_cosim.episode.listener import Listener
 from automotive_cosim.episode.loop import play
+from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import End, EpisodeSpec, SeedSource
 from automotive_cosim.errors import TrafficError, UnknownNameError, UserError
@@ -199,7 +199,7 @@ def test_what_cannot_be_started_takes_no_room(serve):
         with pytest.raises(error):
             service.start(wrong)
 
-    class Interrupts(Listener):
+    class Interrupts(Observer):
         def moved(self, moment, cockpit):
             raise KeyboardInterrupt
 

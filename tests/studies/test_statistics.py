@@ -27,7 +27,7 @@ from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, Decision, Dri
 from automotive_cosim.studies.tables import outcomes, parts
 from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.studies.warnings import warnings
-from automotive_cosim.traffic.accounts import Account, Pulse, Settled
+from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.scripted import Scripted, Stretch
 
@@ -339,11 +339,11 @@ def test_too_few_seeds_have_no_interval() -> None:
     assert seed_mean([]) is None
 
 
-FLOWING = Pulse(1000.0, 400, 40, 0, 5, 1000, 2)
+FLOWING = TrafficSummary(1000.0, 400, 40, 0, 5, 1000, 2)
 
 
 @pytest.mark.parametrize(
-    ("pulses", "word"),
+    ("summaries", "word"),
     [
         ([FLOWING], ""),
         ([replace(FLOWING, stuck=20)], ""),
@@ -359,8 +359,8 @@ FLOWING = Pulse(1000.0, 400, 40, 0, 5, 1000, 2)
         ([], ""),
     ],
 )
-def test_gridlock_is_seen(pulses: list[Pulse], word: str) -> None:
-    found = gridlock(pulses)
+def test_gridlock_is_seen(summaries: list[TrafficSummary], word: str) -> None:
+    found = gridlock(summaries)
     assert (found.rule if found else "").startswith(word) if word else found is None
 
 
@@ -420,7 +420,7 @@ def test_gini(values: list[float], expected: float) -> None:
 def test_many_cars_that_jam_leave_the_decision_itself_in() -> None:
     """Sending everybody along ends in a gridlock: that future does not count, and the decision does."""
     good = ends(future(900.0, a=200.0), 450.0)
-    jammed = replace(good, settled=replace(good.settled, pulse=replace(FLOWING, stuck=200)))
+    jammed = replace(good, settled=replace(good.settled, summary=replace(FLOWING, stuck=200)))
     late = replace(good, settled=replace(good.settled, is_complete=False))
     sent = [Diverted(share, 0, made, ("a",), 1) for share, made in ((0.0, good), (0.5, late), (1.0, jammed))]
     point = Point(decision(), ("a",), FLOWING, [ends(future(900.0, a=190.0), 400.0)], together=sent)

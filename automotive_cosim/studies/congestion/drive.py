@@ -34,7 +34,7 @@ from automotive_cosim.studies.congestion.plan import (
 )
 from automotive_cosim.studies.congestion.rows import CongestionRow, Emitted, FlowCell, FlowState, MeasureOutcome
 from automotive_cosim.studies.traffic import gridlock
-from automotive_cosim.traffic.flow import FlowPulse
+from automotive_cosim.traffic.flow import FlowSummary
 from automotive_cosim.traffic.fork import Forked, RemoteFlow
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import read_configuration
@@ -98,48 +98,48 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
             copy.begin(plan.duration_s, INTERVAL_S)
             running.append(copy)
         for name, copy in zip(names, running, strict=True):
-            pulses = copy.ended()
+            summaries = copy.ended()
             copy.close()
             assert copy.outputs is not None
-            flows = list(read_flows(copy.outputs, begin_s, [each.slowed for each in pulses[1:]]))
+            flows = list(read_flows(copy.outputs, begin_s, [each.slowed for each in summaries[1:]]))
             queues = read_queues(copy.outputs, begin_s)
             edges.append(flows)
-            outcomes.append(_outcome(name, plan, cells(flows, queues, of), pulses))
+            outcomes.append(_outcome(name, plan, cells(flows, queues, of), summaries))
     write_edges(folder / EDGES, job.id, edges)
     return replace(_planned(job), outcomes=tuple(outcomes))
 
 
 def _outcome(
-    name: str, plan: CongestionPlan, found: tuple[FlowCell, ...], pulses: Sequence[FlowPulse]
+    name: str, plan: CongestionPlan, found: tuple[FlowCell, ...], summaries: Sequence[FlowSummary]
 ) -> MeasureOutcome:
     """An outcome from the flows and from the traffic's states, the first of which is that of the copy."""
-    first = pulses[0]
+    first = summaries[0]
     states = tuple(
         FlowState(
             at_s=number * INTERVAL_S,
-            running=each.pulse.running,
-            backlog=each.pulse.backlog,
-            departed=each.pulse.departed - first.pulse.departed,
+            running=each.summary.running,
+            backlog=each.summary.backlog,
+            departed=each.summary.departed - first.summary.departed,
             arrived=each.arrived - first.arrived,
-            teleported=each.pulse.teleported - first.pulse.teleported,
+            teleported=each.summary.teleported - first.summary.teleported,
         )
-        for number, each in enumerate(pulses)
+        for number, each in enumerate(summaries)
     )
-    jam = gridlock([each.pulse for each in pulses[:: round(EPOCH_S / INTERVAL_S)]])
+    jam = gridlock([each.summary for each in summaries[:: round(EPOCH_S / INTERVAL_S)]])
     return MeasureOutcome(
         measure=name,
         cells=found,
         states=states,
-        emitted=tuple(_emitted(plan, pulses)),
+        emitted=tuple(_emitted(plan, summaries)),
         gridlock="" if jam is None else jam.why,
     )
 
 
-def _emitted(plan: CongestionPlan, pulses: Sequence[FlowPulse]) -> Iterator[Emitted]:
+def _emitted(plan: CongestionPlan, summaries: Sequence[FlowSummary]) -> Iterator[Emitted]:
     """What each class emitted in each period."""
     each_s = round(plan.period_s / INTERVAL_S)
     for period in range(len(plan.demand)):
-        before, after = (pulses[number * each_s].consumed for number in (period, period + 1))
+        before, after = (summaries[number * each_s].consumed for number in (period, period + 1))
         for name, (_, *sums) in sorted(after.items()):
             _, *earlier = before.get(name, (0, 0.0, 0.0, 0.0, 0.0, 0.0))
             co2_g, nox_g, fuel_g, energy_wh, noise_s = (

@@ -266,23 +266,29 @@ def _rear(rect: Rect, state: State) -> Widget:
         rect=rect,
         children=(
             title(head, Icon.SEAT_HEATER, say("Rear seats")),
-            levels(
-                tiles[0],
-                "hvac.rear_left_seat_heating",
-                say("Left"),
-                Icon.SEAT_HEATER,
-                SEAT.REAR_LEFT_HEATING,
-                signals,
-                SEAT_LEVELS,
+            replace(
+                levels(
+                    tiles[0],
+                    "hvac.rear_left_seat_heating",
+                    say("Left"),
+                    Icon.SEAT_HEATER,
+                    SEAT.REAR_LEFT_HEATING,
+                    signals,
+                    SEAT_LEVELS,
+                ),
+                description=say("{name}: {value}", name=say("Rear left"), value=say("Seat heat")),
             ),
-            levels(
-                tiles[1],
-                "hvac.rear_right_seat_heating",
-                say("Right"),
-                Icon.SEAT_HEATER,
-                SEAT.REAR_RIGHT_HEATING,
-                signals,
-                SEAT_LEVELS,
+            replace(
+                levels(
+                    tiles[1],
+                    "hvac.rear_right_seat_heating",
+                    say("Right"),
+                    Icon.SEAT_HEATER,
+                    SEAT.REAR_RIGHT_HEATING,
+                    signals,
+                    SEAT_LEVELS,
+                ),
+                description=say("{name}: {value}", name=say("Rear right"), value=say("Seat heat")),
             ),
             title(air, Icon.AIR_QUALITY, say("Cabin air")),
             *(

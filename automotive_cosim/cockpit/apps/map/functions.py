@@ -38,7 +38,7 @@ def navigate_to(
     if goal == found:
         return disabled(say("You are already on the way there"))
     if as_stop and not goal:
-        return disabled(say("No place was chosen as the destination"))
+        return disabled(say("The route has no place as its destination"))
     return Guide(found, goal) if as_stop else Guide(found)
 
 

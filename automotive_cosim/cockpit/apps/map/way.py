@@ -160,7 +160,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
             text=say("Stop on the way"),
             icon=Icon.PLACE,
             on_tap=Guide(name, goal),
-            disabled=there or ("" if goal else say("No place was chosen as the destination")),
+            disabled=there or ("" if goal else say("The route has no place as its destination")),
         ),
         Button(
             rect=cells[2],

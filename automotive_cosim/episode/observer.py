@@ -10,7 +10,7 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.scenarios import Scenario
 
 
-class Listener:
+class Observer:
     """Ignores everything; override the methods of interest."""
 
     looks = False
@@ -29,31 +29,31 @@ class Listener:
         """Another simulated second has passed: of the drive to the hand-over, of a step, or of the aftermath."""
 
 
-class Listeners(Listener):
+class Observers(Observer):
     """Passes on to several; asks to look if one of them does."""
 
-    def __init__(self, listeners: Sequence[Listener]) -> None:
+    def __init__(self, observers: Sequence[Observer]) -> None:
         """Keeps them, in the order in which they are notified."""
-        self._listeners = listeners
-        self._lookers = tuple(each for each in listeners if each.looks)
+        self._observers = observers
+        self._lookers = tuple(each for each in observers if each.looks)
         self.looks = bool(self._lookers)
 
     def loading(self, scenario: Scenario) -> None:
-        """See ``Listener.loading``."""
-        for each in self._listeners:
+        """See ``Observer.loading``."""
+        for each in self._observers:
             each.loading(scenario)
 
     def warming(self, scenario: str, done_s: float, total_s: float) -> None:
-        """See ``Listener.warming``."""
-        for each in self._listeners:
+        """See ``Observer.warming``."""
+        for each in self._observers:
             each.warming(scenario, done_s, total_s)
 
     def looked(self, snapshot: RoadSnapshot) -> None:
-        """See ``Listener.looked``."""
+        """See ``Observer.looked``."""
         for each in self._lookers:
             each.looked(snapshot)
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """See ``Listener.moved``."""
-        for each in self._listeners:
+        """See ``Observer.moved``."""
+        for each in self._observers:
             each.moved(moment, cockpit)

@@ -27,7 +27,7 @@ class NotHereError(UserError):
 
 
 @dataclass(frozen=True, slots=True)
-class ShelfEntry:
+class RecordEntry:
     """One recorded episode, one recorded drive, or one evaluation."""
 
     id: str
@@ -36,7 +36,7 @@ class ShelfEntry:
     is_drive: bool = False
 
 
-class Shelf:
+class RecordFolders:
     """The records below some folders."""
 
     def __init__(self, folders: Sequence[Path]) -> None:
@@ -51,15 +51,15 @@ class Shelf:
                     f"{folder} is not a folder; give folders of `run` or `eval`, or one that holds them"
                 )
         self._folders = [folder.resolve() for folder in folders]
-        self._known: dict[str, ShelfEntry] = {}
+        self._known: dict[str, RecordEntry] = {}
 
-    def entries(self) -> list[ShelfEntry]:
+    def entries(self) -> list[RecordEntry]:
         """All current records, the newest first."""
         found = {entry.id: entry for folder in self._folders for entry in _seek(folder, DEPTH)}
         self._known = found
         return sorted(found.values(), key=lambda entry: _changed_s(entry.folder), reverse=True)[:MOST]
 
-    def entry(self, name: str) -> ShelfEntry:
+    def entry(self, name: str) -> RecordEntry:
         """The record of that id.
 
         Raises:
@@ -72,7 +72,7 @@ class Shelf:
             raise NotHereError(f"there is no record {name!r} in the given folders")
         return found
 
-    def of(self, folder: Path) -> ShelfEntry:
+    def of(self, folder: Path) -> RecordEntry:
         """The recorded episode in a folder.
 
         Raises:
@@ -80,7 +80,7 @@ class Shelf:
         """
         return self.entry(_id(folder.resolve()))
 
-    def file(self, entry: ShelfEntry, *parts: str) -> Path:
+    def file(self, entry: RecordEntry, *parts: str) -> Path:
         """A file of a record.
 
         Args:
@@ -98,7 +98,7 @@ class Shelf:
             raise NotHereError(f"this record has no {'/'.join(parts)}")
         return path
 
-    def picture(self, entry: ShelfEntry, episode: str | None, step: int) -> tuple[Path, str]:
+    def picture(self, entry: RecordEntry, episode: str | None, step: int) -> tuple[Path, str]:
         """The screenshot after a step, and its media type.
 
         Args:
@@ -116,13 +116,13 @@ class Shelf:
         return self.file(entry, *folder, f"step_{step:03d}.{kind}"), PICTURES[kind]
 
 
-def _seek(folder: Path, depth: int) -> Iterator[ShelfEntry]:
+def _seek(folder: Path, depth: int) -> Iterator[RecordEntry]:
     if (folder / SHOWN).is_file():
-        yield ShelfEntry(_id(folder), folder, is_evaluation=False, is_drive=True)
+        yield RecordEntry(_id(folder), folder, is_evaluation=False, is_drive=True)
     elif (folder / "steps.jsonl").is_file():
-        yield ShelfEntry(_id(folder), folder, is_evaluation=False)
+        yield RecordEntry(_id(folder), folder, is_evaluation=False)
     elif all(_is_own(folder / name) for name in ("manifest.json", "episodes.jsonl")):
-        yield ShelfEntry(_id(folder), folder, is_evaluation=True)
+        yield RecordEntry(_id(folder), folder, is_evaluation=True)
     elif depth:
         try:
             inner = sorted(path for path in folder.iterdir() if path.is_dir() and not path.is_symlink())
