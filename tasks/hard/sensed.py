@@ -153,7 +153,7 @@ BY_HAND = hard(
     _half(
         with_letter(STUCK_LOW, MALIK, "Just measured, by hand:", "2.5 on every wheel, all four"),
         (told(MALIK, "Thank you"),),
-        (*letter(MALIK), *TYRES, *THANKS, Inform("The {wheel} tyre's sensor is wrong; by hand all have 2.5 bar.")),
+        (*letter(MALIK), *TYRES, *THANKS, Inform("That tyre's sensor is wrong; by hand all four have 2.5 bar.")),
         (*letter(MALIK), *TYRES, Warn(AlertKind.VEHICLE), *THANKS),
         (*letter(MALIK), *TYRES, *THANKS),
         tells=(WRONG,),
