@@ -508,7 +508,7 @@ CARGO = {"9.4": 9.4, "8.7": 8.7, "10.2": 10.2, "9.9": 9.9}
 
 
 def _front_seat(line: str, goal: tuple[Check, ...], moves: Moves, *wrong: Moves, **more: Any) -> Half:
-    thing = Occupant(Seat.PASSENGER, Kind.OBJECT, param("kg", CARGO))  # type: ignore[arg-type]
+    thing = Occupant(Seat.PASSENGER, Kind.BABY, param("kg", CARGO))  # type: ignore[arg-type]
     start = with_letter(replace(PARKED, aboard=(thing,)), ISLA, "All ready for you,", line)
     look = (*letter(ISLA), Open("cabin"))
     return _half(
@@ -538,33 +538,32 @@ ON_THE_FRONT_SEAT = hard(
         " about"
         " what it is, tell me. Text Isla 'Thank you'.",
     ),
+    _front_seat(
+        "our {kg} kg baby is in the carrier, facing backwards",
+        (SignalIs(SEAT.PASSENGER_AIRBAG, (False,)),),
+        AIRBAG_OFF,
+        (),
+    ),
     replace(
         _front_seat(
-            "our {kg} kg baby is asleep in the carrier, facing backwards",
-            (SignalIs(SEAT.PASSENGER_AIRBAG, (False,)),),
-            AIRBAG_OFF,
+            "our {kg} kg pumpkin is strapped in, like a baby",
             (),
+            (),
+            AIRBAG_OFF,
         ),
         moves=(
             *letter(ISLA),
             Open("cabin"),
-            *AIRBAG_OFF,
             *THANK_ISLA,
-            Inform("The seat's sensor is wrong: it takes the baby for an object. Its airbag is off."),
+            Inform("The seat's sensor is wrong: it takes the pumpkin for a baby. The airbag stays on."),
         ),
         tells=((*WRONG, "mistakes", "mistook", "takes", "thinks"),),
     ),
-    _front_seat(
-        "our {kg} kg pumpkin is strapped in the carrier, like a baby",
-        (),
-        (),
-        AIRBAG_OFF,
-    ),
-    "content: it is a baby that the seat takes for a thing, or a pumpkin",
+    "content: it is a baby, or a pumpkin that the seat takes for one",
     parameters={"kg": tuple(CARGO)},
     tags=frozenset({"two_modules"}),
     ability=Ability.SENSORS,
-    guess_loses="The seat reports an object of the same weight in both halves, and is wrong about it in one.",
+    guess_loses="The seat reports a baby of the same weight in both halves, and is wrong about it in one.",
 )
 
 BEN = "Ben Nair"
