@@ -45,7 +45,9 @@ TasksFrom = Annotated[
 """For every command that names tasks; its callback handles the value, so the command ignores it."""
 
 
-TASKS_HELP = "Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas."
+TASKS_HELP = (
+    "Ids, patterns, tags, modules, dimensions, subsets, abilities, general, safety, all; separated by commas."
+)
 TaskNames = Annotated[str, typer.Option("--tasks", help=TASKS_HELP)]
 SUITE_HELP = "Task suite: standard, hard, limits, clarify or all. An id selects a task in any suite."
 SuiteName = Annotated[str, typer.Option("--suite", help=SUITE_HELP)]

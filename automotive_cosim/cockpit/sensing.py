@@ -92,7 +92,8 @@ def _road(state: State, surroundings: Surroundings) -> None:
     signals, driving = state.signals, surroundings.driving
     road = driving.road
     limit = road.limit.posted_mps
-    signals[ADAS.LIMIT_SIGN] = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
+    seen_kmh = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
+    signals[ADAS.LIMIT_SIGN] = state.injected.get(ADAS.LIMIT_SIGN.path, seen_kmh)
     if state.sign_camera:
         _read_sign(state, surroundings)
     leader = _in_sight(driving.around.leader)

@@ -207,6 +207,7 @@ class EpisodeJob(PlannedJob[EpisodeSetup]):
             suite=task.suite,
             tags=tuple(sorted(task.tags)),
             skills=tuple(sorted(task.skills)),
+            ability=task.ability,
             declines=not half.moves,
             scenario=self.scenario,
             agent=setup.agent,

@@ -123,8 +123,8 @@ class Plan(ConditionLists):
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
     tasks: tuple[str, ...] = ()
-    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``;
-    empty for all, or for none beside drives and trials."""
+    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, abilities, ``general``, ``safety`` or
+    ``all``; empty for all, or for none beside drives and trials."""
     drives: tuple[str, ...] = ()
     """Families of drives, patterns such as ``grid_*``, scenarios, seasons, or ``all``."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
@@ -385,7 +385,8 @@ def families_named(asked: Iterable[str]) -> tuple[str, ...]:
 
 def _words(task: Task) -> frozenset[str]:
     kind = "safety" if task.dimension.is_safety else "general"
-    return task.tags | {"all", kind, str(task.module), str(task.dimension), str(task.subset)}
+    ability = () if task.ability is None else (str(task.ability),)
+    return task.tags | {*ability, "all", kind, str(task.module), str(task.dimension), str(task.subset)}
 
 
 def read_plan(path: Path) -> dict[str, Any]:
