@@ -48,7 +48,7 @@ def _trips(start: Start, *notes: Any, at: str = THURSDAY, **papers: Any) -> Star
 
 
 def _recalled(start: Start, goal: tuple[Check, ...], moves: Moves, *slips: Moves, **more: Any) -> Half:
-    settings = {"deadline": AS_A_PASSENGER, "may_write": frozenset[str]()} | more
+    settings: dict[str, Any] = {"deadline": AS_A_PASSENGER, "may_write": frozenset[str]()} | more
     return done(start, AllOf(goal), moves, slips=slips, **settings)
 
 
