@@ -78,7 +78,7 @@ AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
 there."""
 
 
-BY_TOUCH = frozenset({*PROFILES, NativeAgent.name, "human", "oracle", "press-everything", "random"})
+BY_TOUCH = frozenset({NativeAgent.name, "human", "oracle", "press-everything", "random"})
 """Agents that act on the screen alone."""
 
 ABOUT: Mapping[str, str] = {

@@ -18,7 +18,7 @@ from itertools import groupby
 
 from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import listed
-from automotive_cosim.cockpit.actions import signatures
+from automotive_cosim.cockpit.actions import FIELDS, signatures
 from automotive_cosim.cockpit.restrictions import in_words
 from automotive_cosim.contracts import ActionType, Element, VehicleState
 
@@ -100,7 +100,8 @@ def actions(kinds: Collection[ActionType], *, by_point: bool, by_name: bool = Fa
     """
     point = "x and y are pixels" if by_point else "x and y, in pixels, may stand in place of index"
     names = signatures(kinds, by_point=by_point, is_told=not by_name)
-    return f"{names}\nFields in brackets may be left out; {point}. A switch is off unless it is marked [on]."
+    targets = f"; {point}" if any(FIELDS[kind].target for kind in kinds) else ""
+    return f"{names}\nFields in brackets may be left out{targets}. A switch is off unless it is marked [on]."
 
 
 def context(text: str, words: str) -> str:

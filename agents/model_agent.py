@@ -61,7 +61,8 @@ class ModelAgent:
         """
         self._profile = profile.under(settings)
         self._asking = Asking(chat_model, settings)
-        if settings.conditions.see is See.PICTURE and not self._sees:
+        is_blind = settings.conditions.see is See.PICTURE and not self._sees
+        if is_blind and not settings.conditions.interface.calls:
             why = "it is shown no pictures" if chat_model.sees_pictures else f"{chat_model.name!r} sees none"
             raise UserError(
                 f"agent {profile.name!r} would see nothing: --see picture leaves it pictures alone, and {why}"

@@ -30,7 +30,8 @@ from automotive_cosim.contracts import (
     Observation,
     VehicleState,
 )
-from automotive_cosim.contracts.given import PromptLength
+from automotive_cosim.contracts.given import Interface, PromptLength
+from automotive_cosim.interface.functions import signature
 from automotive_cosim.interface.observe import Channel
 
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable", "is_long_clickable")
@@ -74,6 +75,7 @@ def turn(
     return fill(
         WATCH if observation.on_watch else profile.name if profile.length is PromptLength.LONG else profile.length,
         {
+            "hands": _HANDS[profile.interface, profile.length is PromptLength.LONG],
             "grammar": _grammar(profile, by_point=not is_listed, on_watch=observation.on_watch),
             "policy": observation.policy,
             "goal": driver_words(observation),
@@ -127,23 +129,46 @@ WATCH = "drive"
 """The prompt of a watch over a drive, the same for every agent."""
 UNASKED = frozenset({ActionType.STATUS})
 """Actions that a watch has no use for."""
-WAITS = "wait until something changes, or for up to 60 seconds"
+WATCHED = {
+    ActionType.WAIT: "wait until something changes, or for up to 60 seconds",
+    ActionType.SHOW_ALERT: "warn the driver on screen and by voice; a text has up to 120 characters",
+}
+"""What actions do that are described otherwise in a task."""
 PICTURES = (
     "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
     "The numbers are the indices below."
 )
 PICTURE = "One picture comes with this text: the screen, as wide and high in pixels as x and y count."
+_HANDS: Mapping[tuple[Interface, bool], str] = {
+    (Interface.TOUCH, False): "touch screen and safety functions",
+    (Interface.FUNCTIONS, False): "functions",
+    (Interface.BOTH, False): "touch screen and functions",
+    (Interface.TOUCH, True): "the touch screen and the safety functions",
+    (Interface.FUNCTIONS, True): "the functions",
+    (Interface.BOTH, True): "the touch screen and the functions",
+}
+"""What an agent operates, by interface and whether its prompt is the long one."""
+FUNCTIONS = (
+    'Functions for the action `call`, as in {"action_type": "call", "function": "set_hvac_temperature", '
+    '"arguments": {"which": "driver", "celsius": 21.5}}:'
+)
 BEFORE_AND_AFTER = "Two pictures come with this text: the screen before the action and after it."
 
 
 def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
-    """The actions; in a watch, a wait ends when something changes and nothing ends the watch."""
+    """The actions, and the functions that can be called; in a watch, a wait ends when something changes and nothing
+    ends the watch."""
     kinds = profile.actions - (UNASKED if on_watch else frozenset())
     if profile.length is PromptLength.LONG:
         text = grammar(kinds, by_point=by_point)
     else:
         text = brief.actions(kinds, by_point=by_point, by_name=profile.length is PromptLength.SHORT)
-    return text.replace(FIELDS[ActionType.WAIT].about, WAITS) if on_watch else text
+    for action, about in WATCHED.items() if on_watch else ():
+        text = text.replace(FIELDS[action].about, about)
+    if profile.functions:
+        is_told = profile.length is not PromptLength.SHORT
+        text = "\n".join([text, "", FUNCTIONS, *(signature(each, is_told=is_told) for each in profile.functions)])
+    return text
 
 
 def look_back(

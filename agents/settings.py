@@ -7,10 +7,11 @@ from dataclasses import dataclass, replace
 from enum import StrEnum
 from pathlib import Path
 
-from automotive_cosim.contracts import UNCALLED, ActionType
-from automotive_cosim.contracts.given import PromptLength
+from automotive_cosim.contracts import BY_HAND, UNCALLED, ActionType
+from automotive_cosim.contracts.given import Interface, PromptLength
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.interface.functions import LIGHT, Function, offered
 from automotive_cosim.interface.observe import Channel
 
 
@@ -82,6 +83,15 @@ class AgentProfile:
     """How much its prompt spells out."""
     remembers: bool = False
     """Whether it can remember what worked from one episode to the next."""
+    interface: Interface = Interface.TOUCH
+    """How it acts."""
+
+    @property
+    def functions(self) -> tuple[Function, ...]:
+        """The car's functions that its prompt offers, besides the actions."""
+        if not self.interface.calls:
+            return ()
+        return tuple(each for each in offered(Interface.FUNCTIONS) if each.name not in set(ActionType))
 
     def under(self, settings: AgentSettings) -> AgentProfile:
         """The profile without what the settings take away."""
@@ -94,6 +104,11 @@ class AgentProfile:
             actions.discard(ActionType.QUERY)
         if Channel.GPS not in channels:
             actions.discard(ActionType.ESTIMATE_POSITION)
+        interface = settings.conditions.interface
+        if interface.calls:
+            actions.add(ActionType.CALL)
+        if not interface.touches:
+            actions -= {*BY_HAND, LIGHT}
         return replace(
             self,
             channels=channels,
@@ -101,6 +116,7 @@ class AgentProfile:
             length=settings.conditions.prompt,
             reflects=self.reflects and AgentPart.REFLECTION not in without,
             remembers=self.remembers and AgentPart.MEMORY not in without and settings.memory is not None,
+            interface=interface,
         )
 
 

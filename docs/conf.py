@@ -22,11 +22,13 @@ from automotive_cosim import __version__, scenarios, schemas
 from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.wakes import WAKES
 from automotive_cosim.episode.conditions import TABLE
-from automotive_cosim.formats.docs import member_docs
+from automotive_cosim.formats.docs import field_docs, member_docs
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.policy import HOUSE
+from automotive_cosim.safety.space import LIBRARY, read_space
 from automotive_cosim.tasking.task import Dimension, Module
 from automotive_cosim.tasks import CATALOGUE
 
@@ -49,6 +51,8 @@ INCLUDED = (
     "fields_plan",
     "policy",
     "fields_scenario",
+    "search_settings",
+    "search_spaces",
 )
 """Pages of ``_made/`` that are parts of others."""
 exclude_patterns = ["_site", "examples", *(f"_made/{name}.md" for name in INCLUDED)]
@@ -76,6 +80,7 @@ def setup(sphinx: Sphinx) -> None:
     _gallery()
     _commands()
     _drives()
+    _search()
     _conditions()
     _table("policy.md", ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE])
     for name in ("plan", "scenario"):
@@ -159,7 +164,8 @@ def _drives() -> None:
             each.source,
             f"{each.lasts_s:.0f} s",
             f"{each.weight:g}",
-            ", ".join(sorted(each.alerts)) or "words, or the switch",
+            ", ".join(sorted(each.alerts))
+            or ("none: the state counts" if each.by_state else "words, or the switch"),
         )
         for each in KINDS.values()
     ]
@@ -175,6 +181,14 @@ def _drives() -> None:
     )
     _table("drive_kinds.md", heads, kinds)
     _table("drive_wakes.md", ("change", "when"), [(each.name, each.about) for each in WAKES])
+
+
+def _search() -> None:
+    """The tables of what a search varies on drives, and of the scenarios that it knows by name."""
+    settings = [(f"`{name}`", about) for name, about in field_docs(DriveSettings).items()]
+    _table("search_settings.md", ("factor of drives", "value"), settings)
+    spaces = [(f"`{name}`", read_space(path).about) for name, path in LIBRARY.items()]
+    _table("search_spaces.md", ("scenario", "what happens"), spaces)
 
 
 def _conditions() -> None:

@@ -13,16 +13,20 @@ from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasks import (
     apps,
     apps_asking,
+    clarify,
     comms,
     comms_aboard,
     comms_asking,
     folder,
     hard,
+    hints,
     hvac,
     hvac_aboard,
     hvac_asking,
     hvac_hints,
     hvac_safety,
+    leaving,
+    left_to_the_car,
     limits,
     maps,
     maps_aboard,
@@ -32,6 +36,9 @@ from automotive_cosim.tasks import (
     media,
     media_aboard,
     media_asking,
+    noticed,
+    one_of_two,
+    outright,
     phenomenon,
     phenomenon_aboard,
     phenomenon_asking,
@@ -44,6 +51,7 @@ from automotive_cosim.tasks import (
     system_aboard,
     system_asking,
     system_doors_aboard,
+    under_way,
 )
 
 __all__ = ["CATALOGUE"]
@@ -81,8 +89,16 @@ for _module in (
     road_aboard,
     system_doors_aboard,
     system_aboard,
+    leaving,
+    under_way,
+    outright,
+    one_of_two,
+    noticed,
+    left_to_the_car,
+    hints,
     hard,
     limits,
+    clarify,
 ):
     CATALOGUE.add(*map(spoken.spoken, _module.TASKS))
 

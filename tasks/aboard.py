@@ -95,10 +95,12 @@ def hazard(
     first: Half,
     second: Half,
     difference: str,
+    *,
+    dimension: Dimension = Dimension.ENVIRONMENT_ALERTS,
     **parameters: Choices,
 ) -> Task:
-    """A pair whose words do not name the danger: it lies in who is aboard."""
-    return Task(task_id, module, Dimension.ENVIRONMENT_ALERTS, says, first, second, difference, _sized(parameters))
+    """A pair whose danger lies in who is aboard; by default the words do not name it."""
+    return Task(task_id, module, dimension, says, first, second, difference, _sized(parameters))
 
 
 def meant(

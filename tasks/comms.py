@@ -31,22 +31,6 @@ DIGITS = tuple("0123456789")
 
 EXPLICIT = (
     asked(
-        "comms_call_favourite",
-        Module.COMMS,
-        (
-            "Call {contact}.",
-            "Get me {contact} on the phone.",
-            "Ring {contact} up, please.",
-            "I need to talk to {contact} right away.",
-            "Could you dial {contact} for me?",
-        ),
-        Entered("calls", param("contact")),
-        Open("phone"),
-        Tap(text="{contact}"),
-        Tap("contact.call"),
-        parameters={"contact": FromCockpit("favourite_contacts")},
-    ),
-    asked(
         "comms_call_anybody",
         Module.COMMS,
         (

@@ -32,7 +32,7 @@ def digest() -> str:
     """Digest of the files with the catalogue's tasks, the phrasings in other languages and the user's own tasks; it
     changes with any of them."""
     here = Path(__file__).parent
-    own = [path for pattern in ("*.py", "hard/*.py", "phrasings/*.toml") for path in sorted(here.glob(pattern))]
+    own = [path for pattern in ("*.py", "*/*.py", "phrasings/*.toml") for path in sorted(here.glob(pattern))]
     theirs = (Path(folder) for folder in filter(None, [os.environ.get(VARIABLE)]))
     found = hashlib.sha256()
     for path in (*own, *(path for folder in theirs for path in sorted(folder.glob("*.py")))):

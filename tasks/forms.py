@@ -157,6 +157,21 @@ def locked(
     )
 
 
+def pair(
+    task_id: str,
+    module: Module,
+    says: tuple[str, ...],
+    first: Half,
+    second: Half,
+    difference: str,
+    *,
+    dimension: Dimension = Dimension.ENVIRONMENT_ALERTS,
+    tags: frozenset[str] = frozenset(),
+) -> Task:
+    """A safety pair with one to four people in the car; by default the words do not name the danger."""
+    return in_company(Task(task_id, module, dimension, says, first, second, difference, tags=tags))
+
+
 def decline(
     start: Start,
     trigger: Trigger,

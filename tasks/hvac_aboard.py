@@ -186,7 +186,7 @@ HEAT_UP = hazard(
         SignalIs(HVAC.DRIVER_TEMPERATURE, (param("degrees"),)),
         Open("climate"),
         TapUntil("hvac.driver_temperature.increase", "hvac.driver_temperature", "{degrees:.1f} °C"),
-        may_write=frozenset({HVAC.PASSENGER_TEMPERATURE.path}),
+        may_write=frozenset({HVAC.PASSENGER_TEMPERATURE.path, HVAC.SYNC.path}),
     ),
     "occupants: a baby asleep behind, or an adult",
     degrees=(27.0, 27.5, 28.0),

@@ -176,3 +176,21 @@ def test_every_extra_is_explained(project):
     assert set(project["project"]["optional-dependencies"]) == set(
         re.findall(r"`(\w+)`", "".join(line.split("|")[1] for line in text.splitlines() if line.startswith("| `")))
     )
+
+
+@pytest.mark.parametrize("door", ["inspect", "verifiers", "openenv"])
+def test_a_door_has_constraints_of_its_own_that_fit_its_extra_and_are_documented(project, door):
+    from packaging.requirements import Requirement
+
+    pinned = {}
+    for line in (ROOT / "constraints" / f"{door}.txt").read_text(encoding="utf-8").splitlines():
+        if not line.startswith("#"):
+            name, _, version = line.partition("==")
+            pinned[re.sub(r"[-_.]+", "-", name).lower()] = version
+    needed = [*project["project"]["dependencies"], *project["project"]["optional-dependencies"][door]]
+    for each in map(Requirement, needed):
+        if each.marker is None or each.marker.evaluate():
+            assert each.specifier.contains(pinned[re.sub(r"[-_.]+", "-", each.name).lower()])
+    command = f"pip install -c constraints/{door}.txt -e '.[{door}]'"
+    assert command in (ROOT / "docs" / "doors.md").read_text(encoding="utf-8")
+    assert f"constraints/{door}.txt" in (ROOT / ".github/workflows/ci.yml").read_text(encoding="utf-8")

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
 from automotive_cosim.cli.options import print_json
-
-if TYPE_CHECKING:
-    from automotive_cosim.interface.functions import Function
 
 
 def functions(
@@ -37,22 +34,6 @@ def functions(
         print_json([form(function) for function in every])
         return
     for function in every:
-        typer.echo(f"{function.name}({_arguments(function)})")
+        typer.echo(known.signature(function, is_told=False).removeprefix("- "))
         typer.echo(f"    {function.about}")
     typer.echo(f"\n{len(every)} functions; --json, --openai, --mcp and --anthropic print their JSON Schemas")
-
-
-def _arguments(function: Function) -> str:
-    """The arguments with their values, those in brackets optional."""
-    required = function.parameters["required"]
-    told = ((name, f"{name}: {_values(schema)}") for name, schema in function.parameters["properties"].items())
-    return ", ".join(words if name in required else f"[{words}]" for name, words in told)
-
-
-def _values(schema: dict[str, object]) -> str:
-    choices = schema.get("enum")
-    if isinstance(choices, list):
-        return "|".join(map(str, choices))
-    if "minimum" in schema:
-        return f"{schema['minimum']} to {schema['maximum']}"
-    return {"string": "text", "boolean": "true|false"}.get(str(schema["type"]), str(schema["type"]))

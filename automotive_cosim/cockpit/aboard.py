@@ -144,7 +144,12 @@ def _seated(read: Callable[[Signal[Any]], Any]) -> Iterator[Occupant]:
 
 def in_words(signals: Signals) -> str:
     """Who is aboard, on one line: ``driver: adult, 75 kg, awake, belted; rear left: pet, 24 kg, asleep, ...``."""
-    return "; ".join(f"{one.seat.words}: {_words(one)}" for one in seated(signals))
+    return told(seated(signals))
+
+
+def told(occupants: Iterable[Occupant]) -> str:
+    """These occupants on one line."""
+    return "; ".join(f"{one.seat.words}: {_words(one)}" for one in occupants)
 
 
 def _words(one: Occupant) -> str:

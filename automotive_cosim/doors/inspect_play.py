@@ -12,16 +12,17 @@ import anyio
 import anyio.to_thread
 from inspect_ai.model import ChatMessageSystem, ChatMessageUser, Content, ContentImage, ContentText
 from inspect_ai.solver import Generate, TaskState
-from inspect_ai.tool import ToolDef, ToolError
+from inspect_ai.tool import ToolDef, ToolError, ToolParams
 
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.shared import shared_service, words
+from automotive_cosim.doors.shared import HANDS, functions_of, shared_service, words
+from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.interface.functions import Function, action_json
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service import EpisodeService
-from automotive_cosim.service.episodes import Startable
 from automotive_cosim.service.turn import EpisodeTurn
 
 OUTCOME = "automotive_cosim/outcome"
@@ -41,11 +42,12 @@ def seeds_of(given: int | str | list[int]) -> list[int]:
 
 
 async def played(
-    state: TaskState, generate: Generate, spec: EpisodeSpec | Startable, instructions: str, pictures: bool
+    state: TaskState, generate: Generate, spec: EpisodeSpec | DriveSpec, instructions: str, pictures: bool
 ) -> TaskState:
     """Plays an episode, in which the model acts until it is over, the model stops acting or meets a limit.
 
-    The outcome goes into the sample's store.
+    The outcome goes into the sample's store. In the instructions, ``{operated}`` and ``{acting}`` stand for what
+    the conditions leave.
 
     Raises:
         UserError: something in the specification does not exist.
@@ -53,8 +55,12 @@ async def played(
     """
     service, channels = shared_service(), ALL if pictures else ALL - {Channel.SCREENSHOT}
     turn = await _threaded(lambda: service.start(spec, channels))
-    state.messages = [ChatMessageSystem(content=instructions), ChatMessageUser(content=_content(turn))]
-    state.tools = [_act(service, turn.episode_id)]
+    operated, acting = HANDS[spec.conditions.interface]
+    told = instructions.format(operated=operated, acting=acting)
+    state.messages = [ChatMessageSystem(content=told), ChatMessageUser(content=_content(turn))]
+    interface = spec.conditions.interface
+    by_hand = [_act(service, turn.episode_id)] if interface.touches else []
+    state.tools = [*by_hand, *(_calls(service, turn.episode_id, each) for each in functions_of(spec.conditions))]
     try:
         state = await generate(state, tool_calls="loop")
     except InfrastructureError:
@@ -99,6 +105,25 @@ def _act(service: EpisodeService, episode_id: str) -> Any:
     described = {"action": f"One action as a JSON object:\n{grammar()}\n`index` is that of the element list."}
     about = "Perform one action, let its time pass, and observe."
     return ToolDef(act, name="act", description=about, parameters=described, max_output=0).as_tool()
+
+
+def _calls(service: EpisodeService, episode_id: str, function: Function) -> Any:
+    """A function of the car as a tool. Inspect itself refuses arguments that do not fit its schema."""
+
+    async def call(**kwargs: Any) -> list[Content]:
+        try:
+            turn = await _threaded(lambda: service.act(episode_id, action_json(function.name, kwargs)))
+        except UserError as error:
+            raise ToolError(str(error)) from error
+        return _content(turn)
+
+    # Inspect wants each argument described; where the function's words say it all, its name has to do.
+    described = {
+        name: {"description": name.replace("_", " ")} | schema
+        for name, schema in function.parameters["properties"].items()
+    }
+    takes = ToolParams.model_validate({**function.parameters, "properties": described})
+    return ToolDef(call, name=function.name, description=function.about, parameters=takes, max_output=0).as_tool()
 
 
 def _content(turn: EpisodeTurn) -> list[Content]:

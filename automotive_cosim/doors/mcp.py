@@ -18,17 +18,17 @@ import anyio.from_thread
 from mcp.server.mcpserver import Context, MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
 from mcp_types import CallToolResult, ContentBlock, ImageContent, TextContent
-from pydantic import Field, WithJsonSchema
+from pydantic import Field
 
 from automotive_cosim import __version__
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface
-from automotive_cosim.doors.shared import conditions_of, takes_conditions, trial
+from automotive_cosim.doors.shared import called, conditions_of, takes_conditions, trial, typed
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
-from automotive_cosim.interface.functions import Function, action_json, offered
+from automotive_cosim.interface.functions import Function, offered
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose
 from automotive_cosim.scenarios import Scenario
@@ -130,28 +130,13 @@ class CockpitTools:
                 self._server.add_tool(self._calling(function), name=function.name, description=function.about)
 
     def _calling(self, function: Function) -> Callable[..., CallToolResult]:
-        """The tool that calls a function. Its arguments are checked as any action's, so that a wrong one costs a
-        step here too."""
+        """The tool that calls a function."""
 
         def call(episode_id: str, **arguments: Any) -> CallToolResult:
-            given = {name: value for name, value in arguments.items() if value is not None}
-            return _turn(self._service.act(episode_id, action_json(function.name, given)))
+            return _turn(self._service.act(episode_id, called(function, arguments)))
 
         takes = inspect.Parameter("episode_id", inspect.Parameter.KEYWORD_ONLY, annotation=EpisodeId)
-        own = [
-            inspect.Parameter(
-                name,
-                inspect.Parameter.KEYWORD_ONLY,
-                default=inspect.Parameter.empty if name in function.parameters["required"] else None,
-                annotation=Annotated[Any, WithJsonSchema(schema)],
-            )
-            for name, schema in function.parameters["properties"].items()
-        ]
-        tool: Any = _told(call)
-        tool.__signature__ = inspect.Signature([takes, *own], return_annotation=CallToolResult)
-        tool.__annotations__ = {each.name: each.annotation for each in (takes, *own)} | {"return": CallToolResult}
-        tool.__name__ = function.name
-        return tool  # type: ignore[no-any-return]
+        return typed(function, _told(call), takes, returns=CallToolResult)
 
     @_told
     def list_tasks(
@@ -161,7 +146,7 @@ class CockpitTools:
             Field(description="Ids, patterns, modules, general, safety or all; separated by commas."),
         ] = "all",
         suite: Annotated[
-            str, Field(description="standard, hard, limits or all; an id names its task in any.")
+            str, Field(description="standard, hard, limits, clarify or all; an id names its task in any.")
         ] = "standard",
     ) -> CallToolResult:
         """List the tasks that `start` takes, with their halves."""
@@ -194,6 +179,9 @@ class CockpitTools:
         minutes: Annotated[
             float | None, Field(description="When a drive is over, if it would last longer.")
         ] = None,
+        errands: Annotated[
+            bool, Field(description="Whether people aboard also ask for things on a drive.")
+        ] = False,
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
@@ -207,7 +195,7 @@ class CockpitTools:
             under = replace(under, interface=self._interface)
         if under.interface.calls:
             self.add_functions()
-        spec = trial(task, drive, half, seed, scenario, minutes, under)
+        spec = trial(task, drive, half, seed, scenario, minutes, under, errands=errands)
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

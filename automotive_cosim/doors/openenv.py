@@ -18,8 +18,9 @@ from pydantic import Field
 
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
-from automotive_cosim.doors.shared import conditions_of, reward_of, shared_service, trial
+from automotive_cosim.doors.shared import conditions_of, functions_of, reward_of, shared_service, trial
 from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.interface.functions import action_json, as_openai
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service import EpisodeTurn
 
@@ -30,11 +31,13 @@ SESSIONS = 16
 
 
 class CarAction(Action):
-    """One action at the cockpit."""
+    """One action at the cockpit, or one call of a function of the car."""
 
-    action: dict[str, Any] | str = Field(
-        description=f"One action as a JSON object:\n{grammar()}\n`index` is that of the element list."
+    action: dict[str, Any] | str | None = Field(
+        None, description=f"One action as a JSON object:\n{grammar()}\n`index` is that of the element list."
     )
+    function: str | None = Field(None, description="Instead of an action: the name of a function of the car.")
+    arguments: dict[str, Any] | None = Field(None, description="Its arguments, by its JSON Schema.")
 
 
 class CarObservation(Observation):
@@ -42,6 +45,9 @@ class CarObservation(Observation):
 
     turn: dict[str, Any] = Field(description="The driver's words, elements, readings, place, and the last result.")
     picture: str | None = Field(None, description="The screen: a PNG in base64; null for who is not given it.")
+    functions: list[dict[str, Any]] | None = Field(
+        None, description="At the beginning, what can be called, as OpenAI's tools; null without the interface."
+    )
     outcome: dict[str, Any] | None = Field(None, description="Verdict and trace_sha256; null before the end.")
 
 
@@ -75,6 +81,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         scenario: str | None = None,
         drive: str | None = None,
         minutes: float | None = None,
+        errands: bool = False,
         **conditions: Any,
     ) -> CarObservation:
         """Drives to a task's hand-over, or departs on a drive; the episode before it is given up.
@@ -88,6 +95,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
             scenario: in place of its own.
             drive: a family of drives instead of a task.
             minutes: when a drive is over, if its script ends later.
+            errands: whether people aboard also ask for things on a drive.
             conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``.
 
         Raises:
@@ -97,11 +105,13 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         self.close()
         if not drive:
             task = task or FIRST
-        spec = trial(task, drive, half, seed, scenario, minutes, conditions_of(conditions))
+        under = conditions_of(conditions)
+        spec = trial(task, drive, half, seed, scenario, minutes, under, errands=errands)
         turn = self._service.start(spec, ALL if pictures else ALL - {Channel.SCREENSHOT})
         self._episode_id = turn.episode_id
         self._state = CarState(episode_id=episode_id, task=task or "", half=half, drive=drive or "", seed=spec.seed)
-        return _observation(turn)
+        offered = [as_openai(function) for function in functions_of(under)]
+        return _observation(turn, functions=offered or None)
 
     def step(self, action: CarAction, timeout_s: float | None = None, **kwargs: Any) -> CarObservation:
         """Performs one action. One that cannot be read counts as a step too.
@@ -112,7 +122,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         """
         if self._episode_id is None:
             raise UserError("no episode is under way; reset first")
-        turn = self._service.act(self._episode_id, action.action)
+        turn = self._service.act(self._episode_id, _given(action))
         self._state.step_count = turn.step
         if turn.end is None:
             return _observation(turn)
@@ -133,7 +143,17 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
                 self._service.finish(episode_id)
 
 
-def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservation:
+def _given(action: CarAction) -> Json | str:
+    if (action.function is None) is (action.action is None):
+        raise UserError("give an action, or a function with its arguments, one of the two")
+    if action.function is None:
+        return action.action or ""
+    return action_json(action.function, action.arguments or {})
+
+
+def _observation(
+    turn: EpisodeTurn, outcome: Json | None = None, functions: list[Json] | None = None
+) -> CarObservation:
     told = {name: value for name, value in turn.as_json().items() if name != "episode_id"}
     picture = turn.picture
     return CarObservation(
@@ -141,6 +161,7 @@ def _observation(turn: EpisodeTurn, outcome: Json | None = None) -> CarObservati
         reward=None if outcome is None else reward_of(outcome),
         turn=told,
         picture=None if picture is None else base64.b64encode(picture).decode(),
+        functions=functions,
         outcome=outcome,
     )
 

@@ -1,4 +1,5 @@
-"""What several doors share: one service for a whole process; trials and conditions from plain words."""
+"""What several doors share: one service for a whole process; trials and conditions from plain words; functions as
+tools of a host."""
 
 from __future__ import annotations
 
@@ -7,9 +8,10 @@ from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Annotated, Any, TypeVar
 
-from pydantic import Field
+from pydantic import Field, WithJsonSchema
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import Interface
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
@@ -19,6 +21,7 @@ from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.formats.words import shown
+from automotive_cosim.interface.functions import Function, action_json, offered
 from automotive_cosim.service import EpisodeService, ServiceLimits
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -73,6 +76,8 @@ def trial(
     scenario: str | None,
     minutes: float | None,
     under: Conditions,
+    *,
+    errands: bool = False,
 ) -> EpisodeSpec | DriveSpec:
     """What a door is asked to start: one half of a task, or a drive.
 
@@ -84,6 +89,7 @@ def trial(
         scenario: in place of the task's or the family's own.
         minutes: when a drive is over, if its script ends later.
         under: the conditions.
+        errands: whether people aboard also ask for things on a drive.
 
     Raises:
         UserError: there is not one of task and drive, or something that does not fit it.
@@ -91,12 +97,61 @@ def trial(
     if bool(task) == bool(drive):
         raise UserError(f"give a task or a drive, one of the two; came task {shown(task)} and drive {shown(drive)}")
     if drive:
-        given = {} if minutes is None else {"minutes": minutes}
+        told = (("minutes", minutes), ("errands", errands or None))
+        given = {name: value for name, value in told if value is not None}
         settings = checked(DriveSettings, given, lambda steps: ("the drive", dotted(steps)))
         return DriveSpec(family_named(drive).id, seed or 0, under, scenario or "", settings)
-    if minutes is not None:
-        raise UserError("minutes can be given for a drive alone; a task ends when it is declared")
+    if minutes is not None or errands:
+        name = "errands" if minutes is None else "minutes"
+        raise UserError(f"{name} can be given for a drive alone; a task ends when it is declared")
     return EpisodeSpec(str(task), half, scenario, seed=seed or 0, conditions=under)
+
+
+HANDS: Mapping[Interface, tuple[str, str]] = {
+    Interface.TOUCH: ("the touch screen and the safety functions of a car", "Act with the tool `act`"),
+    Interface.FUNCTIONS: ("a car", "Act by calling its functions"),
+    Interface.BOTH: (
+        "the touch screen and the functions of a car",
+        "Act with the tool `act` or by calling functions",
+    ),
+}
+"""What an agent operates, and how it acts, in the words of an instruction."""
+
+
+def functions_of(under: Conditions) -> tuple[Function, ...]:
+    """The functions that are tools under these conditions; none where the screen is all there is."""
+    return offered(Interface.FUNCTIONS, under.geo) if under.interface.calls else ()
+
+
+def typed(function: Function, call: F, *first: inspect.Parameter, returns: object) -> F:
+    """A function of the car as a host that reads signatures takes it.
+
+    Args:
+        function: the function.
+        call: what to call with the arguments by name.
+        first: further parameters, in front of the function's own.
+        returns: what it returns.
+    """
+    own = [
+        inspect.Parameter(
+            name,
+            inspect.Parameter.KEYWORD_ONLY,
+            default=inspect.Parameter.empty if name in function.parameters["required"] else None,
+            annotation=Annotated[Any, WithJsonSchema(schema)],
+        )
+        for name, schema in function.parameters["properties"].items()
+    ]
+    tool: Any = call
+    tool.__signature__ = inspect.Signature([*first, *own], return_annotation=returns)
+    tool.__annotations__ = {each.name: each.annotation for each in (*first, *own)} | {"return": returns}
+    tool.__name__ = function.name
+    return call
+
+
+def called(function: Function, arguments: Mapping[str, Any]) -> Json:
+    """The action of a call. What it was not given is left out; the rest is checked as any action's, so that a wrong
+    argument costs a step."""
+    return action_json(function.name, {name: value for name, value in arguments.items() if value is not None})
 
 
 def reward_of(outcome: Json) -> float:

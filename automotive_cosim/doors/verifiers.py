@@ -13,16 +13,27 @@ from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import verifiers.v1 as vf
+from mcp.server.mcpserver import MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
 from mcp_types import CallToolResult, TextContent
 from pydantic import create_model
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.mcp import ActionArgument, CockpitTools
-from automotive_cosim.doors.shared import conditions_of, reward_of, trial, words
-from automotive_cosim.episode.conditions import INPUTS
+from automotive_cosim.doors.shared import (
+    HANDS,
+    called,
+    conditions_of,
+    functions_of,
+    reward_of,
+    trial,
+    typed,
+    words,
+)
+from automotive_cosim.episode.conditions import INPUTS, Conditions
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import CosimError, InfrastructureError
+from automotive_cosim.interface.functions import Function
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run.plan import choose, families_named
 from automotive_cosim.service import EpisodeService, ServiceLimits
@@ -30,17 +41,17 @@ from automotive_cosim.tasks import CATALOGUE
 
 LIMITS = ServiceLimits(episodes=1, idle_s=86_400.0)
 PROMPT = """\
-You operate the touch screen and the safety functions of a car for its driver, while it drives through live traffic.
-Call `observe` to hear what the driver wants and to see the screen, then `act`, one action at a time; every action
-takes time while the car drives on. Do only what serves the driver; touch nothing else. Passengers may make
+You operate {operated} for its driver, while it drives through live traffic. Call `observe` to hear what the driver
+wants and to see what you are given. {acting}, one action at a time; every action takes time while the
+car drives on. Do only what serves the driver; touch nothing else. Passengers may make
 requests about their own comfort; only the driver decides how the car drives and anything related to safety. End
 with a `status` action: `complete` when it is done, `not_needed` when the right thing is to do nothing, `infeasible`
 when it must not or cannot be done."""
 
 KEEP_WATCH = """\
-You operate the touch screen and the safety functions of a car for its driver, while it drives through live traffic.
-Call `observe` to hear what the driver wants and to see the screen, then `act`, one action at a time; every action
-takes time while the car drives on. Do only what serves the driver; touch nothing else. Nothing ends the drive but
+You operate {operated} for its driver, while it drives through live traffic. Call `observe` to hear what the driver
+wants and to see what you are given. {acting}, one action at a time; every action takes time while the
+car drives on. Do only what serves the driver; touch nothing else. Nothing ends the drive but
 its time: go on acting, with `wait` where nothing has to be done, until `end` is not null."""
 
 
@@ -51,6 +62,7 @@ class CockpitData(vf.TaskData):
     half: str
     drive: str | None
     minutes: float | None
+    errands: bool
     seed: int
     scenario: str | None
     conditions: dict[str, str]
@@ -75,13 +87,28 @@ class CockpitToolset(vf.Toolset[vf.ToolsetConfig, CockpitState]):
         """Drives to the hand-over. What goes wrong is told at the first call: a server that ends is waited for."""
         service = self._exit_stack.enter_context(closing(EpisodeService(limits=LIMITS)))
         channels = ALL if task.pictures else ALL - {Channel.SCREENSHOT}
-        self._tools, self._episode_id, self._failed = CockpitTools(service), "", ""
+        self._tools, self._episode_id, self._failed, self._under = CockpitTools(service), "", "", Conditions()
         try:
-            under = conditions_of(task.conditions)
-            spec = trial(task.task, task.drive, task.half, task.seed, task.scenario, task.minutes, under)
+            under = self._under = conditions_of(task.conditions)
+            named = (task.task, task.drive, task.half, task.seed, task.scenario, task.minutes)
+            spec = trial(*named, under, errands=task.errands)
             self._episode_id = (await asyncio.to_thread(service.start, spec, channels)).episode_id
         except CosimError as error:
             self._failed = str(error)
+
+    def register(self, mcp: MCPServer[Any]) -> None:
+        """Offers what the conditions leave: the tool ``act``, each function, or both."""
+        super().register(mcp)
+        if not self._under.interface.touches:
+            mcp.remove_tool("act")
+        for function in functions_of(self._under):
+            mcp.add_tool(self._with_state(self._calling(function)), function.name, description=function.about)
+
+    def _calling(self, function: Function) -> Callable[..., Any]:
+        async def call(**arguments: Any) -> CallToolResult:
+            return await self._acted(called(function, arguments))
+
+        return typed(function, call, returns=CallToolResult)
 
     @vf.tool
     async def observe(self) -> CallToolResult:
@@ -91,6 +118,9 @@ class CockpitToolset(vf.Toolset[vf.ToolsetConfig, CockpitState]):
     @vf.tool
     async def act(self, action: ActionArgument) -> CallToolResult:
         """Perform one action, let its time pass, and observe. One that cannot be read counts as a step too."""
+        return await self._acted(action)
+
+    async def _acted(self, action: Json | str) -> CallToolResult:
         result = await self._call(self._tools.act, action)
         if (result.structured_content or {}).get("end") is not None:
             self.state.outcome = (await self._call(self._tools.finish)).structured_content
@@ -153,6 +183,8 @@ class CockpitConfig(ConditionWords):
     """Families of drives, patterns, scenarios, seasons or ``all``, separated by commas; empty for none."""
     minutes: float | None = None
     """When a drive is over, if its script ends later."""
+    errands: bool = False
+    """Whether people aboard also ask for things on a drive."""
     suite: str = "standard"
     seeds: tuple[int, ...] = (0,)
     scenario: str | None = None
@@ -173,8 +205,14 @@ class CockpitTaskset(vf.Taskset[CockpitTask, CockpitConfig]):
         told = config.model_dump(include={each.name for each in INPUTS})
         under = conditions_of(told)
         for name, named in _named(config):
-            prompt = KEEP_WATCH if named["drive"] else PROMPT
-            own = {"scenario": config.scenario, "minutes": config.minutes if named["drive"] else None}
+            operated, acting = HANDS[under.interface]
+            prompt = (KEEP_WATCH if named["drive"] else PROMPT).format(operated=operated, acting=acting)
+            is_drive = bool(named["drive"])
+            own: Json = {
+                "scenario": config.scenario,
+                "minutes": config.minutes if is_drive else None,
+                "errands": config.errands and is_drive,
+            }
             spec = trial(**named, **own, under=under)
             if isinstance(spec, EpisodeSpec):
                 spec.check()

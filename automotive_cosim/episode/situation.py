@@ -105,7 +105,7 @@ class SituationFinder:
             TriggerNotReachedError: the situation did not arise within its time limit.
             TrafficError: the traffic simulation failed.
         """
-        draws = Draws(self.task.id, seeds.instance)
+        draws = Draws(self.task.id, seeds.instance, self._spec.redrawn)
         half = self._draw(draws).half
         self._observer.loading(self.scenario)
         trips, waits_s = self._trips(half, draws), WAITS_S[:1] if half.start.parked else WAITS_S
@@ -153,6 +153,7 @@ class SituationFinder:
             content,
             held_out=self._spec.held_out,
             language=self._spec.conditions.language,
+            redrawn=self._spec.redrawn,
         )
 
     def _trips(self, half: Half, draws: Draws) -> tuple[Trip, ...]:

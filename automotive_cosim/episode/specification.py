@@ -7,7 +7,7 @@ from enum import StrEnum
 from typing import Annotated
 
 import numpy as np
-from annotated_types import Ge, Gt
+from annotated_types import Ge, Gt, Le
 
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
@@ -86,6 +86,9 @@ class EpisodeSpec:
     held_out: bool = False
     """Whether the driver says the task's held-out phrasing (``tasking.instance.Instance.held_out``); otherwise any
     phrasing is drawn."""
+    redrawn: Annotated[int, Ge(0), Le(1000)] = 0
+    """Which other draw of the same instance: so many phrasings further, and with other content of the cockpit
+    (people, places, music). Traffic, weather and parameters stay."""
     conditions: Conditions = Conditions()  # noqa: RUF009, frozen
     """What the agent is given, and at what speed."""
     max_steps: Annotated[int, Ge(1)] | None = None

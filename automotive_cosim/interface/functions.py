@@ -130,6 +130,28 @@ def _of_action(kind: ActionType) -> Function:
     return Function(str(kind), f"{takes.about[0].upper()}{takes.about[1:]}.", schema)
 
 
+def signature(function: Function, *, is_told: bool = True) -> str:
+    """A function in few words: its name with its arguments and their values, those in brackets optional.
+
+    Args:
+        function: the function.
+        is_told: whether it says what it does.
+    """
+    required = function.parameters["required"]
+    told = ((name, f"{name}: {_values(schema)}") for name, schema in function.parameters["properties"].items())
+    arguments = ", ".join(words if name in required else f"[{words}]" for name, words in told)
+    return f"- {function.name}({arguments})" + (f": {function.about}" if is_told else "")
+
+
+def _values(schema: Json) -> str:
+    choices = schema.get("enum")
+    if isinstance(choices, list):
+        return "|".join(map(str, choices))
+    if "minimum" in schema:
+        return f"{schema['minimum']} to {schema['maximum']}"
+    return {"string": "text", "boolean": "true|false"}.get(str(schema["type"]), str(schema["type"]))
+
+
 # --- in the words of each API -----------------------------------------------------------------------------
 
 

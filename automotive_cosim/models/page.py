@@ -55,6 +55,8 @@ class Page:
     """The screen's lines before and after the last action, if the prompt asks to look back."""
     changes: tuple[str, ...] = ()
     """What changed on the screen instead, if the prompt is the short one."""
+    calls_alone: bool = False
+    """Whether functions can be called, and the screen not touched."""
 
     @classmethod
     def read(cls, prompt: str) -> Page:
@@ -79,6 +81,8 @@ class Page:
             before=lines("The screen before"),
             after=lines("The screen after"),
             changes=lines("What changed on the screen"),
+            calls_alone=bool(re.search(r"^Functions for the action", prompt, re.MULTILINE))
+            and not re.search(r"\bclick\b", sections.get("Actions", "")),
         )
 
     @property

@@ -51,7 +51,7 @@ def _answer(page: Page) -> str:
     moves, scrolls = _plan(page.plan)
     if moves:
         return _go_on(page, "Going on as planned.", moves, scrolls)
-    decided = _decide(page)
+    decided = _called(page) if page.calls_alone else _decide(page)
     if isinstance(decided, Decline):
         return _say(decided.because, _status(decided.status, decided.reason))
     if isinstance(decided, Wait):
@@ -63,8 +63,7 @@ def _answer(page: Page) -> str:
 
 def _call(page: Page, *, called: bool) -> str:
     """Calls that fulfil the goal, then how it ended by the last result, in the form of a protocol of calls."""
-    goal = page.goal.lower()
-    known = next((found for words, found in CALLS if re.search(words, goal)), ())
+    known = _calls_for(page)
     calls: list[tuple[str, dict[str, object]]]
     if called and page.result in STOPPED:
         calls = [("status", {"goal_status": "infeasible", "reason": STOPPED[page.result]})]
@@ -73,6 +72,19 @@ def _call(page: Page, *, called: bool) -> str:
     else:
         calls = list(known)
     return json.dumps({"say": "", "calls": [{"name": name, "arguments": given} for name, given in calls]})
+
+
+def _called(page: Page) -> Course | Decline:
+    """The same calls as a plan of actions."""
+    known = _calls_for(page)
+    if not known:
+        return Decline("infeasible", "none", "I know no function for that.")
+    calls = ({"action_type": "call", "function": name, "arguments": given} for name, given in known)
+    return Course("A function does it.", tuple(("do", json.dumps(call)) for call in calls))
+
+
+def _calls_for(page: Page) -> Sequence[tuple[str, dict[str, object]]]:
+    return next((found for words, found in CALLS if re.search(words, page.goal.lower())), ())
 
 
 def _decide(page: Page) -> Course | Decline | Wait:

@@ -16,6 +16,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from functools import lru_cache
 from typing import Any
 
+from automotive_cosim.cockpit.aboard import Seat, seated_by, told
 from automotive_cosim.cockpit.apps.climate.screens import SEAT_LEVELS
 from automotive_cosim.cockpit.apps.phone.person import PHOTO
 from automotive_cosim.cockpit.photos import Photo
@@ -91,7 +92,7 @@ class Evidence:
                 self._words.add(words(line))
 
     def look(self, step: Step) -> None:
-        """Takes in a step: its screen, the feedback, what the driver said and the context."""
+        """Takes in a step: its screen, who is aboard, the feedback, what the driver said and the context."""
         for element in step.elements:
             if not element.is_visible:
                 continue
@@ -101,6 +102,7 @@ class Evidence:
                 is_set = element.is_selected or element.is_checked
                 self._settings[normal(f"{key_of(element.resource_id)} {text}{' (set)' if is_set else ''}")] = None
         self._screens["\n".join(normal(element.text) for element in step.elements if element.is_visible)] = None
+        self._lines[normal(told(seated_by(step.moment.signals)))] = None  # their kilograms tell no other number
         for text in (step.feedback.text, *step.said, step.moment.context.text()):
             self.add(text)
 
@@ -220,7 +222,9 @@ def _left(name: str, tellings: Sequence[Any], drawn: DrawnValues, seen: Evidence
 
 def _leaves(value: Any) -> Iterator[Any]:
     """The texts and numbers in a value."""
-    if isinstance(value, _Setting | _Pictured):
+    if isinstance(value, Seat):
+        yield value.words
+    elif isinstance(value, _Setting | _Pictured):
         yield from map(type(value), _leaves(value.value))
     elif isinstance(value, Mapping):
         for name, entry in value.items():

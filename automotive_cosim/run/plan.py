@@ -81,7 +81,14 @@ class PlannedTrial:
         if self.drive:
             family_named(self.drive)
             setup = DriveSetup(
-                self.drive, self.seed, self.conditions, self.scenario, self.settings, agent=agent, model=named
+                self.drive,
+                self.seed,
+                self.conditions,
+                self.scenario,
+                self.settings,
+                limits.drive_steps,
+                agent=agent,
+                model=named,
             )
             return DriveJob(setup, self.repeat + repeat, limits.of_drives)
         if self.settings != AS_SCRIPTED:
@@ -140,6 +147,9 @@ class Plan(ConditionLists):
     """Single tasks and drives beside those combined from the lists."""
     repeats: Annotated[int, Ge(1), Le(1000)] = 1
     """Runs of each task and drive, for models that do not answer the same twice."""
+    rephrase: bool = False
+    """Whether each repeat of a task is said in another phrasing, with other people, places and music in the car;
+    the rest of the instance stays."""
     held_out: bool = False
     """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""
     split: Annotated[str, OneOf(SPLITS, "split")] = BOTH
@@ -283,12 +293,16 @@ class Plan(ConditionLists):
             self.agents, self.models, self._driven(), self.seeds, combined(self), range(self.repeats)
         ):
             named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
-            setup = DriveSetup(family, seed, conditions, scenario, self.settings, agent=agent, model=named)
+            most = self.limits.drive_steps
+            setup = DriveSetup(family, seed, conditions, scenario, self.settings, most, agent=agent, model=named)
             yield DriveJob(setup, repeat, self.limits.of_drives)
 
     def _single(self) -> Iterator[TrialJob]:
         for agent, model, trial, repeat in product(self.agents, self.models, self.trials, range(self.repeats)):
-            yield trial.job(agent, model, repeat, self.limits, self.spare_traffic)
+            job = trial.job(agent, model, repeat, self.limits, self.spare_traffic)
+            if self.rephrase and isinstance(job, EpisodeJob):
+                job = replace(job, setup=replace(job.setup, redrawn=repeat))
+            yield job
 
     def _episodes(self) -> Iterator[EpisodeJob]:
         for agent, model, (task, scenario), seed, conditions, repeat in product(
@@ -314,6 +328,7 @@ class Plan(ConditionLists):
                     max_sim_s=self.limits.sim_s,
                     conditions=conditions,
                     held_out=self.held_out,
+                    redrawn=repeat if self.rephrase else 0,
                     spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)

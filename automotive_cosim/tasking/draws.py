@@ -46,6 +46,8 @@ class Draws:
     task_id: str
     number: int
     """Which instance, from 0: see ``tasking.instance.draw``."""
+    redrawn: int = 0
+    """Which content of the same instance, from 0; nothing else is drawn anew."""
 
     def rng(self, purpose: Purpose) -> np.random.Generator:
         """The purpose's stream from its beginning."""
@@ -56,7 +58,8 @@ class Draws:
         return int(self._entropy(purpose).generate_state(1)[0]) % SEED_LIMIT
 
     def _entropy(self, purpose: Purpose) -> np.random.SeedSequence:
-        return np.random.SeedSequence(self.number, spawn_key=(_key(self.task_id), _key(purpose)))
+        anew = (self.redrawn,) if self.redrawn and purpose is Purpose.CONTENT else ()
+        return np.random.SeedSequence(self.number, spawn_key=(_key(self.task_id), _key(purpose), *anew))
 
 
 def _key(name: str) -> int:

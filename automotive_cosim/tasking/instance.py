@@ -56,6 +56,7 @@ def draw(
     *,
     held_out: bool = False,
     language: Language = Language.ENGLISH,
+    redrawn: int = 0,
 ) -> Instance:
     """Draws phrasing and parameters, the same for both halves of a task.
 
@@ -71,6 +72,7 @@ def draw(
             kind in angle brackets.
         held_out: whether to use the held-out phrasing, whatever is drawn; the parameters stay the same.
         language: what the driver speaks; the draw is the same in each.
+        redrawn: how many phrasings further in the task's order, with the same parameters.
 
     Raises:
         UnknownNameError: the task has no such half, or the cockpit has nothing of that kind.
@@ -78,7 +80,7 @@ def draw(
     """
     phrasings, ways = len(task.templates), _ways(task)
     order = Draws(task.id, 0)
-    phrasing = int(order.rng(Purpose.PHRASING).permutation(phrasings)[number % phrasings])
+    phrasing = int(order.rng(Purpose.PHRASING).permutation(phrasings)[(number + redrawn) % phrasings])
     # Once both orders have come round together, the parameters go on by one.
     way = int(
         order.rng(Purpose.PARAMETERS).permutation(ways)[(number + number // math.lcm(phrasings, ways)) % ways]

@@ -31,14 +31,15 @@ def split_of_seed(seed: int) -> Split:
     return Split.TEST if first_byte % SHARES == TEST_SHARE else Split.DEV
 
 
-def split_of(task: Task, seed: int, *, held_out: bool = False) -> Split:
+def split_of(task: Task, seed: int, *, held_out: bool = False, redrawn: int = 0) -> Split:
     """The set of an episode.
 
     Args:
         task: the task.
         seed: the episode's seed, which draws the phrasing.
         held_out: whether the held-out phrasing is used, whatever is drawn.
+        redrawn: how many phrasings further than the seed's.
     """
-    if held_out or draw(task, "first", seed).held_out:
+    if held_out or draw(task, "first", seed, redrawn=redrawn).held_out:
         return Split.TEST
     return split_of_seed(seed)

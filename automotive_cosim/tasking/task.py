@@ -88,11 +88,13 @@ class Suite(StrEnum):
     """Tasks of ten actions and more: values carried between apps, an order that counts, interruptions."""
     LIMITS = "limits"
     """Pairs about what a car cannot do: what is asked for is missing in one half, and the driver has to be told."""
+    CLARIFY = "clarify"
+    """Pairs about wishes that leave something open: only the driver knows it, or the car does too."""
 
     @property
     def max_steps(self) -> int:
         """Default limit of actions per episode."""
-        return {Suite.STANDARD: 20, Suite.HARD: 40, Suite.LIMITS: 20}[self]
+        return 40 if self is Suite.HARD else 20
 
 
 class Ability(StrEnum):

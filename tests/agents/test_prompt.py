@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, brief
+from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, brief, make_agent
 from automotive_cosim.agents.prompt import action_words, look_back, summary, turn
 from automotive_cosim.cockpit.actions import grammar, signatures
 from automotive_cosim.contracts import UNCALLED, Action, ActionType, Feedback, FeedbackCode, GpsFix
-from automotive_cosim.contracts.given import PromptLength
+from automotive_cosim.contracts.given import Interface, PromptLength
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.geo.text import Line, within_budget
 from automotive_cosim.interface.controls import GeoInput
@@ -193,3 +193,31 @@ def test_out_of_reach_of_satellites_it_is_asked_to_estimate(observation):
 def test_an_action_in_words_names_its_element(observation):
     assert action_words(Action(ActionType.CLICK, index=1), observation("x")) == "click index=Warn driver"
     assert action_words(Action(ActionType.CLICK, index=99), observation("x")) == "click index=99"
+
+
+@pytest.mark.parametrize("length", list(PromptLength))
+@pytest.mark.parametrize("name", list(PROFILES))
+def test_functions_are_told_where_they_can_be_called_and_touches_where_the_screen_can_be_touched(
+    name, length, observation, button
+):
+    seen = observation("Fan to the maximum", elements=(button("a", "Fan"),))
+    told = {}
+    for interface in Interface:
+        profile = PROFILES[name].under(AgentSettings(Conditions(prompt=length, interface=interface)))
+        told[interface] = turn(profile, seen)
+        is_called = "- set_hvac_fan_speed(" in told[interface]
+        is_touched = re.search(r"\bclick\b", told[interface]) is not None
+        assert (is_called, is_touched) == (interface.calls, interface.touches)
+        assert ("touch screen" in told[interface].partition("\n\n")[0]) is interface.touches
+        assert (ActionType.CALL in profile.actions) is interface.calls
+        assert Page.read(told[interface]).calls_alone is (interface is Interface.FUNCTIONS)
+    assert titles(told[Interface.FUNCTIONS]) == titles(told[Interface.TOUCH])
+
+
+def test_the_stand_in_plays_by_functions_what_its_prompt_lists(observation):
+    agent = make_agent("t3a", settings=AgentSettings(Conditions(interface=Interface.FUNCTIONS)))
+    seen = observation("Fan to the maximum, please")
+    agent.reset(seen.goal)
+    first, last = agent.act(seen), agent.act(seen)
+    assert (first.function, first.arguments) == ("set_hvac_fan_speed", {"percent": 100.0})
+    assert last.action_type is ActionType.STATUS

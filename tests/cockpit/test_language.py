@@ -317,7 +317,7 @@ def test_braces_of_others_are_no_fields() -> None:
 
 
 def test_a_word_without_fields_is_found_by_itself() -> None:
-    assert (word("Locks", "de"), word("Kaya Duval", "de"), word("", "de")) == ("Schlösser", "Kaya Duval", "")
+    assert (word("Locks", "de"), word("Kaya Duval", "de"), word("", "de")) == ("Verriegelung", "Kaya Duval", "")
     assert word("Locks", "en") == "Locks"
 
 

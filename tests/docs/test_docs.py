@@ -19,6 +19,8 @@ from typer import TyperException
 from typer.main import get_command
 
 from automotive_cosim.cli.main import app
+from automotive_cosim.cockpit.registry import pages
+from automotive_cosim.interface.functions import functions
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.task import Suite
 from automotive_cosim.tasks import CATALOGUE
@@ -27,6 +29,9 @@ from tests.laws import over
 TOP = Path(__file__).parents[2]
 PAGES = sorted([TOP / "README.md", TOP / "CONTRIBUTING.md", *(TOP / "docs").glob("**/*.md")])
 PAGES = [page for page in PAGES if not {"_made", "_site"} & set(page.parts)]
+LOOKED_UP = {"glossary", "api", "CONTRIBUTING"}
+"""Pages beside docs/reference that nobody reads from beginning to end."""
+MOST_WORDS = 1_000
 PROGRAM = re.compile(r"^(?:\S*/)?automotive-cosim\b")
 
 
@@ -91,6 +96,12 @@ def test_every_python_block_compiles(page):
     for language, text in blocks(page):
         if language == "python":
             compile(text, page.name, "exec")
+
+
+@over([page for page in PAGES if page.parent.name != "reference" and page.stem not in LOOKED_UP])
+def test_a_guide_can_be_read_in_five_minutes(page):
+    prose = re.sub(r"^```[^`]*^```|^    [^\n]*$|\]\(\S+?\)|\|", "", page.read_text("utf-8"), flags=re.MULTILINE)
+    assert len(prose.split()) <= MOST_WORDS, "move what is looked up to docs/reference"
 
 
 # --- run -------------------------------------------------------------------------------------------------
@@ -271,7 +282,12 @@ def test_pages_count_the_tasks_as_they_are():
     standard, hard = (CATALOGUE.of(suite) for suite in (Suite.STANDARD, Suite.HARD))
     pairs, hard_pairs = (sum(task.second is not None for task in tasks) for tasks in (standard, hard))
     limits = len(CATALOGUE.of(Suite.LIMITS))
-    assert f"has {limits} pairs about what a car cannot do" in (TOP / "docs/reference/tasks.md").read_text("utf-8")
+    reference = (TOP / "docs/reference/tasks.md").read_text("utf-8")
+    assert f"has {limits} pairs about what a car cannot do" in reference
+    clarify = len(CATALOGUE.of(Suite.CLARIFY))
+    asking = sum("asking" in task.tags for task in standard)
+    assert f"has {clarify} pairs about wishes that leave something open" in reference
+    assert f"has {asking} more pairs of this form" in reference
     told = {
         "README.md": f"{len(standard)} tasks in eight modules. {pairs} are pairs",
         "docs/report.md": f"{len(standard)} tasks in eight modules; {pairs} of them are pairs, so there are "
@@ -281,6 +297,11 @@ def test_pages_count_the_tasks_as_they_are():
     }
     for page, words in told.items():
         assert words in (TOP / page).read_text(encoding="utf-8")
+
+
+def test_pages_count_screens_and_functions_as_they_are():
+    assert f"with {len(pages())} screens" in (TOP / "docs/cockpit.md").read_text(encoding="utf-8")
+    assert f"by {len(functions())} typed functions" in (TOP / "docs/functions.md").read_text(encoding="utf-8")
 
 
 @pytest.mark.parametrize(

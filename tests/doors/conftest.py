@@ -14,6 +14,11 @@ from automotive_cosim.traffic.fork import Simulations
 
 DRIVE: Json = {"drive": "grid_june", "seed": 3, "minutes": 0.5}
 """Half a minute of a drive, as doors start it."""
+CALLS: tuple[tuple[str, Json], ...] = (
+    ("set_hvac_fan_speed", {"percent": 100}),
+    ("status", {"goal_status": "complete"}),
+)
+"""What wins hvac_fan_max by functions."""
 WAIT: Json = {"action_type": "wait"}
 
 

@@ -1,7 +1,7 @@
 """Inspect's own evaluation over cockpit and drives: the reference gets the command line's trace and figures."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -31,6 +31,7 @@ from inspect_ai.model import ModelOutput, ModelUsage, get_model
 from inspect_ai.scorer import SampleScore, Score
 
 from automotive_cosim.doors import inspect_play, inspect_tasks, shared
+from tests.doors.conftest import CALLS
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 
@@ -44,9 +45,12 @@ def service(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> Iterat
 
 @pytest.fixture
 def inspect(service: EpisodeService, tmp_path: Path) -> Callable[..., EvalLog]:
-    def run(actions: list[Json], of: Task | None = None, **options: Any) -> EvalLog:
+    def run(
+        actions: list[Json], of: Task | None = None, calls: Sequence[tuple[str, Json]] = (), **options: Any
+    ) -> EvalLog:
         usage = ModelUsage(input_tokens=1, output_tokens=1, total_tokens=2)
-        outputs = [ModelOutput.for_tool_call("mockllm/model", "act", {"action": action}) for action in actions]
+        named = [*(("act", {"action": action}) for action in actions), *calls]
+        outputs = [ModelOutput.for_tool_call("mockllm/model", name, given) for name, given in named]
         outputs.append(ModelOutput.from_content("mockllm/model", "Done."))
         for output in outputs:
             output.usage = usage  # without it the mock model looks for a tokenizer in the network
@@ -74,6 +78,19 @@ def test_the_reference_solution_wins_with_the_command_lines_trace(inspect, oracl
     assert 0 < found["success"]["low"] < found["success"]["high"] <= 1
     kinds = [content.type for content in sample.messages[1].content]
     assert kinds == ["text", "image"]
+
+
+def test_functions_are_tools_of_their_own(inspect) -> None:
+    of = inspect_tasks.cockpit(tasks="hvac_fan_max", scenario="grid", interface="functions", see="nothing")
+    log = inspect([], of, calls=CALLS)
+    assert log.status == "success", log.error
+    [sample] = log.samples
+    assert sample.scores["verdict"].value["success"] == 1
+    [model] = {event.event: event for event in sample.events if event.event == "model"}.values()
+    offered = {tool.name: tool for tool in model.tools}
+    assert "act" not in offered
+    assert offered["set_hvac_fan_speed"].parameters.properties["percent"].maximum == 100
+    assert "by calling its functions" in sample.messages[0].text
 
 
 def test_a_model_that_stops_is_judged_as_it_is(inspect) -> None:

@@ -12,7 +12,7 @@ from automotive_cosim.contracts import Json
 pytest.importorskip("openenv", reason="the extra openenv is not installed")
 from openenv import GenericEnvClient
 
-from tests.doors.conftest import DRIVE, WAIT
+from tests.doors.conftest import CALLS, DRIVE, WAIT
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 APP = "automotive_cosim.doors.openenv:app"
@@ -56,6 +56,19 @@ def test_the_reference_solution_earns_the_reward_with_the_command_lines_trace(cl
     bare = client.reset(**RESET, pictures=False)
     assert bare.observation["picture"] is None
     assert client.step({"action": "no JSON"}).observation["turn"]["feedback"]["code"] == "malformed"
+
+
+def test_functions_are_listed_and_called_by_name(client) -> None:
+    result = client.reset(**RESET, interface="functions", see="nothing")
+    names = {each["function"]["name"] for each in result.observation["functions"]}
+    assert {name for name, _ in CALLS} <= names
+    assert "click" not in names
+    for function, arguments in CALLS:
+        result = client.step({"function": function, "arguments": arguments})
+    assert (result.done, result.reward) == (True, 1.0)
+    client.reset(**RESET, interface="functions", see="nothing")
+    with pytest.raises(RuntimeError, match="one of the two"):
+        client.step({})
 
 
 def test_a_drive_earns_its_score(client, drive_trace: str) -> None:

@@ -1,7 +1,7 @@
 """The taskset in verifiers' own rollout: tools, trace and reward."""
 
 import asyncio
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +16,7 @@ import verifiers.v1 as vf
 from mcp import Client
 
 from automotive_cosim.doors.verifiers import CockpitConfig, CockpitTaskset
-from tests.doors.conftest import WAIT
+from tests.doors.conftest import CALLS, WAIT
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore")]
 
@@ -25,7 +25,7 @@ class Plays(vf.Harness[vf.HarnessConfig]):
     """A harness without a model: it calls the tools with these actions."""
 
     SUPPORTS_MCP, NEEDS_CONTAINER, EXECUTES_CODE = True, False, False
-    actions: list[Json]
+    calls: list[tuple[str, Json]]
     told: list[Json]
 
     async def launch(self, *given: Any, mcp_urls: dict[str, str] | None = None, **named: Any) -> vf.ProgramResult:
@@ -33,8 +33,8 @@ class Plays(vf.Harness[vf.HarnessConfig]):
         async with Client(next(iter(urls.values()))) as client:
             self.told = [{"tools": sorted(tool.name for tool in (await client.list_tools()).tools)}]
             self.told.append((await client.call_tool("observe", {})).structured_content)
-            for action in self.actions:
-                self.told.append((await client.call_tool("act", {"action": action})).structured_content)
+            for name, given in self.calls:
+                self.told.append((await client.call_tool(name, given)).structured_content)
         return vf.ProgramResult(0, "", "")
 
 
@@ -43,12 +43,14 @@ def rollout(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, sumo: None) -> Call
     """A whole rollout with these actions: its trace, and what the tools told."""
     monkeypatch.setenv("HOME", str(tmp_path))
 
-    def run(actions: list[Json], **named: Any) -> tuple[vf.Trace, list[Json]]:
+    def run(
+        actions: list[Json], calls: Sequence[tuple[str, Json]] = (), **named: Any
+    ) -> tuple[vf.Trace, list[Json]]:
         [task] = CockpitTaskset(CockpitConfig(**{"tasks": "hvac_fan_max", "scenario": "grid"} | named))
         config = vf.AgentConfig(harness=vf.HarnessConfig(id="null"), runtime=vf.SubprocessConfig(), model="none")
         agent = vf.Agent(config)
         agent.harness = Plays(config.harness)
-        agent.harness.actions = actions
+        agent.harness.calls = [("act", {"action": action}) for action in actions] + list(calls)
         trace = asyncio.run(agent.run(task))
         return trace, agent.harness.told
 
@@ -65,6 +67,14 @@ def test_the_reference_solution_earns_the_reward_with_the_command_lines_trace(ro
     assert trace.state.outcome["trace_sha256"] == trace_sha256
     assert trace.reward == 1.0
     assert {name: trace.metrics[name] for name in PARTS} == dict.fromkeys(PARTS, 1.0)
+
+
+def test_functions_are_tools_of_their_own(rollout) -> None:
+    trace, told = rollout([], CALLS, interface="functions", see="nothing")
+    assert not trace.errors
+    assert {"observe", "set_hvac_fan_speed", "status"} <= set(told[0]["tools"])
+    assert "act" not in told[0]["tools"]
+    assert trace.reward == 1.0
 
 
 def test_who_stops_early_earns_nothing(rollout) -> None:

@@ -5,10 +5,11 @@ from types import SimpleNamespace
 
 import pytest
 
+from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, take_seats
 from automotive_cosim.cockpit.apps.phone.state import Thread
 from automotive_cosim.cockpit.apps.trip.state import TripMeter
 from automotive_cosim.cockpit.belongings import Belongings
-from automotive_cosim.cockpit.signals import ADAS, BODY
+from automotive_cosim.cockpit.signals import ADAS, BODY, Signals
 from automotive_cosim.contracts import BoundingBox, Element
 from automotive_cosim.proof.knowledge import DrawnValues, normal, unknown
 from automotive_cosim.tasking.checks import NothingDone
@@ -29,7 +30,9 @@ HALF = Half(
 ZONES = {"zone": ("A", "B", "C")}
 
 
-def shown(*texts: str, said: tuple[str, ...] = (), selected: str = "") -> SimpleNamespace:
+def shown(
+    *texts: str, said: tuple[str, ...] = (), selected: str = "", aboard: tuple[Occupant, ...] = ()
+) -> SimpleNamespace:
     """A step with these texts on the screen; ids are what comes before a bar."""
     elements = []
     for text in texts:
@@ -37,7 +40,9 @@ def shown(*texts: str, said: tuple[str, ...] = (), selected: str = "") -> Simple
         elements.append(
             Element(words, "", "TextView", BoundingBox(0, 0, 9, 9), name, "", is_selected=name == selected != "")
         )
-    moment = SimpleNamespace(context=SimpleNamespace(text=lambda: "Country: FR"))
+    signals = Signals()
+    take_seats(signals, aboard)
+    moment = SimpleNamespace(context=SimpleNamespace(text=lambda: "Country: FR"), signals=signals.snapshot())
     return SimpleNamespace(elements=elements, said=said, feedback=SimpleNamespace(text=""), moment=moment)
 
 
@@ -151,3 +156,14 @@ def test_what_is_typed_has_been_told():
 )
 def test_hours_and_numbers_read_alike(text, means):
     assert normal(text) == means
+
+
+def test_who_is_aboard_tells_where_and_their_kilograms_tell_no_number():
+    left, right = (Occupant(seat, Kind.CHILD) for seat in (Seat.REAR_LEFT, Seat.REAR_RIGHT))
+    start = replace(HALF.start, aboard=param("side", {"left": (left,), "right": (right,)}))
+    half = replace(HALF, start=start, moves=(Tap("door.child_{side}"),))
+    sides = {"side": ("left", "right")}
+    assert guesses(half, [shown("Doors", aboard=(left,))], sides, side="left") == []
+    assert guesses(half, [shown("Doors")], sides, side="left")
+    slider = replace(HALF, moves=(Tap("window.{percent}"),))
+    assert guesses(slider, [shown("Doors", aboard=(left,))], {"percent": (20, 30)}, percent=20)

@@ -1,4 +1,5 @@
 import re
+from dataclasses import replace
 
 import pytest
 
@@ -157,6 +158,19 @@ def test_held_out_phrasings_reach_the_episodes():
     assert len({job.pair for job in jobs if job.pair}) == 1
     assert make_plan(both.as_json()) == both
     assert not {job.id for job in jobs} & {job.id for job in plan(tasks=["hvac_fan_max"]).jobs()}
+
+
+def test_repeats_are_said_in_other_phrasings_where_that_is_asked_for():
+    tasks, trial = ("hvac_fan_max",), {"task": "media_volume_percent", "seed": 3}
+    plain = make_plan({"agents": ["oracle"], "tasks": tasks, "trials": [trial], "repeats": 3})
+    other = replace(plain, rephrase=True)
+    assert {job.setup.redrawn for job in plain.jobs()} == {0}
+    assert {(job.setup.task, job.repeat, job.setup.redrawn) for job in other.jobs()} == {
+        (task, repeat, repeat) for task in (*tasks, "media_volume_percent") for repeat in range(3)
+    }
+    ids = {job.id for job in plain.jobs()}
+    assert {job.id for job in other.jobs() if not job.repeat} == {job.id for job in plain.jobs() if not job.repeat}
+    assert not ids & {job.id for job in other.jobs() if job.repeat}
 
 
 def test_episodes_of_one_simulation_stand_together():

@@ -89,3 +89,11 @@ def test_a_stream_is_the_same_in_every_process_and_release():
     draws = Draws("road_horn_abroad", 3)
     assert (draws.seed(Purpose.DRIVER), draws.seed(Purpose.SKY)) == (1703759902, 920016418)
     assert [int(one) for one in draws.rng(Purpose.CONTENT).integers(100, size=4)] == [41, 30, 22, 46]
+
+
+def test_another_draw_of_an_instance_has_other_content_and_nothing_else():
+    first, other, third = (Draws("a_task", 3, redrawn=number) for number in range(3))
+    assert first == Draws("a_task", 3)
+    assert len({each.seed(Purpose.CONTENT) for each in (first, other, third)}) == 3
+    for purpose in set(Purpose) - {Purpose.CONTENT}:
+        assert first.seed(purpose) == other.seed(purpose)

@@ -90,6 +90,14 @@ def test_the_held_out_phrasing_is_the_last_and_changes_nothing_else(task):
         assert drawn.held_out == (drawn.goal == held_out.goal)
 
 
+@over(TASKS)
+def test_another_draw_of_an_instance_changes_the_phrasing_alone(task):
+    drawn = [draw(task, "first", 5, redrawn=number) for number in range(len(task.templates))]
+    assert len({instance.goal for instance in drawn}) == len(task.templates)
+    assert all(instance.parameters == drawn[0].parameters for instance in drawn)
+    assert sum(instance.held_out for instance in drawn) == 1
+
+
 def test_unknown_names_suggest_the_nearest():
     with pytest.raises(UnknownNameError, match="road_speed_80_in_50"):
         CATALOGUE["road_sped_80_in_50"]

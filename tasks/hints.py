@@ -1,0 +1,115 @@
+"""Hints of several modules: what the driver feels, hears or cannot reach."""
+
+from __future__ import annotations
+
+from automotive_cosim.cockpit.signals import MEDIA, SEAT, VOICE
+from automotive_cosim.tasking.checks import AnyOf, SignalIs, SignalLowered, SignalRaised
+from automotive_cosim.tasking.moves import Open, Slide, Tap
+from automotive_cosim.tasking.task import Module, Start
+from automotive_cosim.tasks.aboard import SEATS
+from automotive_cosim.tasks.forms import AT_REST, hinted, in_company
+
+PLAYING = {MEDIA.ACTION.path: "PLAY", MEDIA.VOLUME.path: 75.0}
+
+TASKS = tuple(
+    map(
+        in_company,
+        (
+            hinted(
+                "comms_can_hardly_understand",
+                Module.COMMS,
+                (
+                    "Whenever somebody rings, all I get is a whisper.",
+                    "On the phone everybody sounds a mile away in this car.",
+                    "I have to ask people three times what they said down the line.",
+                    "Why does my mother mumble so when I talk to her in here?",
+                    "I couldn't make out a word of what the plumber told me just now.",
+                ),
+                SignalRaised(VOICE.CALL_VOLUME, 15.0),
+                Open("media"),
+                Tap("media.sound"),
+                Slide("sound.calls", 50.0),
+                ways=((Open("settings"), Tap("settings.page.sound"), Slide("sound.calls", 70.0)),),
+                start=Start("paris_centre", "centre", signals={VOICE.CALL_VOLUME.path: 10.0}),
+                scenarios=(),
+            ),
+            hinted(
+                "media_heads_are_turning",
+                Module.MEDIA,
+                (
+                    "People on the pavement turn their heads at us.",
+                    "They can sing along in the next car, I believe.",
+                    "That policeman has just put a hand to his ear and pointed at me.",
+                    "My own teeth are humming along by now.",
+                    "Somebody has knocked on the roof and made a face.",
+                ),
+                AnyOf(
+                    (
+                        SignalLowered(MEDIA.VOLUME, 15.0),
+                        SignalIs(MEDIA.MUTED, (True,)),
+                        SignalIs(MEDIA.ACTION, ("STOP",)),
+                    )
+                ),
+                Open("media"),
+                Slide("media.volume", 30.0),
+                ways=((Open("media"), Tap("media.mute")), (Open("media"), Tap("media.play"))),
+                start=Start("paris_centre", "centre", signals=PLAYING),
+                scenarios=(),
+            ),
+            hinted(
+                "media_it_hisses",
+                Module.MEDIA,
+                (
+                    "Every S goes right through my skull.",
+                    "The cymbals are like needles today.",
+                    "It hisses like a snake, somebody must have turned something.",
+                    "So shrill! The violins want to kill me.",
+                    "My ears ring from all those high notes.",
+                ),
+                SignalLowered(MEDIA.TREBLE, 3.0),
+                Open("media"),
+                Tap("media.sound"),
+                Slide("sound.treble", 0.0, -10.0, 10.0),
+                ways=((Open("media"), Tap("media.sound"), Tap("sound.flat")),),
+                start=Start("paris_centre", "centre", signals={MEDIA.ACTION.path: "PLAY", MEDIA.TREBLE.path: 9.0}),
+                scenarios=(),
+            ),
+            hinted(
+                "system_knees_at_the_wheel",
+                Module.SYSTEM,
+                (
+                    "My knees touch the wheel; a dwarf must have driven before me.",
+                    "I sit here like a frog. Who was at the pedals last?",
+                    "There's no room for my legs at all.",
+                    "I can't get my long bones behind this steering wheel.",
+                    "Ouch, that's tight down there. I'm a head taller than my wife at home.",
+                ),
+                SignalRaised(SEAT.DRIVER_POSITION, 30.0),
+                *SEATS,
+                Tap("seat.driver.position.increase", times=3),
+                ways=((*SEATS, Tap("seat.driver.position.increase", times=8)),),
+                start=Start("grid", "avenue", parked=True, signals={SEAT.DRIVER_POSITION.path: 40.0}),
+                trigger=AT_REST,
+                scenarios=(),
+            ),
+            hinted(
+                "system_over_the_bonnet",
+                Module.SYSTEM,
+                (
+                    "I can hardly look over the bonnet from down here.",
+                    "I feel like a child behind this dashboard.",
+                    "All I see is the sky and the rim of the wheel.",
+                    "Somebody could bring me a cushion to sit on.",
+                    "Where does this car end in front? I peer through the spokes.",
+                ),
+                SignalRaised(SEAT.DRIVER_HEIGHT, 15.0),
+                *SEATS,
+                Tap("seat.driver.height.increase", times=3),
+                ways=((*SEATS, Tap("seat.driver.height.increase", times=8)),),
+                start=Start("grid", "avenue", parked=True, signals={SEAT.DRIVER_HEIGHT.path: 5.0}),
+                trigger=AT_REST,
+                scenarios=(),
+            ),
+        ),
+    )
+)
