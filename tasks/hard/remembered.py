@@ -48,7 +48,7 @@ def _trips(start: Start, *notes: Any, at: str = THURSDAY, **papers: Any) -> Star
 
 
 def _recalled(start: Start, goal: tuple[Check, ...], moves: Moves, *slips: Moves, **more: Any) -> Half:
-    settings = {"deadline": AS_A_PASSENGER, "may_write": frozenset[str]()} | more
+    settings: dict[str, Any] = {"deadline": AS_A_PASSENGER, "may_write": frozenset[str]()} | more
     return done(start, AllOf(goal), moves, slips=slips, **settings)
 
 
@@ -511,14 +511,14 @@ NIGHT_LIGHT = hard(
 
 PRIVACY = (Open("settings"), Tap("settings.page.privacy"))
 GO_HOME = (*NOTES, Open("map"), Tap(text="Home"), SETS_OUT, *PRIVACY, Tap("privacy.position"))
-TELL_ALL = (*GO_HOME, Tap("privacy.driving"))
+TELL_ALL = (*GO_HOME, Tap("settings.page.connections"), Tap("link.hotspot"))
 
 
-def _shares(note: str, driving: bool, moves: Moves, wrong: Moves) -> Half:
+def _shares(note: str, hotspot: bool, moves: Moves, wrong: Moves) -> Half:
     start = _trips(
         Start("london", "bloomsbury"),
         note,
-        "Tue 17 Nov: And the driving data as well, as the insurer wants it",
+        "Tue 17 Nov: And the hotspot on the way home as well, for the children",
         "Mon 16 Nov: On the way home always share my position with the family",
         contacts=knowing(ISLA),
     )
@@ -527,7 +527,7 @@ def _shares(note: str, driving: bool, moves: Moves, wrong: Moves) -> Half:
         (
             AppDataIs("navigation.destination", ("Home",)),
             SignalIs(LINK.SHARE_POSITION, (True,)),
-            SignalIs(LINK.SHARE_DRIVING, (driving,)),
+            SignalIs(LINK.HOTSPOT, (hotspot,)),
             told(ISLA, "{words}"),
         ),
         (*moves, *answer(ISLA, "{words}")),
@@ -539,20 +539,21 @@ SHARED_HOME = hard(
     "hard_home_and_shared",
     Module.SYSTEM,
     (
-        "Home now, and share what I want shared on the way home; I told you on our trips. '{words}' to Isla.",
-        "Guide me home. What goes out about me meanwhile is in your notes of the week, no more than that. Isla gets"
+        "Home now, with what I want switched on for the way home; I told you on our trips. '{words}' to Isla.",
+        "Guide me home. What's to be on meanwhile is in your notes of the week, no more than that. Isla gets"
         " '{words}'.",
-        "Off home! Set the privacy switches as I said since Monday for that way, and text Isla '{words}'.",
-        "Start the way home, let out of the car just what my memos of these days allow on it, and write Isla"
-        " '{words}'.",
+        "Off home! Set the switches as I've said since Monday for that way, and text Isla '{words}'.",
+        "Start the way home, switch on just what my memos of these days want for it, and write Isla '{words}'.",
     ),
-    _shares("Wed 18 Nov: I've left that insurer, they get nothing more from me", False, GO_HOME, TELL_ALL),
-    _shares("Wed 18 Nov: The insurer gives me twelve percent off for it", True, TELL_ALL, GO_HOME),
-    "content: he has left the insurer, or is content with him",
+    _shares(
+        "Wed 18 Nov: The children have their own network now, they need none of ours", False, GO_HOME, TELL_ALL
+    ),
+    _shares("Wed 18 Nov: The children are mad about our network in the car", True, TELL_ALL, GO_HOME),
+    "content: the children have a network of their own, or love the car's",
     parameters={"words": ("On my way", "Yes", "Where are you?")},
     tags=frozenset({"preference", "two_modules"}),
     ability=Ability.MEMORY,
-    guess_loses="The second switch follows from a note that is about the insurer, and not about sharing.",
+    guess_loses="The second switch follows from a note that is about the children, and does not name it.",
 )
 
 LOUDNESS = {15: 40, 20: 45, 25: 50, 35: 60}

@@ -54,7 +54,7 @@ TYRES = (Open("vehicle"), Tap("vehicle.tab.driving"))
 
 
 def _half(start: Start, goal: tuple[Check, ...], moves: Moves, *slips: Moves, **more: Any) -> Half:
-    settings = {"deadline": A_RED_LIGHT, "may_write": READ} | more
+    settings: dict[str, Any] = {"deadline": A_RED_LIGHT, "may_write": READ} | more
     tells = settings.pop("tells", ())
     return replace(done(start, AllOf(goal), moves, slips=slips, **settings), tells=tells)
 
@@ -508,7 +508,7 @@ CARGO = {"9.4": 9.4, "8.7": 8.7, "10.2": 10.2, "9.9": 9.9}
 
 
 def _front_seat(line: str, goal: tuple[Check, ...], moves: Moves, *wrong: Moves, **more: Any) -> Half:
-    thing = Occupant(Seat.PASSENGER, Kind.BABY, param("kg", CARGO))  # type: ignore[arg-type]
+    thing = Occupant(Seat.PASSENGER, Kind.BABY, param("kg", CARGO))
     start = with_letter(replace(PARKED, aboard=(thing,)), ISLA, "All ready for you,", line)
     look = (*letter(ISLA), Open("cabin"))
     return _half(
