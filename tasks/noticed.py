@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant
-from automotive_cosim.cockpit.signals import ADAS, CABIN, DRIVE, HMI, HVAC, LIGHTS
+from automotive_cosim.cockpit.signals import ADAS, CABIN, DRIVE, HMI, HVAC, LIGHTS, Signal
 from automotive_cosim.cockpit.vehicle import LOCKS, WINDOWS
 from automotive_cosim.contracts import Action, ActionType, AlertKind, PullOver, Reason, Weather
 from automotive_cosim.tasking.checks import AlertGiven, AllOf, AnyOf, RoadAsked, SignalIs, SignalWithin
@@ -309,7 +310,7 @@ SEEN_IN_FOG = pair(
     tags=PLACE | {"lamps"},
 )
 
-ENGAGED = {ADAS.CRUISE_ACTIVE: True, ADAS.CRUISE_SPEED: 70.0, LIGHTS.SWITCH: "BEAM"}
+ENGAGED: dict[Signal[Any], Any] = {ADAS.CRUISE_ACTIVE: True, ADAS.CRUISE_SPEED: 70.0, LIGHTS.SWITCH: "BEAM"}
 CRUISE_LEFT_ON = pair(
     "road_pedal_left_to_the_car",
     Module.ROAD,

@@ -70,7 +70,7 @@ def start(scenario: str, trip: str, signals: dict[Signal[Any], Any] | None = Non
     return Start(scenario, trip, signals={one.path: value for one, value in (signals or {}).items()}, **more)
 
 
-BRIGHT = {HMI.BRIGHTNESS: 100.0, HMI.DAY_NIGHT_AUTO: False, HMI.DAY_NIGHT: "DAY"}
+BRIGHT: dict[Signal[Any], Any] = {HMI.BRIGHTNESS: 100.0, HMI.DAY_NIGHT_AUTO: False, HMI.DAY_NIGHT: "DAY"}
 LESS_LIGHT = pair(
     "system_less_light_inside",
     Module.SYSTEM,
@@ -305,7 +305,7 @@ FLASHED = pair(
     tags=frozenset({"lamps"}),
 )
 
-FOGS = {LIGHTS.SWITCH: "BEAM", LIGHTS.FRONT_FOG: True}
+FOGS: dict[Signal[Any], Any] = {LIGHTS.SWITCH: "BEAM", LIGHTS.FRONT_FOG: True}
 FOGS_LEFT_ON = pair(
     "phenomenon_fogs_left_on",
     Module.PHENOMENON,
