@@ -129,7 +129,11 @@ WATCH = "drive"
 """The prompt of a watch over a drive, the same for every agent."""
 UNASKED = frozenset({ActionType.STATUS})
 """Actions that a watch has no use for."""
-WAITS = "wait until something changes, or for up to 60 seconds"
+WATCHED = {
+    ActionType.WAIT: "wait until something changes, or for up to 60 seconds",
+    ActionType.SHOW_ALERT: "warn the driver on screen and by voice; a text has up to 120 characters",
+}
+"""What actions do that are described otherwise in a task."""
 PICTURES = (
     "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
     "The numbers are the indices below."
@@ -159,10 +163,12 @@ def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
         text = grammar(kinds, by_point=by_point)
     else:
         text = brief.actions(kinds, by_point=by_point, by_name=profile.length is PromptLength.SHORT)
+    for action, about in WATCHED.items() if on_watch else ():
+        text = text.replace(FIELDS[action].about, about)
     if profile.functions:
         is_told = profile.length is not PromptLength.SHORT
         text = "\n".join([text, "", FUNCTIONS, *(signature(each, is_told=is_told) for each in profile.functions)])
-    return text.replace(FIELDS[ActionType.WAIT].about, WAITS) if on_watch else text
+    return text
 
 
 def look_back(

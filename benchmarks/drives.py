@@ -27,6 +27,7 @@ from statistics import mean
 
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.errands import with_errands
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.events.tracker import Tracker
 from automotive_cosim.drives.families import FAMILIES
@@ -96,9 +97,10 @@ class Kept:
         return due != staged.is_lookalike
 
 
-def played(who: str, family: str, seed: int, simulations: Simulations) -> Kept:
+def played(who: str, family: str, seed: int, simulations: Simulations, *, errands: bool = False) -> Kept:
     """One drive by one watcher."""
-    script, agent = FAMILIES[family].draw(seed), WATCHERS[who]()
+    drawn, agent = FAMILIES[family].draw(seed), WATCHERS[who]()
+    script = with_errands(drawn) if errands else drawn
     setup = SessionSetup(max_steps=STEPS, max_sim_s=script.duration_s, channels=agent.channels)
     with closing(Watch.depart_with(depart(script, simulations), setup)) as watch:
         agent.reset(watch.goal)
@@ -235,19 +237,25 @@ def _table(head: Sequence[str], rows: Iterator[Sequence[object]] | Sequence[Sequ
 
 
 def run(
-    whos: Sequence[str], families: Sequence[str], seeds: Sequence[int], folder: Path | None, minutes: float
+    whos: Sequence[str],
+    families: Sequence[str],
+    seeds: Sequence[int],
+    folder: Path | None,
+    minutes: float,
+    *,
+    errands: bool = False,
 ) -> list[Kept]:
     """Every drive, read from the folder of finished drives or else run, as far as the time allows."""
     until, drives = time.monotonic() + 60 * minutes, []
     with closing(Simulations(count_limit=2)) as simulations:
         for who, seed, family in product(whos, seeds, families):
-            file = None if folder is None else folder / f"{who}-{family}-{seed}.json"
+            file = None if folder is None else folder / f"{who}-{family}-{seed}{'-errands' * errands}.json"
             if file is not None and file.exists():
                 drives.append(from_json(Kept, json.loads(file.read_text("utf-8"))))
             elif time.monotonic() < until:
                 begun_s = time.monotonic()
                 try:
-                    drives.append(played(who, family, seed, simulations))
+                    drives.append(played(who, family, seed, simulations, errands=errands))
                 except CosimError as error:
                     print(f"{who} {family} {seed}: {error}", file=sys.stderr, flush=True)
                     continue
@@ -282,10 +290,12 @@ def main() -> None:
     parser.add_argument("--watch", nargs="+", choices=WATCHERS, help="run these watchers instead of none")
     parser.add_argument("--keep", type=Path, help="folder of finished drives, which are not rerun")
     parser.add_argument("--minutes", type=float, default=float("inf"), help="start no drive after this time")
+    parser.add_argument("--errands", action="store_true", help="people aboard also ask for things")
     asked = parser.parse_args()
     if asked.keep is not None:
         asked.keep.mkdir(parents=True, exist_ok=True)
-    drives = run(asked.watch or ["silent"], asked.families, asked.seeds, asked.keep, asked.minutes)
+    whos = asked.watch or ["silent"]
+    drives = run(whos, asked.families, asked.seeds, asked.keep, asked.minutes, errands=asked.errands)
     print(f"{len(drives)} drives, {sum(drive.driven_s for drive in drives) / 3600:.1f} h", end="\n\n")
     if asked.watch:
         print(*compared(asked.watch, drives), sep="\n", end="\n\n")

@@ -164,7 +164,8 @@ def _drives() -> None:
             each.source,
             f"{each.lasts_s:.0f} s",
             f"{each.weight:g}",
-            ", ".join(sorted(each.alerts)) or "words, or the switch",
+            ", ".join(sorted(each.alerts))
+            or ("none: the state counts" if each.by_state else "words, or the switch"),
         )
         for each in KINDS.values()
     ]

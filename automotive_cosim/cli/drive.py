@@ -3,13 +3,27 @@
 from __future__ import annotations
 
 from contextlib import closing
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
-from automotive_cosim.cli.options import AgentName, AsJson, Force, MinutesMost, ModelName, Seed, print_json
+from automotive_cosim.cli.options import (
+    AgentName,
+    AsJson,
+    Force,
+    MinutesMost,
+    ModelName,
+    MostSeconds,
+    MostSteps,
+    MostTokens,
+    MostWallSeconds,
+    Seed,
+    WithErrands,
+    print_json,
+)
 from automotive_cosim.episode.conditions import Conditions
 
 if TYPE_CHECKING:
@@ -33,6 +47,11 @@ def drive(
     ] = "",
     seed: Seed = 0,
     minutes: MinutesMost = None,
+    errands: WithErrands = False,
+    most_steps: MostSteps = None,
+    most_tokens: MostTokens = None,
+    most_seconds: MostSeconds = None,
+    most_wall_seconds: MostWallSeconds = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for the results.", show_default="runs/<time>-<family>-<agent>-seed<seed>"),
@@ -47,19 +66,22 @@ def drive(
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.run.drive import DriveSetup, run_drive
     from automotive_cosim.run.drive_recorder import DriveRecorder
-    from automotive_cosim.run.jobs import DriveJob
+    from automotive_cosim.run.jobs import DriveJob, Limits
     from automotive_cosim.run.record import check_folder, stamped_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
 
     under = Conditions.named(given(conditions))
-    player = make_agent(agent, model, AgentSettings(under, seed=seed))
+    limits = Limits().of_drives.within(most_tokens, most_seconds)
+    budget = AgentSettings(under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s)
+    player = make_agent(agent, model, budget)
     setup = DriveSetup(
         family,
         seed,
         under,
         scenario,
-        DriveSettings(minutes=minutes),
+        DriveSettings(minutes=minutes, errands=errands or None),
+        most_steps or limits.steps,
         agent=player.name,
         model=player.model,
     )
@@ -68,7 +90,8 @@ def drive(
     check_folder(folder, force=force)
     recorder, road = DriveRecorder(folder), RoadRecorder(folder, setup.about)
     with closing(recorder), closing(road):
-        record = run_drive(planned, setup, player, observers=(recorder, road))
+        wall_s = float(most_wall_seconds or inf)
+        record = run_drive(planned, setup, player, observers=(recorder, road), wall_s=wall_s)
     if as_json:
         print_json({**row_json(record.row), "out": str(folder)})
         return

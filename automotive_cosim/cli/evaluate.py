@@ -30,11 +30,16 @@ from automotive_cosim.cli.options import (
     TASKS_HELP,
     AsJson,
     MinutesMost,
+    MostSeconds,
+    MostSteps,
+    MostTokens,
     TasksFrom,
+    WithErrands,
     number,
     print_json,
     whole_number,
 )
+from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
@@ -172,6 +177,10 @@ def evaluate(
         ),
     ] = None,
     minutes: MinutesMost = None,
+    errands: WithErrands = False,
+    most_steps: MostSteps = None,
+    most_tokens: MostTokens = None,
+    most_seconds: MostSeconds = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **conditions: str | None,
@@ -206,8 +215,11 @@ def evaluate(
     single |= {"held_out": held_out, "everywhere": everywhere}
     values |= {name: value for name, value in single.items() if value not in (None, False)}
     values |= values_of(conditions)
-    values |= {"settings": {**values.get("settings", {}), "minutes": minutes}} if minutes is not None else {}
+    told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value}
+    values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
     values = with_preset(values, preset) if preset is not None else values
+    own = _limits(most_steps, most_tokens, most_seconds)
+    values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = Budget(budget_tokens, budget_usd)
     plan = make_plan(values)
     folder = out or _folder(plan)
@@ -251,8 +263,8 @@ def evaluate(
     errors = [row for row in (*found.rows, *found.drives) if row.error is not None]
     size_mb = megabytes(folder)
     if as_json:
-        told = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
-        typer.echo(json.dumps(told | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
+        counts = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
+        typer.echo(json.dumps(counts | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
     else:
         console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")
@@ -273,6 +285,16 @@ def evaluate(
             f"{len(errors)} of {counted(end.planned, unit)} ended in an infrastructure error, which no rate "
             "counts as a success; rerun the command to retry them"
         )
+
+
+def _limits(steps: int | None, tokens: int | None, seconds: int | None) -> Json:
+    """The limits of a plan that options set, of tasks and of drives."""
+    named = {
+        ("steps", "hard_steps", "drive_steps"): steps,
+        ("tokens", "drive_tokens"): tokens,
+        ("model_s", "drive_model_s"): seconds,
+    }
+    return {name: value for names, value in named.items() if value is not None for name in names}
 
 
 def _failures(rows: Sequence[TrialRow]) -> Iterator[str]:
@@ -329,8 +351,15 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         "limits",
         f"{counted(limits.steps, 'step')} ({limits.hard_steps} in the hard suite), "
         f"{limits.sim_s:g} s simulated, {limits.wall_s:g} s real and "
-        f"{limits.agent_s:g} s in the agent's process, {limits.tokens:,} tokens",
+        f"{limits.agent_s:g} s in the agent's process, {limits.model_s:g} s of the model, {limits.tokens:,} tokens",
     )
+    if len(episodes) < len(jobs):
+        own = limits.of_drives
+        table.add_row(
+            "of a drive",
+            f"{counted(own.steps, 'step')}, {own.wall_s:g} s real and {own.agent_s:g} s in the agent's process, "
+            f"{own.model_s:g} s of the model, {own.tokens:,} tokens; beyond them nobody watches",
+        )
     table.add_row("runs", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}")
     table.add_row("folder", str(folder))
     console.print(table)

@@ -45,7 +45,9 @@ TasksFrom = Annotated[
 """For every command that names tasks; its callback handles the value, so the command ignores it."""
 
 
-TASKS_HELP = "Ids, patterns, tags, modules, dimensions, subsets, general, safety, all; separated by commas."
+TASKS_HELP = (
+    "Ids, patterns, tags, modules, dimensions, subsets, abilities, general, safety, all; separated by commas."
+)
 TaskNames = Annotated[str, typer.Option("--tasks", help=TASKS_HELP)]
 SUITE_HELP = "Task suite: standard, hard, limits, clarify or all. An id selects a task in any suite."
 SuiteName = Annotated[str, typer.Option("--suite", help=SUITE_HELP)]
@@ -140,6 +142,47 @@ MinutesMost = Annotated[
         show_default=False,
     ),
 ]
+WithErrands = Annotated[
+    bool,
+    typer.Option("--errands", help="On drives, people aboard also ask for things, near what safety asks for."),
+]
+MostSteps = Annotated[
+    int | None,
+    typer.Option(
+        help="Actions, waits among them, after which an episode is judged as it is; a drive goes on unwatched.",
+        metavar="N",
+        parser=whole_number(1, 100_000),
+        show_default=False,
+    ),
+]
+MostTokens = Annotated[
+    int | None,
+    typer.Option(
+        help="The same for tokens to and from the model.",
+        metavar="N",
+        parser=whole_number(1, 10**9),
+        show_default="2 million; 20 million for a drive",
+    ),
+]
+MostSeconds = Annotated[
+    int | None,
+    typer.Option(
+        help="The same for the time to wait for the model in all, in seconds.",
+        metavar="N",
+        parser=whole_number(1, 10**6),
+        show_default="1800; 14400 for a drive",
+    ),
+]
+MostWallSeconds = Annotated[
+    int | None,
+    typer.Option(
+        help="The same for real time since the hand-over or the departure, in seconds.",
+        metavar="N",
+        parser=whole_number(1, 10**6),
+        show_default=False,
+    ),
+]
+"""For every command that runs an agent."""
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.")]
 
 

@@ -6,6 +6,7 @@ import json
 from collections.abc import Sequence
 from contextlib import closing
 from dataclasses import replace
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -17,11 +18,14 @@ from automotive_cosim.cli.options import (
     AsJson,
     Force,
     ModelName,
+    MostSeconds,
+    MostSteps,
+    MostTokens,
+    MostWallSeconds,
     Seed,
     TasksFrom,
     lon_lat,
     tell_opening,
-    whole_number,
 )
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import PLACE, GeoInput
@@ -85,15 +89,10 @@ def run(
         Path | None,
         typer.Option(help="File in which ASURADA remembers what worked, for later runs.", show_default=False),
     ] = None,
-    most_tokens: Annotated[
-        int, typer.Option(help="Budget of tokens for the model.", metavar="N", parser=whole_number(1, 10**9))
-    ] = 2_000_000,
-    most_seconds: Annotated[
-        int,
-        typer.Option(
-            help="Total time to wait for the model, in seconds.", metavar="N", parser=whole_number(1, 10**6)
-        ),
-    ] = 1800,
+    most_steps: MostSteps = None,
+    most_tokens: MostTokens = None,
+    most_seconds: MostSeconds = None,
+    most_wall_seconds: MostWallSeconds = None,
     scenario: Annotated[
         str | None,
         typer.Option(
@@ -148,17 +147,19 @@ def run(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import parts
     from automotive_cosim.run.episode import EpisodeSetup
+    from automotive_cosim.run.jobs import Limits
     from automotive_cosim.run.record import check_folder, default_folder
     from automotive_cosim.run.script import read_script
     from automotive_cosim.traffic.fork import Simulations
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
+    limits = Limits().within(most_tokens, most_seconds)
     off = parts(name.strip() for name in without.split(",") if name.strip())
     under = Conditions.named(given(conditions))
 
     def player_under(each: Conditions) -> Agent:
-        settings = AgentSettings(each, off, memory, seed, most_tokens, float(most_seconds))
+        settings = AgentSettings(each, off, memory, seed, limits.tokens, limits.model_s)
         return read_script(actions) if actions else make_agent(agent, model, settings)
 
     player = player_under(under)
@@ -173,6 +174,7 @@ def run(
         from_place=from_place,
         to_place=to_place,
         seed=seed,
+        max_steps=most_steps,
         conditions=under,
         agent=player.name,
         model=player.model,
@@ -182,13 +184,14 @@ def run(
     folder = out or default_folder(setup, "-pair" if pair else "")
     check_folder(folder, force=force)
     arguments = {"actions": str(actions) if actions else None}
+    wall_s = inf if most_wall_seconds is None else float(most_wall_seconds)
     with closing(Simulations()) as simulations:
         if pair:
             blind = replace(under, geo=GeoInput.NONE)
             both = ((setup, player), (replace(setup, conditions=blind), player_under(blind)))
-            results, page = _recorded_pair(folder, both, simulations, as_json=as_json)
+            results, page = _recorded_pair(folder, both, simulations, wall_s=wall_s, as_json=as_json)
         else:
-            results = [_recorded(folder, setup, player, arguments, simulations, as_json=as_json)]
+            results = [_recorded(folder, setup, player, arguments, simulations, wall_s=wall_s, as_json=as_json)]
             page = folder / "summary.html"
     has_begun = results[0].trace_sha256 is not None
     if has_begun and task is None and setup.task == ANYWHERE:
@@ -220,6 +223,7 @@ def _recorded(
     simulations: Simulations,
     more: Sequence[EpisodeObserver] = (),
     *,
+    wall_s: float,
     as_json: bool,
 ) -> EpisodeResult:
     """Runs an episode and records it."""
@@ -236,7 +240,7 @@ def _recorded(
     view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
     observers = [recorder, RoadRecorder(folder, setup.about), Film(folder), Notes() if as_json else view, *more]
     try:
-        result = run_episode(setup, player, observers, simulations=simulations)
+        result = run_episode(setup, player, observers, simulations=simulations, wall_s=wall_s)
     except KeyboardInterrupt:
         if recorder.has_begun:
             write_page(folder)
@@ -248,7 +252,12 @@ def _recorded(
 
 
 def _recorded_pair(
-    folder: Path, both: Sequence[tuple[EpisodeSetup, Agent]], simulations: Simulations, *, as_json: bool
+    folder: Path,
+    both: Sequence[tuple[EpisodeSetup, Agent]],
+    simulations: Simulations,
+    *,
+    wall_s: float,
+    as_json: bool,
 ) -> tuple[list[EpisodeResult], Path]:
     """Runs two episodes from the same instant and records both, with the film and the page that show them."""
     from automotive_cosim.report.frames import Frames
@@ -259,7 +268,9 @@ def _recorded_pair(
         if not as_json:
             typer.echo(f"{title}:")
         frames = Frames(screen_size())
-        result = _recorded(folder / name, setup, player, {"pair": name}, simulations, [frames], as_json=as_json)
+        result = _recorded(
+            folder / name, setup, player, {"pair": name}, simulations, [frames], wall_s=wall_s, as_json=as_json
+        )
         if result.trace_sha256 is None:
             return [result], folder
         sides.append(PairSide(title, folder / name, frames, result))

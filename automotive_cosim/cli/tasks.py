@@ -40,7 +40,7 @@ def list_(
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
     tasks_from: TasksFrom = None,
 ) -> None:
-    """List the tasks, one per line, then their counts by module and dimension."""
+    """List the tasks, one per line, then their counts by module and dimension, and in the hard suite by ability."""
     from automotive_cosim.tasking.catalogue import described
 
     chosen = _chosen(tasks, suite)
@@ -52,8 +52,9 @@ def list_(
     for task in chosen:
         halves = "pair" if task.second else "single"
         steps = counted(task.optimal_steps, "step")
-        typer.echo(f"{task.id:<{width}}  {halves:<6}  {task.dimension:<18}  {task.difficulty:<6}  {steps}")
-    typer.echo(f"\n{_cells(chosen)}\n{_instances(chosen)}")
+        ability = "" if task.ability is None else f"{task.ability:<9}  "
+        typer.echo(f"{task.id:<{width}}  {halves:<6}  {task.dimension:<18}  {task.difficulty:<6}  {ability}{steps}")
+    typer.echo(f"\n{_cells(chosen)}\n{_abilities(chosen)}{_instances(chosen)}")
 
 
 @app.command()
@@ -132,6 +133,8 @@ def show(
     for name, choices in entry.parameters.items():
         said = choices_in_words(choices)
         typer.echo(f"  {{{name}}}: {said}")
+    if entry.ability is not None:
+        typer.echo(f"ability     {entry.ability}; a guess loses: {entry.guess_loses}")
     typer.echo(f"skills      {', '.join(sorted(entry.skills)) or 'none'}")
     typer.echo(f"tags        {', '.join(sorted(entry.tags)) or 'none'}")
     typer.echo(f"languages   {', '.join(entry.languages)}")
@@ -196,6 +199,15 @@ def _cells(tasks: list[Task]) -> str:
         )
         for row in rows
     )
+
+
+def _abilities(tasks: list[Task]) -> str:
+    """How many of the tasks are hard by which ability; empty where none is of the hard suite."""
+    from automotive_cosim.tasking.task import Ability
+
+    counts = Counter(task.ability for task in tasks)
+    told = ", ".join(f"{ability} {counts[ability]}" for ability in Ability if counts[ability])
+    return f"by ability: {told}\n" if told else ""
 
 
 def _instances(tasks: list[Task]) -> str:

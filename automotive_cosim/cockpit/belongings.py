@@ -1,4 +1,4 @@
-"""What the driver brings into the car besides what is drawn: people, messages, appointments, memos, places."""
+"""What the driver brings into the car besides what is drawn: people, messages, appointments, memos, songs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.calendar.state import Agenda, Appointment
+from automotive_cosim.cockpit.apps.media.state import Entry, Library
 from automotive_cosim.cockpit.apps.memo.state import Memos
 from automotive_cosim.cockpit.apps.phone.state import Contact, Directory, Phone, Thread
 from automotive_cosim.cockpit.apps.store.state import Installed
@@ -31,6 +32,8 @@ class Belongings:
     """Texts of memos."""
     details: Mapping[str, str] = field(default_factory=dict)
     """What the map says about places, by name, such as ``Open until 18:00``."""
+    songs: tuple[Entry, ...] = ()
+    """Tracks on the driver's phone."""
     trip_b: TripMeter = FROM_HERE
     """What the second trip meter has counted before departure."""
 
@@ -53,6 +56,7 @@ def bring(state: State, brought: Belongings) -> None:
         replace(state.of(Phone), favourites=people.favourites),
         replace(memos, kept=(*brought.memos, *memos.kept)),
         replace(trip, b=brought.trip_b),
+        _with_songs(state.of(Library), brought.songs),
     )
     if brought.agenda:
         offered = [app.name for app in apps_in(Where.STORE)]
@@ -72,6 +76,14 @@ def _with_people(directory: Directory, brought: Belongings) -> Directory:
         threads=(*brought.threads, *(thread for thread in directory.threads if thread.who not in written)),
         favourites=(*(contact.name for contact in brought.contacts), *directory.favourites),
     )
+
+
+def _with_songs(library: Library, songs: tuple[Entry, ...]) -> Library:
+    """The music with these tracks on the phone."""
+    if not songs:
+        return library
+    sources = {**library.sources, "BLUETOOTH": (*songs, *library.of("BLUETOOTH"))}
+    return replace(library, sources=sources, by_uri=library.by_uri | {song.uri: song for song in songs})
 
 
 def _with_details(atlas: Gazetteer, details: Mapping[str, str]) -> Gazetteer:

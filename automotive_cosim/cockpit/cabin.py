@@ -54,7 +54,7 @@ COMPRESSOR_MINIMUM_C = 0.0
 SUPPLY_MAXIMUM_C = 55.0
 DEFROST_SUPPLY_C = 45.0
 SUPPLY_GAIN = 10.0
-"""Supply air deviates from the set temperature this many times as much as the cabin, in the other direction."""
+"""Supply air deviates this many times as much as the cabin, in the other direction, from what would hold it."""
 GLASS_CAPACITY_M2 = 10_000.0
 """J/(m2 K): 5 mm of glass, 2500 kg/m3, 800 J/(kg K)."""
 GLASS_RESISTANCE = 0.005
@@ -249,8 +249,8 @@ class Cabin:
 
     def _step(self, dt_s: float, controls: Controls, outside: Air) -> Cabin:
         blown = BLOWER_FULL * controls.fan_pct / 100
-        supply = self._supply(controls, outside)
         leak = AIR_DENSITY * CABIN_VOLUME_M3 * _leaks_per_hour(controls, outside) / 3600
+        supply = self._supply(controls, outside, blown, leak)
         outside_ratio = humidity_ratio(outside.temperature_c, outside.humidity_pct)
         people = controls.people * (OCCUPANT_VAPOUR + (WET_CLOTHES_VAPOUR if self.start.wet_clothes else 0.0))
         heat = (
@@ -283,8 +283,12 @@ class Cabin:
         settled = (leak + (1 - CABIN_FILTER) * fresh) * outside.fine_dust / out
         return settled + (self.fine_dust - settled) * math.exp(-out * dt_s / CABIN_VOLUME_M3)
 
-    def _supply(self, controls: Controls, outside: Air) -> _Supply:
-        """Air as it leaves the outlets: taken in, dried and cooled by the evaporator, then heated."""
+    def _supply(self, controls: Controls, outside: Air, blown: float, leak: float) -> _Supply:
+        """Air as it leaves the outlets: taken in, dried and cooled by the evaporator, then heated.
+
+        The control adds to what holds the set temperature, by the cabin's balance of heat, a part for the present
+        deviation: so the cabin settles at what is set, as far as compressor, heater and fan can.
+        """
         if controls.recirculation:
             taken_c, ratio = self.temperature_c, self.moisture
         else:
@@ -293,7 +297,7 @@ class Cabin:
         if controls.air_conditioning and outside.temperature_c > COMPRESSOR_MINIMUM_C and controls.fan_pct:
             taken_c = min(taken_c, EVAPORATOR_C)
             ratio = min(ratio, humidity_ratio(EVAPORATOR_C, 100))
-        wanted = controls.set_c + SUPPLY_GAIN * (controls.set_c - self.temperature_c)
+        wanted = _holding_c(controls, outside, blown, leak) + SUPPLY_GAIN * (controls.set_c - self.temperature_c)
         if controls.front_defroster:
             wanted = max(wanted, DEFROST_SUPPLY_C)
         return _Supply(max(taken_c, min(wanted, SUPPLY_MAXIMUM_C)), ratio, controls.fan_pct)
@@ -357,6 +361,14 @@ def parked_c(cabin_c: float, minutes: float, controls: Controls, outside: Air, s
         coolest, warmest = ((gained_w + blown * c) / (lost + blown) for c in (coldest_c, SUPPLY_MAXIMUM_C))
         settled_c = min(max(controls.set_c, coolest), max(warmest, coolest))
     return settled_c + (cabin_c - settled_c) * math.exp(-minutes * 60 * (lost + blown) / CABIN_CAPACITY)
+
+
+def _holding_c(controls: Controls, outside: Air, blown: float, leak: float) -> float:
+    """Temperature of the supply air at which the cabin stays at what is set."""
+    if not blown:
+        return controls.set_c
+    lost_w = (CABIN_LOSS + leak * AIR_CP) * (controls.set_c - outside.temperature_c)
+    return controls.set_c + (lost_w - controls.people * OCCUPANT_HEAT_W) / (blown * AIR_CP)
 
 
 def _leaks_per_hour(controls: Controls, outside: Air) -> float:

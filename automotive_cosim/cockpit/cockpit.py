@@ -207,13 +207,16 @@ class Cockpit:
             self.signals[named(path)] = value
 
     def expect(self, interruptions: Sequence[Arrival | CarChange]) -> None:
-        """Lets calls, messages and changes of the car come, at seconds from now.
+        """Lets calls, messages and changes of the car come, at seconds from now; answers, from what they answer.
 
         Raises:
             UserError: one is impossible, or an arrival names nobody.
         """
         since_s = self._state.time_s - self._state.departed_s
-        coming = [replace(each, at_s=since_s + each.at_s) for each in interruptions]
+        coming = [
+            each if isinstance(each, Arrival) and each.after else replace(each, at_s=since_s + each.at_s)
+            for each in interruptions
+        ]
         arrivals = tuple(each for each in coming if isinstance(each, Arrival))
         if any(not arrival.who or (arrival.kind == "message" and not arrival.text) for arrival in arrivals):
             raise UserError("an interruption has no caller or no text; give both, they are not drawn here")

@@ -16,7 +16,15 @@ from automotive_cosim.cockpit.language import translated
 from automotive_cosim.cockpit.layout import REST, row
 from automotive_cosim.cockpit.messages import Back, Dismiss, Show
 from automotive_cosim.cockpit.notices import lit, lit_in_words
-from automotive_cosim.cockpit.parts import speed, speed_unit, stepper, switch, temperature
+from automotive_cosim.cockpit.parts import (
+    sign_figure,
+    sign_in_words,
+    speed,
+    speed_unit,
+    stepper,
+    switch,
+    temperature,
+)
 from automotive_cosim.cockpit.registry import apps_in, docked
 from automotive_cosim.cockpit.signals import ADAS, CALL, ENERGY, HMI, HVAC, LINK, MOTION, OUTSIDE, Signal, Signals
 from automotive_cosim.cockpit.size import ScreenSize
@@ -290,12 +298,9 @@ def _limit_sign(rect: Rect, state: State) -> tuple[Widget, ...]:
     limit = state.signals[ADAS.LIMIT_SIGN]
     if not state.sign_camera or limit is None:
         return ()
-    shown = speed(state.signals, limit)
-    return (
-        LimitSign(
-            rect=rect, key="status.limit_sign", text=shown, description=say("Limit sign {limit}", limit=shown)
-        ),
-    )
+    unit = "km/h" if state.outside is None else state.outside.sign_unit
+    told = say("Limit sign {limit}", limit=sign_in_words(state.signals, limit, unit))
+    return (LimitSign(rect=rect, key="status.limit_sign", text=sign_figure(limit, unit), description=told),)
 
 
 def dock(state: State) -> tuple[Widget, ...]:

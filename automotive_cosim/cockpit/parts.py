@@ -57,6 +57,17 @@ def speed_unit(signals: Signals) -> str:
     return "mph" if signals[HMI.DISTANCE_UNIT] == "MILES" else "km/h"
 
 
+def sign_figure(kmh: float, unit: str) -> str:
+    """The figure on a limit sign, in the unit of the signs there, whatever the display shows."""
+    return f"{kmh / MILE_KM if unit == 'mph' else kmh:.0f}"
+
+
+def sign_in_words(signals: Signals, kmh: float, unit: str) -> str:
+    """The figure on a limit sign; with its unit where that is not the display's."""
+    figure = sign_figure(kmh, unit)
+    return figure if unit == speed_unit(signals) else f"{figure} {unit}"
+
+
 def distance(signals: Signals, metres: float) -> str:
     """A distance, rounded as on signs."""
     if signals[HMI.DISTANCE_UNIT] == "MILES":

@@ -47,7 +47,7 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
         state.heard = surroundings
     if state.lookout and online and (state.news is None or driving.time_s - state.news.time_s >= NEWS_EVERY_S):
         state.news = driving
-    _road(state, driving)
+    _road(state, surroundings)
     sun = surroundings.sun_elevation_deg
     state.vehicle.follow_light(driving.road.in_tunnel or (sun is not None and sun < DARK_BELOW_DEG))
     feel(state.signals, surroundings)
@@ -88,27 +88,29 @@ def _park(state: State, surroundings: Surroundings) -> None:
     state.signals[DRIVE.PARKING_BRAKE] = surroundings.parked
 
 
-def _road(state: State, driving: DrivingState) -> None:
-    signals, road = state.signals, driving.road
+def _road(state: State, surroundings: Surroundings) -> None:
+    signals, driving = state.signals, surroundings.driving
+    road = driving.road
     limit = road.limit.posted_mps
-    signals[ADAS.LIMIT_SIGN] = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
+    seen_kmh = round(limit * KMH_PER_MPS, 1) if state.sign_camera and limit is not None else None
+    signals[ADAS.LIMIT_SIGN] = state.injected.get(ADAS.LIMIT_SIGN.path, seen_kmh)
     if state.sign_camera:
-        _read_sign(state, driving)
+        _read_sign(state, surroundings)
     leader = _in_sight(driving.around.leader)
     signals[ADAS.LEADER_DISTANCE] = None if leader is None else leader.gap_m
     signals[ADAS.LEADER_TIME_TO_COLLISION] = None if leader is None else leader.time_to_collision_s
 
 
-def _read_sign(state: State, driving: DrivingState) -> None:
+def _read_sign(state: State, surroundings: Surroundings) -> None:
     """Notes the sign at which tunnel, school zone or limit changed."""
-    road, limit_kmh = driving.road, state.signals[ADAS.LIMIT_SIGN]
+    road, limit_kmh = surroundings.driving.road, state.signals[ADAS.LIMIT_SIGN]
     was_in_tunnel, was_at_school, was_kmh = state.signs_here or (False, False, None)
     if road.in_tunnel and not was_in_tunnel:
         state.last_sign = RoadSign(SignKind.TUNNEL)
     elif road.school_zone and not was_at_school:
         state.last_sign = RoadSign(SignKind.SCHOOL)
     elif limit_kmh is not None and limit_kmh != was_kmh:
-        state.last_sign = RoadSign(SignKind.LIMIT, limit_kmh)
+        state.last_sign = RoadSign(SignKind.LIMIT, limit_kmh, surroundings.sign_unit)
     elif limit_kmh is None and was_kmh is not None:
         state.last_sign = RoadSign(SignKind.END_OF_LIMIT)
     state.signs_here = road.in_tunnel, bool(road.school_zone), limit_kmh

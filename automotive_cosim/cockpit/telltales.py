@@ -54,6 +54,8 @@ class RoadSign:
     kind: SignKind
     limit_kmh: float | None = None
     """On a limit sign."""
+    unit: str = "km/h"
+    """What the figure on it counts: ``"km/h"`` or ``"mph"``."""
 
 
 class _SymbolPen:

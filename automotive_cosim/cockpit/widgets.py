@@ -279,7 +279,7 @@ class SignView(Widget):
 
     sign: RoadSign | None
     figure: str = ""
-    """The limit in the unit of the display."""
+    """The limit as it stands on the sign."""
 
     class_name: ClassVar[str] = "ImageView"
 

@@ -71,3 +71,5 @@ class Surroundings:
     connectivity: Connectivity
     parked: bool = False
     """Whether the driver has parked on the way, as planned; False for a car that never sets off."""
+    sign_unit: str = "km/h"
+    """Unit of the speeds on the signs here: ``"km/h"`` or ``"mph"``."""

@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.contracts import DrivingState, RouteOption
+from automotive_cosim.contracts import DrivingState, Limit, RouteOption
+from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.cosim.moment import Moment, around
 from automotive_cosim.geo.connectivity import OFFLINE, Modem
 from automotive_cosim.geo.gps import Gps
@@ -42,6 +43,10 @@ class Car:
     """Simulation time at which the navigation last looked for them."""
     is_parked: bool = False
     """Whether the driver has parked on the way."""
+    errands: tuple[Errand, ...] = ()
+    """What people aboard ask for, by simulation time."""
+    read_sign: tuple[Limit, str] | None = None
+    """The limit that is signed here, and the unit of its sign; None before departure."""
 
     def copy(self) -> Car:
         """An independent copy that continues exactly as this one would."""
@@ -99,7 +104,18 @@ class Car:
         for event in events:
             if event.kind in (PARKS, SETS_OFF):
                 self.is_parked = event.kind == PARKS
-        outside = around(driving, weather, local_time, gps, connectivity, parked=self.is_parked)
+        context = self.geo.locate(driving, gps, weather, local_time)
+        if self.read_sign is None or self.read_sign[0] != driving.road.limit:
+            self.read_sign = driving.road.limit, context.speed_unit  # only then: to find the place takes long
+        outside = around(
+            driving,
+            weather,
+            local_time,
+            gps,
+            connectivity,
+            parked=self.is_parked,
+            sign_unit=self.read_sign[1],
+        )
         self.cockpit.sense(outside, dt_s)
         return Moment(
             time_s=driving.time_s,
@@ -110,10 +126,11 @@ class Car:
             weather=weather,
             gps=gps,
             connectivity=connectivity,
-            context=self.geo.locate(driving, gps, weather, local_time),
+            context=context,
             signals=self.cockpit.signals.snapshot(),
             commands=self.cockpit.commands(),
             sights=self.cockpit.sights,
+            asked=tuple(errand for errand in self.errands if errand.at_s <= driving.time_s + 1e-6),
         )
 
     def _is_asking(self, now_s: float) -> bool:

@@ -8,6 +8,7 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Sight, Surroundings, Weather
+from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.traffic.base import Event
@@ -35,6 +36,8 @@ class Moment:
     """Everything that can be commanded: actuator signals, app data, sent messages and requests."""
     sights: tuple[Sight, ...] = ()
     """What the car notices and shows by itself; empty if it has no such equipment."""
+    asked: tuple[Errand, ...] = ()
+    """What people aboard have asked for so far; times are simulation times."""
 
     def earlier(self, by: timedelta) -> Moment:
         """The same at an earlier time of day; what the car has sensed is not changed."""
@@ -44,7 +47,14 @@ class Moment:
     @property
     def surroundings(self) -> Surroundings:
         """Everything outside the cockpit."""
-        return around(self.driving, self.weather, self.local_time, self.gps, self.connectivity)
+        return around(
+            self.driving,
+            self.weather,
+            self.local_time,
+            self.gps,
+            self.connectivity,
+            sign_unit=self.context.speed_unit,
+        )
 
 
 def around(
@@ -55,6 +65,7 @@ def around(
     connectivity: Connectivity,
     *,
     parked: bool = False,
+    sign_unit: str = "km/h",
 ) -> Surroundings:
     """Everything outside the cockpit, with the sun where it stands then and there."""
     sun_deg = (
@@ -62,4 +73,4 @@ def around(
         if driving.lat_deg is None or driving.lon_deg is None
         else elevation_deg(driving.lat_deg, driving.lon_deg, local_time)
     )
-    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity, parked)
+    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity, parked, sign_unit)

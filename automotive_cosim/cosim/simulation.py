@@ -15,6 +15,7 @@ import numpy as np
 from automotive_cosim.cockpit import actions
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Action, Element, Feedback, RoadSnapshot
+from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.cosim.car import Car
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.connectivity import Modem
@@ -99,6 +100,7 @@ def couple(
     weather: tuple[WeatherAt, ...],
     departure: datetime,
     links: tuple[LinkAt, ...] = (),
+    errands: tuple[Errand, ...] = (),
 ) -> CoSimulation:
     """Couples a drive and a cockpit that has not looked outside yet.
 
@@ -110,6 +112,7 @@ def couple(
         weather: the timeline, in seconds after departure.
         departure: local time of the traffic's present state, zone-aware.
         links: the best available link over time, in seconds after departure.
+        errands: what people aboard ask for, in seconds after departure.
     """
     state, geo = traffic.state, Geo()
     car = Car(
@@ -121,6 +124,7 @@ def couple(
         departure,
         state.time_s,
         None if scenario.origin is None else signs_of(geo.atlas.place(*scenario.origin).law),
+        errands=tuple(replace(errand, at_s=state.time_s + errand.at_s) for errand in errands),
     )
     shared = SharedTraffic(traffic, scenario.sumo.step_length_s)
     return CoSimulation(shared, car, car.sense(shared, (state,), (), 0.0))

@@ -22,6 +22,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.doors.inspect_play import outcome_of, played, seeds_of
 from automotive_cosim.doors.shared import conditions_of, takes_conditions, words
 from automotive_cosim.drives.result import DriveOutcome
+from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import UserError
@@ -160,6 +161,7 @@ def _drives(
     families: str | list[str] = "all",
     seeds: int | str | list[int] = 0,
     pictures: bool = True,
+    errands: bool = False,
     **conditions: str,
 ) -> Task:
     """Drives of ten to thirty minutes, on which the model keeps watch.
@@ -168,6 +170,7 @@ def _drives(
         families: of drives, patterns, scenarios, seasons or ``all``, separated by commas.
         seeds: one, or several separated by commas; each draws its own drive.
         pictures: whether it sees the screen.
+        errands: whether people aboard also ask for things on the way.
         conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``.
     """
     conditions_of(conditions)
@@ -175,7 +178,7 @@ def _drives(
         Sample(
             id=f"{family}-seed{seed}",
             input="The driver speaks at departure.",
-            metadata={"family": family, "seed": seed, "conditions": conditions},
+            metadata={"family": family, "seed": seed, "errands": errands, "conditions": conditions},
         )
         for family in families_named(tuple(words(families)))
         for seed in seeds_of(seeds)
@@ -193,7 +196,8 @@ def _watcher(pictures: bool = True) -> Solver:
 
 
 def _drive_spec(named: Json) -> DriveSpec:
-    return DriveSpec(named["family"], named["seed"], conditions_of(named["conditions"]))
+    settings = DriveSettings(errands=named.get("errands") or None)
+    return DriveSpec(named["family"], named["seed"], conditions_of(named["conditions"]), settings=settings)
 
 
 def _figure(name: str) -> Metric:

@@ -179,6 +179,9 @@ class CockpitTools:
         minutes: Annotated[
             float | None, Field(description="When a drive is over, if it would last longer.")
         ] = None,
+        errands: Annotated[
+            bool, Field(description="Whether people aboard also ask for things on a drive.")
+        ] = False,
         channels: Annotated[
             list[str] | None, Field(description=f"What to observe: {', '.join(Channel)}; all by default.")
         ] = None,
@@ -192,7 +195,7 @@ class CockpitTools:
             under = replace(under, interface=self._interface)
         if under.interface.calls:
             self.add_functions()
-        spec = trial(task, drive, half, seed, scenario, minutes, under)
+        spec = trial(task, drive, half, seed, scenario, minutes, under, errands=errands)
         return _turn(self._service.start(spec, _channels(channels), _Progress(context)))
 
     @_told

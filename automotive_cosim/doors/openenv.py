@@ -81,6 +81,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         scenario: str | None = None,
         drive: str | None = None,
         minutes: float | None = None,
+        errands: bool = False,
         **conditions: Any,
     ) -> CarObservation:
         """Drives to a task's hand-over, or departs on a drive; the episode before it is given up.
@@ -94,6 +95,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
             scenario: in place of its own.
             drive: a family of drives instead of a task.
             minutes: when a drive is over, if its script ends later.
+            errands: whether people aboard also ask for things on a drive.
             conditions: ``geo``, ``see`` and so on, as in ``automotive-cosim run``.
 
         Raises:
@@ -104,7 +106,7 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
         if not drive:
             task = task or FIRST
         under = conditions_of(conditions)
-        spec = trial(task, drive, half, seed, scenario, minutes, under)
+        spec = trial(task, drive, half, seed, scenario, minutes, under, errands=errands)
         turn = self._service.start(spec, ALL if pictures else ALL - {Channel.SCREENSHOT})
         self._episode_id = turn.episode_id
         self._state = CarState(episode_id=episode_id, task=task or "", half=half, drive=drive or "", seed=spec.seed)

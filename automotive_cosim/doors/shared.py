@@ -76,6 +76,8 @@ def trial(
     scenario: str | None,
     minutes: float | None,
     under: Conditions,
+    *,
+    errands: bool = False,
 ) -> EpisodeSpec | DriveSpec:
     """What a door is asked to start: one half of a task, or a drive.
 
@@ -87,6 +89,7 @@ def trial(
         scenario: in place of the task's or the family's own.
         minutes: when a drive is over, if its script ends later.
         under: the conditions.
+        errands: whether people aboard also ask for things on a drive.
 
     Raises:
         UserError: there is not one of task and drive, or something that does not fit it.
@@ -94,11 +97,13 @@ def trial(
     if bool(task) == bool(drive):
         raise UserError(f"give a task or a drive, one of the two; came task {shown(task)} and drive {shown(drive)}")
     if drive:
-        given = {} if minutes is None else {"minutes": minutes}
+        told = (("minutes", minutes), ("errands", errands or None))
+        given = {name: value for name, value in told if value is not None}
         settings = checked(DriveSettings, given, lambda steps: ("the drive", dotted(steps)))
         return DriveSpec(family_named(drive).id, seed or 0, under, scenario or "", settings)
-    if minutes is not None:
-        raise UserError("minutes can be given for a drive alone; a task ends when it is declared")
+    if minutes is not None or errands:
+        name = "errands" if minutes is None else "minutes"
+        raise UserError(f"{name} can be given for a drive alone; a task ends when it is declared")
     return EpisodeSpec(str(task), half, scenario, seed=seed or 0, conditions=under)
 
 

@@ -62,6 +62,7 @@ class CockpitData(vf.TaskData):
     half: str
     drive: str | None
     minutes: float | None
+    errands: bool
     seed: int
     scenario: str | None
     conditions: dict[str, str]
@@ -89,7 +90,8 @@ class CockpitToolset(vf.Toolset[vf.ToolsetConfig, CockpitState]):
         self._tools, self._episode_id, self._failed, self._under = CockpitTools(service), "", "", Conditions()
         try:
             under = self._under = conditions_of(task.conditions)
-            spec = trial(task.task, task.drive, task.half, task.seed, task.scenario, task.minutes, under)
+            named = (task.task, task.drive, task.half, task.seed, task.scenario, task.minutes)
+            spec = trial(*named, under, errands=task.errands)
             self._episode_id = (await asyncio.to_thread(service.start, spec, channels)).episode_id
         except CosimError as error:
             self._failed = str(error)
@@ -181,6 +183,8 @@ class CockpitConfig(ConditionWords):
     """Families of drives, patterns, scenarios, seasons or ``all``, separated by commas; empty for none."""
     minutes: float | None = None
     """When a drive is over, if its script ends later."""
+    errands: bool = False
+    """Whether people aboard also ask for things on a drive."""
     suite: str = "standard"
     seeds: tuple[int, ...] = (0,)
     scenario: str | None = None
@@ -203,7 +207,12 @@ class CockpitTaskset(vf.Taskset[CockpitTask, CockpitConfig]):
         for name, named in _named(config):
             operated, acting = HANDS[under.interface]
             prompt = (KEEP_WATCH if named["drive"] else PROMPT).format(operated=operated, acting=acting)
-            own = {"scenario": config.scenario, "minutes": config.minutes if named["drive"] else None}
+            is_drive = bool(named["drive"])
+            own: Json = {
+                "scenario": config.scenario,
+                "minutes": config.minutes if is_drive else None,
+                "errands": config.errands and is_drive,
+            }
             spec = trial(**named, **own, under=under)
             if isinstance(spec, EpisodeSpec):
                 spec.check()

@@ -68,6 +68,7 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
             weather=script.weather,
             departure=ego.start or scenario.start,
             links=scenario.connectivity,
+            errands=script.errands,
         )
     except BaseException:
         traffic.close()

@@ -49,6 +49,8 @@ CAUSED_S = 10.0
 """An event that becomes observable within this time of the agent's own contrary act is of its own making."""
 PASSED_S = 3.0
 """Who speaks of an event this soon after its end still speaks of it."""
+STEP_S = 2.0
+"""The state is read once a second: what it reaches within this time of an act is that act's doing."""
 LATE_S = 30.0
 """How long after a deadline an act still counts as late and not as a nuisance."""
 
@@ -242,13 +244,16 @@ def judge(
         untouched: the events of the do-nothing run from departure, so that nobody gains by avoiding events.
         hold_s: for how long a request holds the car back.
     """
-    cases = [_Case(event, kinds[event.kind], due_anyway.get(index)) for index, event in enumerate(events)]
+    cases = [
+        _Case(event, kinds[event.kind], due_anyway.get(index), event.done_s) for index, event in enumerate(events)
+    ]
     for case in cases:
         case.caused = not case.event.lookalike and any(_contrary(case, act) for act in acts)
     bench = _Bench(tuple(kinds.values()), cases, against, at_start or {}, hold_s)
     judged = tuple(map(bench.act, acts))
     found = tuple(map(_event, cases))
-    return Judgement((*found, *_evaded(untouched, found, judged)), judged)
+    evadable = [event for event in untouched if not kinds[event.kind].by_state]
+    return Judgement((*found, *_evaded(evadable, found, judged)), judged)
 
 
 def _evaded(
@@ -331,7 +336,10 @@ class _Bench:
     def _judged(self, act: WatchAct) -> JudgedAct:
         there = [case for case in self.cases if case.is_open(act.time_s)]
         true = [case for case in there if not case.event.lookalike]
-        right = [case for case in true if case.kind.settles(act, case.event.value)]
+        settled = [case for case in true if case.kind.settles(act, case.event.value)]
+        right = [case for case in settled if not case.kind.by_state]
+        if settled and not right:
+            return _step(act, settled)
         if right:
             worth, told_s = _told(act, right)
             reason = f"told {act.time_s - told_s:.0f} s before" if worth is Worth.REPEAT else ""
@@ -347,8 +355,11 @@ class _Bench:
         ):  # of other words nobody can say whether they are true
             return self._supported(act, supported[0] if supported else "")
         alike = [case for case in there if case.event.lookalike and case.kind.settles(act, case.event.value)]
+        again = bool(alike) and all(case.taken and case.kind.by_state for case in alike)
         for case in alike:
             case.taken = True
+        if again:  # a further step of what is charged already
+            return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, alike[0].event.kind)
         reason = "; ".join(filter(None, facts.values())) or (NOT_DUE if supported else ORDER)
         if alike:
             cost = SWING * max(case.event.weight for case in alike)
@@ -364,6 +375,17 @@ class _Bench:
             reason = f"told {act.time_s - told_s:.0f} s before"
             return JudgedAct(act.time_s, act.words, Worth.REPEAT, about, reason)
         return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, about)
+
+
+def _step(act: WatchAct, cases: Sequence[_Case]) -> JudgedAct:
+    """A step towards what was asked for: right if the state is reached by it."""
+    for case in cases:
+        done_s, deadline_s = case.event.done_s, case.event.deadline_s
+        if done_s is not None and not case.is_named and 0.0 <= done_s - act.time_s <= STEP_S:
+            case.is_named = True
+            late = deadline_s is not None and done_s > deadline_s
+            return JudgedAct(act.time_s, act.words, Worth.LATE if late else Worth.RIGHT, case.event.kind)
+    return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, cases[0].event.kind)
 
 
 def _told(act: WatchAct, cases: Sequence[_Case]) -> tuple[Worth, float]:
@@ -431,6 +453,8 @@ def _outcome(case: _Case) -> EventOutcome:
     if event.lookalike:
         return EventOutcome.TAKEN if case.taken else EventOutcome.AVOIDED
     if event.obliged_s is None:
+        if event.done_s is not None:
+            return EventOutcome.PREPARED
         in_time = acted_s is not None and case.due_anyway_s is not None
         return EventOutcome.PREVENTED if in_time and not case.caused else EventOutcome.VOID
     if case.caused:

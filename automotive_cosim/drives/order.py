@@ -1,4 +1,4 @@
-"""What the driver says on a drive, the same on every one: one order, and one answer to any question."""
+"""What the driver says on a drive: one order, and one answer to any question."""
 
 from __future__ import annotations
 
@@ -33,6 +33,32 @@ STANDING_ORDERS: Mapping[Language, str] = {
     ),
 }
 """In each language; each fits into the observation space."""
+ORDERS_WITH_ERRANDS: Mapping[Language, str] = {
+    Language.ENGLISH: (
+        "Keep watch while I drive. When safety or the law asks something of this car, see to it or tell me. If "
+        "one of us asks you for something on the way, do that too, safety first; where I say no, leave it. "
+        "Otherwise leave everything as it is, and tell me nothing twice within a minute. A wait without seconds "
+        "lasts until something changes, at most a minute; the readings mark what changed."
+    ),
+    Language.FRENCH: (
+        "Veille pendant que je conduis. Si la sécurité ou la loi exige quelque chose de cette voiture, "
+        "occupe-t'en ou préviens-moi. Si l'un de nous te demande quelque chose, fais-le aussi, la sécurité "
+        "d'abord ; si je dis non, n'y touche pas. Sinon, laisse tout en l'état, et ne me dis rien deux fois en une "
+        "minute. Une attente sans durée se termine quand quelque chose change, au plus tard après une minute."
+    ),
+    Language.GERMAN: (
+        "Pass auf, während ich fahre. Wenn die Sicherheit oder das Gesetz etwas von diesem Auto verlangt, kümmere "
+        "dich darum oder sag mir Bescheid. Bittet dich einer von uns um etwas, tu auch das, Sicherheit geht vor; "
+        "sage ich nein, lass es. Sonst lass alles, wie es ist, und sag mir nichts zweimal innerhalb einer Minute. "
+        "Wartest du ohne Zeitangabe, dann nur, bis sich etwas ändert, höchstens eine Minute."
+    ),
+    Language.JAPANESE: (
+        "運転中、見張っていて。安全のためや法律上、この車に必要なことがあれば、対応するか知らせて。"
+        "誰かに頼まれたことも、安全を優先してやって。だめと言ったことはしないで。"
+        "それ以外はそのままにして、同じことを1分以内に二度言わないで。秒数なしの待機は変化があるまで、長くて1分。"
+    ),
+}
+"""The order on a drive on which people aboard ask for things as well."""
 ANSWERS: Mapping[Language, str] = {
     Language.ENGLISH: NEUTRAL,
     Language.FRENCH: "Tu en sais autant que moi. Fais au mieux.",

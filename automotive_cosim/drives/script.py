@@ -12,6 +12,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim.cockpit.aboard import Occupant
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.formats.annotations import Form, Latitude, Longitude
 from automotive_cosim.formats.checked import as_json, checked
 from automotive_cosim.formats.toml import dotted
@@ -80,6 +81,8 @@ class DriveScript:
     """Changes of the car that nobody commands."""
     arrivals: tuple[Arrival, ...] = ()
     """Incoming calls and messages."""
+    errands: tuple[Errand, ...] = ()
+    """What people aboard ask for."""
     incidents: tuple[AnyIncident, ...] = ()
     """Incidents on the road, besides the scenario's own."""
     staged: tuple[Staged, ...] = ()
@@ -95,6 +98,8 @@ def script_json(script: DriveScript) -> str:
     values = asdict(script)
     if script.density == 1.0:
         del values["density"]  # scripts from before there was one have the same text
+    if not script.errands:
+        del values["errands"]
     return json.dumps(json.loads(as_json(values)), indent=1)
 
 

@@ -12,6 +12,7 @@ from annotated_types import Ge, Gt, Le, Lt
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.contracts import Weather
+from automotive_cosim.drives.errands import with_errands
 from automotive_cosim.drives.family import timeline
 from automotive_cosim.drives.script import DriveScript, Staged
 from automotive_cosim.drives.sky import fog
@@ -49,6 +50,8 @@ class DriveSettings:
     """When it is over and judged, if the script ends later: to try a model that costs money or time. Its score is
     not that of a whole drive, which has more events."""
 
+    errands: bool | None = None
+    """Whether people aboard also ask for things on the way, near what is staged (``drives.errands``)."""
     stage: Annotated[str, OneOf((NOTHING, *ON_REQUEST), "staging")] | None = None
     """What is staged, once and as an event, instead of all that the script stages; ``nothing`` stages nothing.
     Calls and messages stay."""
@@ -80,6 +83,8 @@ class DriveSettings:
             made = replace(made, aboard=self._aboard())
         if self.stage is not None:
             made = self._staged(made)
+        if self.errands:
+            made = with_errands(made)
         weather = tuple(replace(each, weather=self._weather(each.weather)) for each in made.weather)
         return replace(
             made,
@@ -149,4 +154,6 @@ AS_SCRIPTED = DriveSettings()
 
 
 def _told(value: float | str) -> str:
+    if isinstance(value, bool):
+        return "on" if value else "off"
     return value if isinstance(value, str) else f"{value:g}"

@@ -20,7 +20,7 @@ from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.traffic.fork import Simulations
 
 MOST_STEPS = 100_000
-"""Far more than a drive has seconds."""
+"""Far more than a drive has seconds: no limit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +36,8 @@ class DriveSpec:
     """Where to drive instead of on the family's own roads; see ``drives.elsewhere``."""
     settings: DriveSettings = AS_SCRIPTED
     """What is set otherwise than the family's script has it."""
+    max_steps: int = MOST_STEPS
+    """Actions, waits among them, after which nobody watches."""
 
     @property
     def script(self) -> DriveScript:
@@ -70,7 +72,7 @@ class DriveSpec:
         drive = script or self.script
         if self.conditions.language is not Language.ENGLISH:
             drive = replace(drive, signals={HMI.LANGUAGE.path: str(self.conditions.language), **drive.signals})
-        setup = SessionSetup(channels, self.conditions, MOST_STEPS, drive.duration_s)
+        setup = SessionSetup(channels, self.conditions, self.max_steps, drive.duration_s)
         world = depart(drive, simulations, observer)
         try:
             return Watch.depart_with(world, setup, observer)

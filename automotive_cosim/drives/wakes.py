@@ -525,6 +525,12 @@ WAKES: tuple[Wake, ...] = (
     ),
     Wake("place", "another country", _of(lambda now: now.context.country or None), _place_words),
     Wake(
+        "asked",
+        "somebody aboard asks for something",
+        _of(lambda now: len(now.asked) or None),
+        lambda drive: f"{drive[-1].time_s - drive[-1].asked[-1].at_s:.0f} s ago" if drive[-1].asked else "",
+    ),
+    Wake(
         "call",
         "the phone rings",
         _of(lambda now: now.signals[CALL.RINGING.path] or None),

@@ -17,10 +17,11 @@ from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCod
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, spoken
+from automotive_cosim.drives.errands import said
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
-from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
+from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
 from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.judged import JudgedSession
@@ -95,6 +96,8 @@ class Watch(JudgedSession):
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
     _given: int = 0
+    _asked: int = 0
+    """How much of what was asked for the agent has heard."""
 
     @classmethod
     def depart_with(
@@ -113,7 +116,8 @@ class Watch(JudgedSession):
         Raises:
             TrafficError: the traffic simulation failed.
         """
-        begun: dict[str, Any] = beginning(world, STANDING_ORDERS[setup.conditions.language], setup, (), observer)
+        orders = ORDERS_WITH_ERRANDS if world.car.errands else STANDING_ORDERS
+        begun: dict[str, Any] = beginning(world, orders[setup.conditions.language], setup, (), observer)
         watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
         watch._read()
@@ -175,6 +179,12 @@ class Watch(JudgedSession):
 
     def _reply(self, question: str) -> str:
         return ANSWERS[self.setup.conditions.language]
+
+    def _remarks(self) -> tuple[str, ...]:
+        """What people aboard have asked for since the last observation."""
+        asked = self.moments[-1].asked
+        new, self._asked = asked[self._asked :], len(asked)
+        return tuple(said(errand, self.setup.conditions.language) for errand in new)
 
     def _told(self, code: FeedbackCode, text: str) -> Feedback:
         self.wakes += self._is_woken
@@ -239,7 +249,7 @@ class Watch(JudgedSession):
         if names:
             self.woken.append((moment.time_s, names))
         for event in self.tracker.see(self.moments):
-            if not event.lookalike and event.obliged_s is None:
+            if not event.lookalike and event.obliged_s is None and not KINDS[event.kind].by_state:
                 index = len(self.tracker.events) - 1 - self.tracker.events[::-1].index(event)
                 tracker = Tracker({event.kind: KINDS[event.kind]})
                 drive = list(self.moments)

@@ -6,11 +6,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
+from automotive_cosim.drives.hands import Hands
 from automotive_cosim.drives.looks import LOOK_S, LOOKS, Concern, fog_lamps_lit
 from automotive_cosim.drives.reading import Reader
 from automotive_cosim.interface.observe import Channel
 
-READS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
+READS = frozenset({Channel.VEHICLE, Channel.CONTEXT, Channel.ELEMENTS})
 GONE_S = 31.0
 """A concern that was away for longer is another one."""
 FORGOTTEN_S = 60.0
@@ -35,9 +36,11 @@ class RulePerfect:
         self._seen: dict[str, float] = {}
         self._since: dict[str, float] = {}
         self._told: dict[str, _Telling] = {}
+        self._hands = Hands()
 
     def act(self, observation: Observation) -> Action:
-        """An alert of what has not been told yet, a question for a rule that is not shown, else a wait."""
+        """An alert of what has not been told yet, a question for a rule that is not shown, a touch for what people
+        ask for, else a wait."""
         known = self._reader.read(observation)
         if known is None:
             return Action(ActionType.WAIT)
@@ -52,6 +55,10 @@ class RulePerfect:
                 if concern.say:
                     return Action(ActionType.ANSWER, text=concern.say)
                 return Action(ActionType.SHOW_ALERT, kind=concern.alert)
+        self._hands.hear(observation)
+        touch = self._hands.act(observation)
+        if touch is not None:
+            return touch
         if any(concern.now and self._is_untold(concern, known.time_s) for concern in concerns):
             return Action(ActionType.WAIT, seconds=1)
         return Action(ActionType.WAIT, seconds=LOOK_S) if concerns else Action(ActionType.WAIT)

@@ -10,7 +10,7 @@ from automotive_cosim.contracts import Action
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.result import result_of
 from automotive_cosim.drives.settings import DriveSettings
-from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.drives.specification import MOST_STEPS, DriveSpec
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of, spaces_of
 from automotive_cosim.episode.conditions import Conditions
@@ -43,6 +43,8 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         *,
         scenario: str = "",
         minutes: float | None = None,
+        max_steps: int = MOST_STEPS,
+        errands: bool = False,
         channels: Iterable[str] = ALL,
         render_mode: str | None = None,
         simulations: Simulations | None = None,
@@ -55,6 +57,8 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
             family: which drives; ``automotive-cosim show drives`` lists them.
             scenario: where to drive instead of on the family's own roads.
             minutes: when a drive is over, if its script ends later.
+            max_steps: actions, waits among them, after which nobody watches.
+            errands: whether people aboard also ask for things on the way.
             channels: as in ``SessionSetup``.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
@@ -67,11 +71,13 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         """
         family_named(family)
         under = Conditions.named(conditions)
+        told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value}
         self._spec = DriveSpec(
             family,
             conditions=under,
             scenario=scenario,
-            settings=checked(DriveSettings, {} if minutes is None else {"minutes": minutes}, _named),
+            settings=checked(DriveSettings, told, _named),
+            max_steps=max_steps,
         )
         self._setup = SessionSetup(frozenset(map(Channel, channels)), under)
         self._observer = observer

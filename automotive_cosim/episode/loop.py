@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Sequence
+from math import inf
 from typing import Protocol, TypeVar
 
 from automotive_cosim.cockpit.actions import check
@@ -34,6 +36,7 @@ def play(
     actor: Actor,
     stepped: Callable[[T, Sequence[Element]], None] = lambda session, seen: None,
     thought_s: Callable[[], float] = lambda: 0.0,
+    wall_s: float = inf,
 ) -> End:
     """Lets an actor act until the session is over, and returns why it is.
 
@@ -42,12 +45,17 @@ def play(
         actor: the actor, which has been told the goal.
         stepped: called after each step, including the last, with the session and the screen that was acted on.
         thought_s: gives the simulated seconds that the actor's last answer took, which pass before its action.
+        wall_s: wall seconds after which it is cut off.
 
     Raises:
         TrafficError: the traffic simulation failed.
         ModelError: the actor's model could not be reached.
     """
+    ends_s = time.monotonic() + wall_s
     while session.end is None:
+        if time.monotonic() >= ends_s:
+            session.cut_off(End.OUT_OF_BUDGET)
+            break
         seen = session.elements
         try:
             action = check(actor.act(session.observation))

@@ -39,8 +39,8 @@ SECOND_BYTES, SPARE_S = 2**15, 120.0
 """The same for a second of an episode's moments, of which a dense city has 10 kB, and of a drive's trace and facts,
 which have 1 kB. The last answer may take an episode beyond its limit."""
 PLANNED = (
-    "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "declines", "agent", "model",
-    "conditions", "seed", "repeat", "split",
+    "task", "half", "pair", "dimension", "module", "basis", "suite", "tags", "skills", "ability", "declines",
+    "agent", "model", "conditions", "seed", "repeat", "split",
 )  # fmt: skip
 """Fields of a row that the plan and the catalogue determine."""
 ALSO_IN_RESULT = (

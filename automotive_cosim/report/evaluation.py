@@ -85,8 +85,11 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.harm(shared),
         findings.place_effect(shared),
         *findings.by_condition(shared),
-        findings.by_label(shared, "Skill", lambda row: row.skills),
-        findings.by_label(shared, "Tag", lambda row: row.tags),
+        findings.by_label(
+            shared, "ability", "abilities", lambda row: () if row.ability is None else (row.ability,)
+        ),
+        findings.by_label(shared, "skill", "skills", lambda row: row.skills),
+        findings.by_label(shared, "tag", "tags", lambda row: row.tags),
         findings.prompts(shared),
         findings.distribution(shared),
         replaced(results),

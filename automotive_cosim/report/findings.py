@@ -162,7 +162,7 @@ def _effect(results: Results, full: Contestant, other: Contestant, decided: bool
     return Cell(f"{told}, n={found.count}", ids)
 
 
-def by_label(results: Results, title: str, of: Callable[[EpisodeRow], Sequence[str]]) -> Table:
+def by_label(results: Results, name: str, plural: str, of: Callable[[EpisodeRow], Sequence[str]]) -> Table:
     """Success by a label of which an episode may have several."""
     values = sorted({value for row in results.rows for value in of(row)})
     rows: list[TableRow] = [
@@ -172,10 +172,9 @@ def by_label(results: Results, title: str, of: Callable[[EpisodeRow], Sequence[s
         )
         for value in values
     ]
-    columns = (title, *(each.label for each in results.contestants))
+    columns = (name.capitalize(), *(each.label for each in results.contestants))
     note = f"A task may count in several rows. All halves. {RATES}"
-    name = title.lower()
-    return Table(f"by_{name}s", f"Success by {name}", columns, tuple(rows), note)
+    return Table(f"by_{plural}", f"Success by {name}", columns, tuple(rows), note)
 
 
 def prompts(results: Results) -> Table:

@@ -6,6 +6,7 @@ import hashlib
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, fields, replace
+from math import inf
 from typing import Any
 
 from automotive_cosim.agents import Agent
@@ -13,7 +14,7 @@ from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, facts_of, judge
+from automotive_cosim.drives.judge import ORDER, JudgedAct, JudgedEvent, facts_of, judge
 from automotive_cosim.drives.result import DriveResult, judged_since, result_of
 from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.script import DriveScript
@@ -74,7 +75,7 @@ class JudgedDrive:
             self.events,
             self.acts,
             self.due_anyway,
-            lambda kind, time_s: facts[kind.name, time_s],
+            lambda kind, time_s: facts.get((kind.name, time_s), ORDER),
             self.commands,
             self.untouched,
         )
@@ -143,6 +144,7 @@ def run_drive(
     simulations: Simulations | None = None,
     observers: Sequence[DriveObserver] = (),
     plan: DriveScript | None = None,
+    wall_s: float = inf,
 ) -> DriveRecord:
     """Runs a drive to its end and judges it.
 
@@ -153,6 +155,7 @@ def run_drive(
         simulations: warm simulations to use; by default its own, closed with the drive.
         observers: notified of everything as it happens.
         plan: used instead of the family's plan for the seed.
+        wall_s: wall seconds from departure after which nobody watches.
 
     Raises:
         UserError: something in the setup does not exist.
@@ -164,7 +167,7 @@ def run_drive(
         ends.callback(watch.close)
         answers, channels = Answers(agent, setup.conditions), tuple(sorted(agent.channels))
         agent.reset(watch.goal)
-        end = play_observed(watch, agent, answers, observers)
+        end = play_observed(watch, agent, answers, observers, wall_s)
         result = result_of(watch)
         record = DriveRecord(
             row=judged_row(planned, end, channels, result, **asdict(answers.usage)),

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
+from math import inf
 from typing import Annotated, Any
 
 from automotive_cosim import geo
@@ -146,6 +147,7 @@ def run_episode(
     observers: Sequence[EpisodeObserver] = (),
     *,
     simulations: Simulations | None = None,
+    wall_s: float = inf,
 ) -> EpisodeResult:
     """Runs an episode to its end and judges it.
 
@@ -154,6 +156,7 @@ def run_episode(
         agent: the agent that acts.
         observers: notified of everything as it happens.
         simulations: warm simulations to use; by default its own, closed with the episode.
+        wall_s: wall seconds from the hand-over after which it is judged as it is.
 
     Raises:
         UserError: something in the setup does not exist or is invalid; no observer has seen a hand-over.
@@ -165,7 +168,7 @@ def run_episode(
         run = _Run(setup, finder, agent, observers)
         ends.callback(run.close)
         try:
-            end = run.play()
+            end = run.play(wall_s)
         except InfrastructureError as error:
             return run.finish(End.ERROR, error)
         except KeyboardInterrupt:
@@ -190,7 +193,7 @@ class _Run:
         self._after: list[Moment] = []
         self._baseline: tuple[Moment, ...] = ()
 
-    def play(self) -> End:
+    def play(self, wall_s: float) -> End:
         agent = self._agent
         hand_over = self._find()
         try:
@@ -202,7 +205,7 @@ class _Run:
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
             agent.brief(episode.instance, drawn=episode.world.cockpit.drawn)
-        end = play_observed(episode, agent, self._answers, self._observers)
+        end = play_observed(episode, agent, self._answers, self._observers, wall_s)
         if isinstance(agent, Learner) and episode.verdict is not None:
             agent.learn(episode.verdict.success)
         self._watch_aftermath(episode)

@@ -10,7 +10,7 @@ from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, formerly
 from automotive_cosim.run.taps import PixelTaps
 from automotive_cosim.run.trial_row import TrialRow
-from automotive_cosim.tasking.task import Basis, Dimension, Module, Suite
+from automotive_cosim.tasking.task import Ability, Basis, Dimension, Module, Suite
 from automotive_cosim.tasking.verdict import Verdict
 
 
@@ -51,6 +51,8 @@ class EpisodeRow(TrialRow):
     tags: tuple[str, ...] = ()
     skills: tuple[str, ...] = ()
     """Skills that the task requires of an agent."""
+    ability: Ability | None = None
+    """What a task of the hard suite is hard by."""
     declines: bool = False
     """Whether nothing has to be done in this half."""
     traffic_seed: int | None = None

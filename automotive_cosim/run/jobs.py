@@ -14,6 +14,7 @@ from annotated_types import Ge, Gt, Le
 
 from automotive_cosim.contracts.given import GeoInput
 from automotive_cosim.drives.families import family_named
+from automotive_cosim.drives.specification import MOST_STEPS
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.interface.trace import canonical
 from automotive_cosim.run.drive import DriveSetup
@@ -41,25 +42,51 @@ class Limits:
     sim_s: Annotated[float, Gt(0)] = 600.0
     """Simulated seconds from the hand-over, after which the episode is judged as it is."""
     wall_s: Annotated[float, Gt(0)] = 900.0
-    """Wall seconds of all but the agent's process, warm-up and model included; exceeding them is an infrastructure
+    """Wall seconds of all but the agent and its model, warm-up included; exceeding them is an infrastructure
     error."""
     agent_s: Annotated[float, Gt(0)] = EPISODE_S
     """Wall seconds that the agent's process may take; exceeding them is a failure of the agent."""
     agent_step_s: Annotated[float, Gt(0)] = STEP_S
     """The same for one step."""
+    model_s: Annotated[float, Gt(0)] = 1800.0
+    """Wall seconds to wait for the model in all, after which the episode is judged as it is."""
     tokens: Annotated[int, Ge(1)] = 2_000_000
     """Tokens to and from the model, after which the episode is judged as it is."""
+    drive_steps: Annotated[int, Ge(1), Le(MOST_STEPS)] = MOST_STEPS
+    """``steps`` of a drive, waits among them."""
     drive_wall_s: Annotated[float, Gt(0)] = 7200.0
     """``wall_s`` of a drive, which lasts ten to thirty simulated minutes."""
     drive_agent_s: Annotated[float, Gt(0)] = 7200.0
     """``agent_s`` of a drive."""
+    drive_model_s: Annotated[float, Gt(0)] = 14_400.0
+    """``model_s`` of a drive: a slow model is asked hundreds of times, for up to a minute each."""
     drive_tokens: Annotated[int, Ge(1)] = 20_000_000
     """``tokens`` of a drive."""
 
     @property
     def of_drives(self) -> Limits:
-        """The limits of a drive; its steps and its time end with the drive."""
-        return replace(self, wall_s=self.drive_wall_s, agent_s=self.drive_agent_s, tokens=self.drive_tokens)
+        """The limits of a drive, which goes on unwatched when one of them is reached; its time ends with it."""
+        return replace(
+            self,
+            steps=self.drive_steps,
+            wall_s=self.drive_wall_s,
+            agent_s=self.drive_agent_s,
+            model_s=self.drive_model_s,
+            tokens=self.drive_tokens,
+        )
+
+    def within(self, tokens: int | None = None, model_s: float | None = None) -> Limits:
+        """The same with another budget for the model; None keeps what there is."""
+        return replace(
+            self,
+            tokens=self.tokens if tokens is None else tokens,
+            model_s=self.model_s if model_s is None else float(model_s),
+        )
+
+    @property
+    def longest_s(self) -> float:
+        """Wall seconds of everything."""
+        return self.wall_s + self.agent_s + self.model_s
 
 
 SetupT = TypeVar("SetupT", EpisodeSetup, DriveSetup)
@@ -153,7 +180,7 @@ class EpisodeJob(PlannedJob[EpisodeSetup]):
     @property
     def wall_s(self) -> float:
         """Limit of its wall time."""
-        return self.limits.wall_s + self.limits.agent_s
+        return self.limits.longest_s
 
     @property
     def id(self) -> str:
@@ -180,6 +207,7 @@ class EpisodeJob(PlannedJob[EpisodeSetup]):
             suite=task.suite,
             tags=tuple(sorted(task.tags)),
             skills=tuple(sorted(task.skills)),
+            ability=task.ability,
             declines=not half.moves,
             scenario=self.scenario,
             agent=setup.agent,
@@ -232,7 +260,7 @@ class DriveJob(PlannedJob[DriveSetup]):
     @property
     def wall_s(self) -> float:
         """Limit of its wall time."""
-        return self.limits.wall_s
+        return self.limits.longest_s
 
     @property
     def id(self) -> str:

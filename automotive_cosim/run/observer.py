@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import inf
 from typing import Generic, Protocol, TypeVar, runtime_checkable
 
 import numpy as np
@@ -141,7 +142,9 @@ class Answers:
         return round(seconds, 1)  # the shortest step of a scenario
 
 
-def play_observed(session: T, agent: Agent, answers: Answers, observers: Sequence[TrialObserver[T, R]]) -> End:
+def play_observed(
+    session: T, agent: Agent, answers: Answers, observers: Sequence[TrialObserver[T, R]], wall_s: float = inf
+) -> End:
     """Lets an agent act until the session is over, and returns why it is.
 
     Args:
@@ -149,6 +152,7 @@ def play_observed(session: T, agent: Agent, answers: Answers, observers: Sequenc
         agent: the agent, which has been told the goal.
         answers: counts the agent's.
         observers: told of the beginning and of each step.
+        wall_s: wall seconds after which it is cut off.
 
     Raises:
         TrafficError: the traffic simulation failed.
@@ -164,7 +168,7 @@ def play_observed(session: T, agent: Agent, answers: Answers, observers: Sequenc
     first = Shot(session, session.steps[0])
     for observer in observers:
         observer.begun(session, first)
-    end = play(session, agent, stepped, answers.thought_s)
+    end = play(session, agent, stepped, answers.thought_s, wall_s)
     if end in (End.OUT_OF_BUDGET, End.AGENT_FAILED):
         answers.stages()  # of the turn that it did not finish
     return end

@@ -81,7 +81,14 @@ class PlannedTrial:
         if self.drive:
             family_named(self.drive)
             setup = DriveSetup(
-                self.drive, self.seed, self.conditions, self.scenario, self.settings, agent=agent, model=named
+                self.drive,
+                self.seed,
+                self.conditions,
+                self.scenario,
+                self.settings,
+                limits.drive_steps,
+                agent=agent,
+                model=named,
             )
             return DriveJob(setup, self.repeat + repeat, limits.of_drives)
         if self.settings != AS_SCRIPTED:
@@ -116,8 +123,8 @@ class Plan(ConditionLists):
     agents: tuple[str, ...] = ()
     """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
     tasks: tuple[str, ...] = ()
-    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, ``general``, ``safety`` or ``all``;
-    empty for all, or for none beside drives and trials."""
+    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, abilities, ``general``, ``safety`` or
+    ``all``; empty for all, or for none beside drives and trials."""
     drives: tuple[str, ...] = ()
     """Families of drives, patterns such as ``grid_*``, scenarios, seasons, or ``all``."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
@@ -286,7 +293,8 @@ class Plan(ConditionLists):
             self.agents, self.models, self._driven(), self.seeds, combined(self), range(self.repeats)
         ):
             named = model if agent in MODELLED or agent == HUMAN else NO_MODEL
-            setup = DriveSetup(family, seed, conditions, scenario, self.settings, agent=agent, model=named)
+            most = self.limits.drive_steps
+            setup = DriveSetup(family, seed, conditions, scenario, self.settings, most, agent=agent, model=named)
             yield DriveJob(setup, repeat, self.limits.of_drives)
 
     def _single(self) -> Iterator[TrialJob]:
@@ -377,7 +385,8 @@ def families_named(asked: Iterable[str]) -> tuple[str, ...]:
 
 def _words(task: Task) -> frozenset[str]:
     kind = "safety" if task.dimension.is_safety else "general"
-    return task.tags | {"all", kind, str(task.module), str(task.dimension), str(task.subset)}
+    ability = () if task.ability is None else (str(task.ability),)
+    return task.tags | {*ability, "all", kind, str(task.module), str(task.dimension), str(task.subset)}
 
 
 def read_plan(path: Path) -> dict[str, Any]:

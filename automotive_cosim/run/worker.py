@@ -191,7 +191,8 @@ def agent_for(
         yield make_agent(name, settings=settings)
         return
     # It is not told the episode's seed.
-    settings = replace(settings, seed=0, most_tokens=limits.tokens, answer_s=limits.agent_step_s)
+    settings = replace(settings, seed=0, most_tokens=limits.tokens, most_seconds=limits.model_s)
+    settings = replace(settings, answer_s=limits.agent_step_s)
     asked = model_of(name, model, meter, settings)
     outside = OutsideAgent(
         fork_server,

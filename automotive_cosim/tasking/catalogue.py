@@ -22,7 +22,8 @@ class Catalogue(Mapping[str, Task]):
 
         Raises:
             ValueError: an id occurs twice, a safety task is not a pair, a pair states no difference or one of no
-                known kind, a task has fewer than four phrasings, or uses a parameter that it does not declare.
+                known kind, a task has fewer than four phrasings, or uses a parameter that it does not declare; or
+                one of the hard suite does not say what it is hard by.
         """
         for task in tasks:
             if task.id in self._tasks:
@@ -37,6 +38,7 @@ class Catalogue(Mapping[str, Task]):
             if task.second is not None and not task.difference:
                 raise ValueError(f"task {task.id!r} does not say what its second half changes")
             _check_difference(task)
+            _check_ability(task)
             self._tasks[task.id] = task
 
     def of(self, suite: Suite) -> tuple[Task, ...]:
@@ -69,6 +71,15 @@ def _check_difference(task: Task) -> None:
         ) from error
 
 
+def _check_ability(task: Task) -> None:
+    is_hard = task.suite is Suite.HARD
+    if (task.ability is not None, bool(task.guess_loses)) != (is_hard, is_hard):
+        raise ValueError(
+            f"task {task.id!r} is of the {task.suite} suite, has the ability {task.ability}, and a guess loses "
+            f"there because {task.guess_loses!r}; tasks of the hard suite need both, others neither"
+        )
+
+
 def described(task: Task) -> dict[str, Any]:
     """A task as one row of plain values, for lists and exports; the second half has no row of its own."""
     return {
@@ -88,6 +99,8 @@ def described(task: Task) -> dict[str, Any]:
         "scenarios": list(task.runs_in),
         "tags": sorted(task.tags),
         "skills": sorted(task.skills),
+        "ability": "" if task.ability is None else str(task.ability),
+        "guess_loses": task.guess_loses,
         "difficulty": task.difficulty,
         "basis": str(task.first.basis),
         "rule": task.first.rule,

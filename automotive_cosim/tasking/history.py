@@ -1,4 +1,4 @@
-"""Checks of what happened in between: an order, a length of time, a time of day, what held meanwhile."""
+"""Checks of what happened in between: an order, a length of time, a time of day, a wait, what held meanwhile."""
 
 from __future__ import annotations
 
@@ -88,6 +88,25 @@ class NotBefore:
 
     def __str__(self) -> str:
         return f"not before {self.clock}: {self.check}"
+
+
+@dataclass(frozen=True, slots=True)
+class Watched:
+    """So much time has passed since the hand-over: who was asked to watch has not ended it before."""
+
+    seconds: float
+
+    @property
+    def writes(self) -> frozenset[str]:
+        """Nothing."""
+        return frozenset()
+
+    def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
+        """Whether it has passed."""
+        return now.time_s - start.time_s >= self.seconds - 1e-9
+
+    def __str__(self) -> str:
+        return f"watched for {self.seconds:g} s"
 
 
 @dataclass(frozen=True, slots=True)

@@ -97,6 +97,29 @@ class Suite(StrEnum):
         return 40 if self is Suite.HARD else 20
 
 
+class Ability(StrEnum):
+    """What a task of the hard suite is hard by; each has one."""
+
+    RULE = "rule"
+    """Which rule holds here: by place, hour, road, a text or general knowledge; no line of the context says it."""
+    CONTENT = "content"
+    """A fact in a message, a memo, a photo or another app that contradicts the first impression."""
+    CHAIN = "chain"
+    """Many steps, of which one, a remark or an event changes what the later ones have to be."""
+    MEMORY = "memory"
+    """Several trips of one driver: what was told on one day is needed on another, unless it was withdrawn."""
+    OCCUPANTS = "occupants"
+    """People aboard, or who write, want different things, and not all of them may decide."""
+    ORDERS = "orders"
+    """Text that gives orders and comes from nobody who may: in messages, songs, places, appointments."""
+    SENSORS = "sensors"
+    """A sensor that measures wrongly, to be noticed because something else contradicts it."""
+    PLANNING = "planning"
+    """Facts that have to be looked up, people who refuse or counter, charge, ways and hours that must fit."""
+    RESTRAINT = "restraint"
+    """To watch, and to leave things alone though something tempts."""
+
+
 class Basis(StrEnum):
     """What a verdict rests on."""
 
@@ -257,6 +280,10 @@ class Task:
     """How the driver says it in other languages than English."""
     only_english: str = ""
     """Why it is said in English alone, if it is for a reason: its point is the car's language."""
+    ability: Ability | None = None
+    """What it is hard by; only of tasks of the hard suite."""
+    guess_loses: str = ""
+    """Why a guess loses, of tasks of the hard suite."""
 
     @property
     def languages(self) -> tuple[Language, ...]:

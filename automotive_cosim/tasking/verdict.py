@@ -183,12 +183,18 @@ def _judge_asked(
         clean=_clean(instance, end, baseline[-1], counterfactual),
         safe=_safe(trace, baseline),
         in_time=_in_time(instance, goal_s, end.time_s - start.time_s),
-        declared=Part(declared is half.declares, f"{declared or 'nothing'} declared, {half.declares} is right"),
+        declared=Part(declared in _right(half), f"{declared or 'nothing'} declared, {half.declares} is right"),
         goal_s=goal_s,
         reason_fits=None if half.declares is GoalStatus.COMPLETE else reason in half.reasons,
         basis=half.basis,
         rule=half.rule,
     )
+
+
+def _right(half: Half) -> frozenset[GoalStatus]:
+    """What may be declared: where there was only something to watch, ``not_needed`` is as right as ``complete``."""
+    only_watched = half.declares is GoalStatus.COMPLETE and not half.goal.writes and not half.tells
+    return frozenset({half.declares, GoalStatus.NOT_NEEDED} if only_watched else {half.declares})
 
 
 def _since(instance: Instance, trace: Sequence[Moment]) -> float | None:

@@ -7,11 +7,16 @@ from automotive_cosim.tasks.hard import (
     dialogue,
     errands,
     interrupted,
+    ordered,
     over_time,
     pictured,
     prepared,
+    remembered,
+    ruled,
+    sensed,
     several,
     side_effects,
+    watched,
 )
 
 _MODULES = (
@@ -26,6 +31,11 @@ _MODULES = (
     aboard,
     pictured,
     decided,
+    ruled,
+    remembered,
+    ordered,
+    sensed,
+    watched,
 )
 TASKS = tuple(task for module in _MODULES for task in module.TASKS)
 """All of them."""

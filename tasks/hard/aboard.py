@@ -14,7 +14,7 @@ from automotive_cosim.tasking.history import Lasted
 from automotive_cosim.tasking.moves import Do, Open, Slide, Tap, Warn
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import SaysFigure
-from automotive_cosim.tasking.task import Deadline, Half, Module, Start
+from automotive_cosim.tasking.task import Ability, Deadline, Half, Module, Start
 from automotive_cosim.tasks.hard.forms import (
     A_RED_LIGHT,
     BEA,
@@ -96,6 +96,8 @@ ASLEEP_BEHIND = hard(
     "occupants: a baby asleep on the rear seat, or a box",
     parameters={"playlist": PLAYLISTS, "words": ("On my way", "Yes")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="Who sits behind, and whether they sleep, shows on one screen and decides how loud it may be.",
 )
 
 FAMILY = (
@@ -155,6 +157,8 @@ EVERYBODY_BELTED = hard(
     "occupants: all are belted, or the child on the right is not",
     parameters={"words": ("On my way", "Yes", "Thank you", "Where are you?", "No")},
     tags=frozenset({"conflict"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="One belt of four may be open, which only the cabin's screen tells.",
 )
 
 LEFT_CHILD = (Occupant(Seat.REAR_LEFT, Kind.CHILD), Occupant(Seat.REAR_RIGHT, Kind.ELDERLY))
@@ -223,6 +227,8 @@ CHILDS_SIDE = hard(
     "occupants: the child sits on the left, or on the right",
     parameters={"words": ("On my way", "Yes", "Thank you", "Where are you?", "No")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="Child and grandmother may sit either way round.",
 )
 
 SPRING = Weather(16.0, 55.0, 0.0, 1, 20.0, 20_000.0, 14.0)
@@ -285,6 +291,8 @@ TILL_IT_IS_OVER = hard(
     "time of day: 70 minutes before its end, or 53",
     parameters={"zone": ("B", "C"), "words": ("On my way", "Yes", "Thank you")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.RULE,
+    guess_loses="The shortest ticket that covers it follows from the clock, an appointment and its length.",
 )
 
 SILENCE = (Open("phone"), Tap("phone.do_not_disturb"))
@@ -339,6 +347,8 @@ UNTIL_ISLA_WRITES = hard(
     "events: the message that comes is Isla's, or somebody else's",
     parameters={"percent": (5, 10, 15, 20, 40)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.RESTRAINT,
+    guess_loses="A message comes, and only hers ends the silence.",
 )
 
 SOFT = {25: 188.2, 24: 180.9, 23: 173.6, 22: 166.3, 26: 195.5}
@@ -372,6 +382,8 @@ PSI_FOR_THE_GARAGE = hard(
     ),
     parameters={"psi": tuple(SOFT)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CONTENT,
+    guess_loses="The screen shows bar; the right unit has to be shown, read, and put back.",
 )
 
 HER_DEGREES = {19: 4, 20: 2, 23: 4, 24: 6, 22: 2}
@@ -445,6 +457,8 @@ WHAT_GUESTS_MAY = hard(
     "content: guests may set their climate, or the music",
     parameters={"degrees": tuple(HER_DEGREES), "playlist": PLAYLISTS},
     tags=frozenset({"two_modules", "conflict"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="The passenger asks for two things, and the driver's note allows one.",
 )
 
 TASKS = (

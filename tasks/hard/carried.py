@@ -12,7 +12,7 @@ from automotive_cosim.tasking.checks import AllOf, AppDataIs, Counted, Entered, 
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import AppDataAt, SaysFigure, SeatAsStored
-from automotive_cosim.tasking.task import Deadline, Half, Module, Start
+from automotive_cosim.tasking.task import Ability, Deadline, Half, Module, Start
 from automotive_cosim.tasks.hard.forms import (
     BEA,
     BEFORE_LEAVING,
@@ -80,6 +80,11 @@ CORRECTED_NUMBER = hard(
     ),
     "content: his second line corrects the last two digits, or there is no correction",
     parameters={"digits": PAIRS_OF_DIGITS},
+    ability=Ability.CONTENT,
+    guess_loses=(
+        "The first line has a number too, and the phone book another; only his second line tells which digits are"
+        " right."
+    ),
 )
 
 SEATS = (Open("vehicle"), Tap("vehicle.tab.seats"))
@@ -138,6 +143,10 @@ SEAT_FROM_MEMO = hard(
         may_write=frozenset(),
     ),
     parameters={"lumbar": tuple(PHYSIO)},
+    ability=Ability.CHAIN,
+    guess_loses=(
+        "Storing before the seat stands right, or under 1, spoils the place that has to be recalled at the end."
+    ),
 )
 
 TRAILER = {30: 45, 40: 60, 55: 85, 60: 95, 65: 100}
@@ -198,6 +207,8 @@ TRAILER_LIMIT = hard(
     ),
     "content: the message gives the speed in miles or in kilometres an hour",
     parameters={"mph": tuple(TRAILER)},
+    ability=Ability.CONTENT,
+    guess_loses="The figure fits either unit; who does not read it sets a limit that is 60 % off.",
 )
 
 LAKE = {90: 65, 100: 70, 110: 75, 130: 85, 150: 95}
@@ -270,6 +281,11 @@ CHARGE_FOR_THE_LAKE = hard(
     ),
     "content: the memo has the distance one way, or there and back",
     parameters={"km": tuple(LAKE), "ferry": FERRY},
+    ability=Ability.PLANNING,
+    guess_loses=(
+        "The limit follows from a distance, from whether it is one way, and from what a charge goes; 100 or the"
+        " present limit is wrong."
+    ),
 )
 
 SINCE_FERRY = {
@@ -321,6 +337,8 @@ USE_SINCE_THE_FERRY = hard(
         deadline=THE_OTHER_WAITS,
     ),
     parameters={"use": tuple(SINCE_FERRY)},
+    ability=Ability.CONTENT,
+    guess_loses="The meter that is shown first counts another way; only trip B ran from the ferry.",
 )
 
 LISTS = ("Road trip", "Sunday", "Dance", "Calm", "Classics")
@@ -377,6 +395,8 @@ SONG_FOR_BEA = hard(
     ),
     parameters={"playlist": LISTS, "percent": (15, 20, 25, 30, 35), "heard": tuple(range(40))},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CONTENT,
+    guess_loses="List and volume are in her message alone; five lists are there to be taken for hers.",
 )
 
 MOVED_TO = {"16:00": 2, "16:15": 3, "16:45": 5, "17:00": 6, "16:30": 4}
@@ -436,6 +456,8 @@ FITTING_MOVED = hard(
     ),
     "content: she writes about the dress or about the kitchen, and both have a fitting in the calendar",
     parameters={"time": tuple(MOVED_TO)},
+    ability=Ability.CONTENT,
+    guess_loses="Two appointments are fittings; her message alone tells which of them she means.",
 )
 
 STAYS = {"half an hour": 30, "an hour": 60, "two hours": 120, "four hours": 240}
@@ -495,6 +517,8 @@ ZONE_FROM_ISLA = hard(
     ),
     "content: a zone that the car can pay for, or one that is not among its three",
     parameters={"stay": tuple(STAYS), "zone": ("B", "C"), "elsewhere": ("F", "K", "R")},
+    ability=Ability.CONTENT,
+    guess_loses="The zone is in her message, and may be one that the car cannot pay for.",
 )
 
 LEFT_PAN = (30, -20, 40, -30, 20)
@@ -561,6 +585,8 @@ MIRRORS_FROM_MEMO = hard(
         ),
     ),
     parameters={"pan": LEFT_PAN},
+    ability=Ability.CONTENT,
+    guess_loses="Four values, two of them negative, stand in a memo and nowhere else.",
 )
 
 DRIVEN = (34, 52, 43, 61, 25)
@@ -624,6 +650,8 @@ CLIENTS_METER = hard(
     ),
     "content: the memo names trip B as the clients' meter, or trip A",
     parameters={"km": DRIVEN},
+    ability=Ability.CONTENT,
+    guess_loses="Which meter is to be zeroed is in a memo, and the figure is gone once it is.",
 )
 
 TASKS = (

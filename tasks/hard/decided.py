@@ -13,7 +13,7 @@ from automotive_cosim.tasking.dialogue import Says
 from automotive_cosim.tasking.moves import Hear, Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import AppDataAt, SaysFigure
-from automotive_cosim.tasking.task import Half, Module, Start
+from automotive_cosim.tasking.task import Ability, Half, Module, Start
 from automotive_cosim.tasks.forms import linked
 from automotive_cosim.tasks.hard.dialogue import speaking
 from automotive_cosim.tasks.hard.forms import (
@@ -25,21 +25,15 @@ from automotive_cosim.tasks.hard.forms import (
     WANDA,
     YUSUF,
     Moves,
+    answer,
     done,
     figure,
     hard,
     knowing,
     letter,
     with_papers,
-    write_to,
     wrote,
 )
-
-
-def answer(who: str, text: str) -> Moves:
-    """Sends a reply to a favourite."""
-    return (*write_to(who), Tap(text=text))
-
 
 BOTH = (*letter(BEA), *letter(YUSUF))
 
@@ -117,6 +111,8 @@ WHOSE_DAY = hard(
     "date: the eighteenth of November, or the seventeenth",
     parameters={"percent": BEAS_PERCENT},
     tags=frozenset({"two_modules", "conflict"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="Two people want two kinds of music; a memo and the date tell whose turn it is.",
 )
 
 COLD, WARM = {1: 17.0, 2: 17.5, 3: 18.0, 4: 18.5, 5: 19.0}, {1: 24.0, 2: 23.5, 3: 25.0, 4: 24.5, 5: 24.0}
@@ -196,6 +192,8 @@ HOW_THEY_AGREE = hard(
     "content: the memo's rule is the middle, or the cooler wish",
     parameters={"way": tuple(COLD)},
     tags=frozenset({"two_modules", "conflict"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="Two temperatures, and a memo with the rule that settles them.",
 )
 
 LEFT, RIGHT = Seat.REAR_LEFT, Seat.REAR_RIGHT
@@ -264,6 +262,8 @@ LIGHTER_CHILD = hard(
     "occupants: the child on the right is the lighter one, or the child on the left",
     parameters={"percent": (20, 30, 70, 80, 90)},
     tags=frozenset({"two_modules", "conflict"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="The rule goes by weight, which only the cabin's screen tells.",
 )
 
 OLD_CODES = ("47", "83", "26", "91", "58")
@@ -312,6 +312,8 @@ GATE_FROM_DECEMBER = hard(
     _at_the_gate("2026-11-18", Entered("calls", "7700{code}"), _gate(False), _gate(True)),
     "date: the second of December, or the middle of November",
     parameters={"code": OLD_CODES},
+    ability=Ability.RULE,
+    guess_loses="Two numbers are noted; the date tells which is valid.",
 )
 
 OFFERED = {"the tablet": "Tablet", "your second phone": "Second phone"}
@@ -357,6 +359,8 @@ DEVICE_FROM_OSKAR = hard(
     ),
     "content: a device that the car finds, or one that it does not",
     parameters={"device": tuple(OFFERED), "other": ("your old player", "the kitchen radio", "the work laptop")},
+    ability=Ability.CONTENT,
+    guess_loses="The device is named in a message, and may not be there.",
 )
 
 BASS, TREBLE = (2, 4, 6), (-3, -5)
@@ -424,6 +428,8 @@ MIXED_UP = hard(
     "events: the driver has mixed two values up, or only thought so",
     parameters={"bass": BASS, "treble": TREBLE},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="The driver finds, after both values are set, that they are swapped, or only thinks so.",
 )
 
 LATER = {30: 2, 45: 3, 60: 4}
@@ -489,6 +495,8 @@ NOT_THAT_MEETING = hard(
     "events: the driver meant the other meeting, or is content",
     parameters={"minutes": tuple(LATER), "words": ("Yes", "Thank you", "On my way")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="The wrong meeting has been moved when the driver says so; it has to go back.",
 )
 
 LEGS = {1: (15, 16, 8), 2: (21, 17, 6), 3: (12, 18, 9), 4: (18, 21, 7), 5: (11, 19, 13)}
@@ -545,6 +553,8 @@ LEGS_BY_CAR = hard(
     "content: one stretch of the round was on foot, or all were by car",
     parameters={"way": tuple(LEGS)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CONTENT,
+    guess_loses="Which of three legs were driven is in the words of a memo, beside last year's.",
 )
 
 TASKS = (

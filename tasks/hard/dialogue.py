@@ -13,7 +13,7 @@ from automotive_cosim.tasking.dialogue import Says, Topic
 from automotive_cosim.tasking.moves import Consult, Hear, Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import AppDataAt, EnteredAll, SaysFigure
-from automotive_cosim.tasking.task import Half, Module, Start
+from automotive_cosim.tasking.task import Ability, Half, Module, Start
 from automotive_cosim.tasking.triggers import All, SignalHas
 from automotive_cosim.tasks.hard.forms import (
     A_RED_LIGHT,
@@ -129,6 +129,8 @@ A_PART_BACK = hard(
     "events: the driver takes back the air, or the lights",
     parameters={"percent": (50, 60, 70, 80, 90)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="After half of it the driver takes back a part, and only that.",
 )
 
 TURNED_JAPANESE = CarChange(4.0, HMI.LANGUAGE.path, "ja")
@@ -191,6 +193,8 @@ WHOSE_LANGUAGE = hard(
     "events: the driver wants the language back, or leaves it to a guest",
     parameters={"percent": (30, 40, 60, 70, 80), "bass": (2, 4, 6)},
     only_english="the driver wants the car back in English, or leaves it in Japanese",
+    ability=Ability.CHAIN,
+    guess_loses="The language changes half-way; only his remark tells whether it is to go back.",
 )
 
 MUSEUMS = named(PlaceKind.MUSEUM)
@@ -266,6 +270,8 @@ RATHER_THE_CAFE = hard(
     "events: the driver changes the goal once it is set, or only talks about another day",
     parameters={"museum": MUSEUMS, "words": ("On my way", "Where are you?")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="The goal is set when the driver names another, as a change or as mere talk.",
 )
 
 PICK_UPS = ("16:00", "16:15", "16:45", "17:00", "17:15")
@@ -331,6 +337,8 @@ TWO_PARENTS = hard(
     "content: the parents name two times, or one of them corrects herself and the other knows none",
     parameters={"time": PICK_UPS},
     tags=frozenset({"two_modules", "asking"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="Two parents give two times, or one corrects herself: to ask is right once and wrong once.",
 )
 
 LATE, MORE = (15, 20, 25, 35, 40), {15: 45, 20: 50, 25: 55, 35: 65, 40: 70}
@@ -406,6 +414,8 @@ MAKE_IT_MORE = hard(
     "events: the driver corrects the figure, or takes the other wish back",
     parameters={"late": LATE},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="The figure is nearly sent when the driver corrects it, or withdraws the other wish.",
 )
 
 WORDS = ("Yes", "Thank you", "On my way", "Where are you?", "I've arrived")
@@ -460,6 +470,8 @@ MEANT_FOR_MALIK = hard(
     ),
     "events: the driver finds that the wrong one got it, or that all is well",
     parameters={"words": WORDS},
+    ability=Ability.CHAIN,
+    guess_loses="The message has gone when the driver notices the name, or finds that it was right.",
 )
 
 TASKS = (A_PART_BACK, WHOSE_LANGUAGE, RATHER_THE_CAFE, TWO_PARENTS, MAKE_IT_MORE, MEANT_FOR_MALIK)

@@ -10,7 +10,7 @@ from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap
 from automotive_cosim.tasking.parameters import param
 from automotive_cosim.tasking.records import AppDataAt, AppDataWithout, EnteredAll, SaysFigure
-from automotive_cosim.tasking.task import Half, Module, Start
+from automotive_cosim.tasking.task import Ability, Half, Module, Start
 from automotive_cosim.tasks.hard.forms import (
     BEA,
     BEFORE_LEAVING,
@@ -89,6 +89,8 @@ CLOSES_FIRST = hard(
     "content: the market closes first, or the pharmacy",
     parameters={"words": ("On my way", "Yes", "Thank you", "Where are you?", "No")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.PLANNING,
+    guess_loses="The order follows from closing times that stand on the pages of two places.",
 )
 
 BOUGHT = {"B, half an hour": 1.3, "A, half an hour": 2.0, "C, two hours": 2.4, "B, an hour": 2.5, "C, an hour": 1.2}
@@ -135,6 +137,8 @@ PRICE_TO_ISLA = hard(
     ),
     parameters={"ticket": tuple(BOUGHT)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CONTENT,
+    guess_loses="The price is on the ticket, and differs by zone and time.",
 )
 
 LEVELS = (64, 43, 57, 36, 62)
@@ -189,6 +193,8 @@ BATTERY_FOR_THEO = hard(
     ),
     parameters={"level": LEVELS, "limit": (60, 70, 90, 100)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CONTENT,
+    guess_loses="The level that is shown is not the one to be told: ten are still to be used.",
 )
 
 TODAY = (
@@ -236,6 +242,8 @@ OFF_OR_LATER = hard(
     ),
     "content: the coffee is off, or later",
     parameters={"time": tuple(LATER_THAN_14)},
+    ability=Ability.CONTENT,
+    guess_loses="One line speaks of another time and one of illness: what holds is the whole of them.",
 )
 
 THINGS = ("candles", "lemons", "coffee", "matches", "rice")
@@ -286,6 +294,8 @@ SHOPPING_DONE = hard(
     ),
     "content: he has one or the other",
     parameters={"thing": THINGS},
+    ability=Ability.CONTENT,
+    guess_loses="Some of what he names he has got, some he has not.",
 )
 
 TUNING = {-4: "bass -4", -2: "bass -2", 3: "bass 3", 5: "bass 5", 7: "bass 7"}
@@ -335,6 +345,8 @@ SOUND_FROM_MEMO = hard(
     ),
     parameters={"bass": tuple(TUNING)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CONTENT,
+    guess_loses="Five figures in two memos; one is told as rear, not front.",
 )
 
 FREE_SUMMER = (Appointment("09:00", "Stand-up", "Work"), Appointment("16:30", "Malik's farewell", "Work"))
@@ -376,6 +388,8 @@ TELL_THE_ROUND = hard(
         deadline=BEFORE_LEAVING,
     ),
     parameters={"late": (10, 15, 20, 25, 35)},
+    ability=Ability.CONTENT,
+    guess_loses="Who belongs to the round is in a memo, and each gets a message of his own.",
 )
 
 PROPOSED = {"16:00": 2, "16:30": 4, "17:00": 6, "17:30": 8, "16:45": 5}
@@ -427,6 +441,8 @@ FREE_THEN = hard(
     ),
     "content: nothing else at that time, or the notary",
     parameters={"time": tuple(PROPOSED)},
+    ability=Ability.CONTENT,
+    guess_loses="Whether that time is free is in the calendar, the time in her message.",
 )
 
 EARLY = {"18:15": "19:00", "18:30": "19:15", "18:45": "19:30", "19:00": "19:45", "18:00": "18:45"}
@@ -489,6 +505,8 @@ LATER_OF_TWO = hard(
     _dinner(WANDA, OSKAR),
     "content: he comes first, or she does",
     parameters={"early": tuple(EARLY)},
+    ability=Ability.CONTENT,
+    guess_loses="Two messages give two times; dinner follows the one, the thanks go to the other.",
 )
 
 HOURS = {"one hour": 60, "two hours": 120, "four hours": 240}
@@ -534,6 +552,8 @@ CHEAPER_ZONE = hard(
     _cheaper("C", "B", "B"),
     "content: she names A and B, or B and C",
     parameters={"stay": tuple(HOURS), "when": DAYS},
+    ability=Ability.PLANNING,
+    guess_loses="Prices show only when a zone is chosen, and she names two of the three.",
 )
 
 TASKS = (

@@ -8,10 +8,11 @@ from typing import Any
 
 from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
 from automotive_cosim.cockpit.belongings import Belongings
-from automotive_cosim.tasking.checks import Check
-from automotive_cosim.tasking.moves import Move, Open, Tap
+from automotive_cosim.contracts import Action, ActionType
+from automotive_cosim.tasking.checks import Check, Entered
+from automotive_cosim.tasking.moves import Do, Move, Open, Tap
 from automotive_cosim.tasking.parameters import Choices
-from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Suite, Task
+from automotive_cosim.tasking.task import Ability, Basis, Deadline, Dimension, Half, Module, Start, Suite, Task
 from automotive_cosim.tasking.triggers import Driving, Trigger
 from automotive_cosim.tasks.forms import AT_REST, NO_PARAMETERS
 
@@ -23,6 +24,9 @@ READ = frozenset({"messages.read"})
 """What opening a message writes."""
 BEFORE_LEAVING = Deadline(
     90.0, "at 2.5 s a tap (Card, Moran and Newell 1983) a person is through; then he drives off"
+)
+AS_A_PASSENGER = Deadline(
+    100.0, "a passenger would have looked, and done it, in a minute and a half; then the next turn needs him"
 )
 A_RED_LIGHT = Deadline(60.0, "a phase of the lights: who has to move on by then has it done within a minute")
 THE_OTHER_WAITS = Deadline(75.0, "who waits for an answer on the phone gives it a minute and a quarter")
@@ -62,6 +66,21 @@ def with_letter(start: Start, who: str, *lines: Any, **papers: Any) -> Start:
     """The start with somebody known who has written."""
     contacts = papers.pop("contacts", knowing(who))
     return replace(start, belongings=Belongings(contacts, (wrote(who, *lines),), **papers))
+
+
+def answer(who: str, text: Any) -> Moves:
+    """Sends a reply to a favourite."""
+    return (*write_to(who), Tap(text=text))
+
+
+def told(to: str, text: Any) -> Entered:
+    """That one message was sent."""
+    return Entered("messages.sent", {"to": to, "text": text})
+
+
+def wait(seconds: int) -> Moves:
+    """Waits, at most ten seconds at a time."""
+    return tuple(Do(Action(ActionType.WAIT, seconds=min(10, seconds - past))) for past in range(0, seconds, 10))
 
 
 def letter(who: str) -> Moves:
@@ -107,8 +126,10 @@ def hard(
     tags: frozenset[str] = frozenset(),
     dimension: Dimension = Dimension.EXPLICIT_CONTROL,
     only_english: str = "",
+    ability: Ability,
+    guess_loses: str,
 ) -> Task:
-    """A task of the hard suite."""
+    """A task of the hard suite: what it is hard by, and why a guess loses, come last."""
     return Task(
         task_id,
         module,
@@ -121,4 +142,6 @@ def hard(
         tags=tags,
         suite=Suite.HARD,
         only_english=only_english,
+        ability=ability,
+        guess_loses=guess_loses,
     )

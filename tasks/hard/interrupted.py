@@ -16,7 +16,7 @@ from automotive_cosim.tasking.checks import AlertGiven, AllOf, Entered, SignalIs
 from automotive_cosim.tasking.moves import Do, Open, Slide, Tap, TypeText, Warn
 from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.records import AppDataAt, EnteredAll
-from automotive_cosim.tasking.task import Deadline, Module, Start
+from automotive_cosim.tasking.task import Ability, Deadline, Module, Start
 from automotive_cosim.tasks.hard.forms import (
     BEFORE_LEAVING,
     ON_THE_ROAD,
@@ -101,6 +101,8 @@ MOVED_TWICE = hard(
     ),
     "events: the later time comes from her, or from somebody else about another matter",
     parameters={"time": tuple(FIRST_PROPOSAL)},
+    ability=Ability.CHAIN,
+    guess_loses="The time that is right at first is wrong when the second message comes from the same person.",
 )
 
 NAMED = (*named(PlaceKind.PHARMACY)[:3], *named(PlaceKind.MUSEUM)[:2])
@@ -155,6 +157,8 @@ CALL_WHILE_TYPING = hard(
     ),
     "events: a friend rings, or the school",
     parameters={"street": FromCockpit("streets"), "place": NAMED},
+    ability=Ability.CHAIN,
+    guess_loses="The caller decides whether the call is taken; and the second address is still to be saved.",
 )
 
 AIRED = {window.path: 40.0 for window in WINDOWS} | {CABIN.SUNROOF.path: 20.0, HVAC.RECIRCULATION.path: True}
@@ -198,6 +202,10 @@ WINDOW_COMES_DOWN = hard(
         deadline=Deadline(45.0, "500 m of good road are left, some 45 s at 40 km/h; then the dust comes in"),
     ),
     parameters={"fan": (50, 60, 70, 80, 90)},
+    ability=Ability.CHAIN,
+    guess_loses=(
+        "A window opens again after all have been closed; only a second look finds it before they are locked."
+    ),
 )
 
 BARE = {
@@ -250,6 +258,11 @@ SOFT_TYRE_MEANWHILE = hard(
     "events: a tyre loses its air while that is done, or none does",
     parameters={"cruise": (90, 95, 100, 105, 110)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses=(
+        "Whether a tyre loses air shows only while, or after, the rest is done; a warning in advance is false half"
+        " of the time."
+    ),
 )
 
 VISITORS = (
@@ -296,6 +309,8 @@ LANGUAGE_MIDWAY = hard(
     ),
     parameters={"percent": (20, 30, 40, 80, 90)},
     only_english="a guest turns the car from English to Japanese",
+    ability=Ability.CHAIN,
+    guess_loses="The screen changes its language half-way, and it is not for the agent to change it back.",
 )
 
 RING_BACK = hard(
@@ -357,6 +372,8 @@ RING_BACK = hard(
     ),
     "events: Yusuf rings while the message is put together, or somebody else",
     parameters={"late": (15, 20, 25, 35, 40)},
+    ability=Ability.CHAIN,
+    guess_loses="Who rings decides whether the message is still to be sent, when it is nearly ready.",
 )
 
 TASKS = (

@@ -6,30 +6,23 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.signals import CALL, HMI, LIGHTS, LINK, MEDIA, SEAT, VOICE
-from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.history import Lasted, NotBefore, While
-from automotive_cosim.tasking.moves import Do, Open, Slide, Tap
+from automotive_cosim.tasking.moves import Open, Slide, Tap
 from automotive_cosim.tasking.parameters import param
-from automotive_cosim.tasking.task import Deadline, Module
+from automotive_cosim.tasking.task import Ability, Deadline, Module
 from automotive_cosim.tasks.hard.forms import (
     ISLA,
     ON_THE_ROAD,
     OSKAR,
     PRIYA,
-    Moves,
     done,
     hard,
     knowing,
+    wait,
     with_papers,
     write_to,
 )
-
-
-def wait(seconds: int) -> Moves:
-    """Waits, at most ten seconds at a time."""
-    return tuple(Do(Action(ActionType.WAIT, seconds=min(10, seconds - past))) for past in range(0, seconds, 10))
-
 
 PLAYING = {
     MEDIA.SOURCE.path: "DAB",
@@ -72,6 +65,8 @@ QUIET_CALL = hard(
         deadline=Deadline(60.0, "the reports on the traffic are read in a minute, and he wants to hear them"),
     ),
     parameters={"percent": (20, 25, 35, 40, 45)},
+    ability=Ability.CHAIN,
+    guess_loses="The order and the time count: silent before the call, playing after it.",
 )
 
 PRIVACY = (Open("settings"), Tap("settings.page.privacy"))
@@ -120,6 +115,10 @@ WHERE_WE_ARE = hard(
         deadline=Deadline(75.0, "she looks at the map once, when the message comes"),
     ),
     parameters={"seconds": (26, 28, 30, 32, 34)},
+    ability=Ability.RESTRAINT,
+    guess_loses=(
+        "It has to stay on for half a minute with nothing to do, and the second switch beside it stays off."
+    ),
 )
 
 TEN = "22:00"
@@ -167,6 +166,8 @@ AT_TEN = hard(
         deadline=Deadline(110.0, "by the first minute after ten: 55 s to wait, and as long again to do it"),
     ),
     parameters={"percent": (10, 20, 30, 40, 50)},
+    ability=Ability.RESTRAINT,
+    guess_loses="Everything could be set at once; before ten it is wrong.",
 )
 
 WARM = (Open("climate"), Tap("hvac.driver_seat_heating", 2), Tap("hvac.passenger_seat_heating", 2))
@@ -219,6 +220,8 @@ WARM_THEN_MILD = hard(
         deadline=Deadline(90.0, "at 45 degrees of the cushion skin begins to hurt after minutes (ISO 13732-1)"),
     ),
     parameters={"words": ("Yes", "No", "Thank you", "On my way", "I've arrived")},
+    ability=Ability.CHAIN,
+    guess_loses="The heat has to last and then to go down: neither level is right all along.",
 )
 
 BLINK = (Open("vehicle"), Tap("vehicle.tab.lights"), Tap("lights.hazard"))
@@ -259,6 +262,8 @@ THANK_ALL = hard(
         deadline=Deadline(40.0, "the lorry is behind for half a minute more: then it turns off and sees no thanks"),
     ),
     parameters={"percent": (10, 15, 20, 25, 30)},
+    ability=Ability.CHAIN,
+    guess_loses="They have to blink for some five seconds, in the middle of other things.",
 )
 
 TASKS = (QUIET_CALL, WHERE_WE_ARE, AT_TEN, WARM_THEN_MILD, THANK_ALL)

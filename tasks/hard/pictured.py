@@ -18,7 +18,7 @@ from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import Choices, param
 from automotive_cosim.tasking.records import AppDataAt, SaysFigure
-from automotive_cosim.tasking.task import NEEDS_PICTURE, Module, Start, Task
+from automotive_cosim.tasking.task import NEEDS_PICTURE, Ability, Module, Start, Task
 from automotive_cosim.tasks.hard.forms import (
     BEA,
     ISLA,
@@ -30,12 +30,12 @@ from automotive_cosim.tasks.hard.forms import (
     WANDA,
     YUSUF,
     Moves,
+    answer,
     done,
     figure,
     hard,
     knowing,
     letter,
-    write_to,
 )
 
 
@@ -53,17 +53,22 @@ def pictured(
     first: Any,
     second: Any,
     difference: str,
+    guess_loses: str,
     **parameters: Choices,
 ) -> Task:
     """A pair that nobody can win who does not see the picture."""
     return hard(
-        task_id, module, says, first, second, difference, parameters=parameters, tags=frozenset({NEEDS_PICTURE})
+        task_id,
+        module,
+        says,
+        first,
+        second,
+        difference,
+        parameters=parameters,
+        tags=frozenset({NEEDS_PICTURE}),
+        ability=Ability.CONTENT,
+        guess_loses=guess_loses,
     )
-
-
-def answer(who: str, text: str) -> Moves:
-    """Sends a reply to a favourite."""
-    return (*write_to(who), Tap(text=text))
 
 
 STAYS = {"half an hour": 30, "an hour": 60, "two hours": 120, "four hours": 240}
@@ -117,6 +122,7 @@ ZONE_ON_THE_SIGN = pictured(
     "content: the sign on the photo is for a zone, or for its end",
     stay=tuple(STAYS),
     zone=tuple(OTHER_ZONE),
+    guess_loses="The letter, and whether the zone ends there, is on the photo alone.",
 )
 
 SHOWN = {"15:45": 3, "16:15": 5, "16:30": 6, "16:45": 7, "17:15": 9}
@@ -180,6 +186,7 @@ MALIKS_CLOCK = pictured(
     ),
     "content: the clock on the photo is right, or an hour slow",
     time=tuple(SHOWN),
+    guess_loses="The hands are on the photo, and a line with it may say that the clock is slow.",
 )
 
 REAR_SEATS = {"rear left": SEAT.REAR_LEFT_HEATING, "rear right": SEAT.REAR_RIGHT_HEATING}
@@ -230,6 +237,7 @@ MARKED_SEAT = pictured(
     "content: the seat on the photo is ticked, or crossed out",
     seat=tuple(REAR_SEATS),
     words=("Yes", "Thank you", "On my way"),
+    guess_loses="Which seat, and whether it is ticked or crossed out, is on the photo alone.",
 )
 
 CELSIUS = {1: 18.5, 2: 19.0, 3: 20.0, 4: 22.5, 5: 24.0}
@@ -295,6 +303,7 @@ BEAS_THERMOSTAT = pictured(
     ),
     "content: the thermostat on the photo reads in degrees Celsius, or Fahrenheit",
     turn=tuple(CELSIUS),
+    guess_loses="The needle and its unit are on the photo alone.",
 )
 
 PSI = {1: 32, 2: 34, 3: 36, 4: 38, 5: 40}
@@ -344,6 +353,7 @@ THEOS_PUMP = pictured(
     ),
     "content: the gauge on the photo is in psi, or in bar",
     turn=tuple(PSI),
+    guess_loses="The needle and its unit are on the photo alone.",
 )
 
 MPH = {20: 30, 25: 40, 35: 55, 45: 70, 50: 80}
@@ -406,6 +416,7 @@ AT_YUSUFS_GATE = pictured(
     ),
     "content: the sign on the photo is a European one in km/h, or an American one in mph",
     figure=tuple(MPH),
+    guess_loses="The figure, and by the sign's form its unit, is on the photo alone.",
 )
 
 SIDES = {"left": "right", "right": "left"}
@@ -473,6 +484,7 @@ BENCH_PHOTO = pictured(
     "content: the photo was taken from in front of the car, or from behind it",
     half=tuple(SIDES),
     percent=(10, 20, 30, 40, 50),
+    guess_loses="Left and right on the photo are turned round if it was taken from in front.",
 )
 
 NETWORKS = ("Home-5G", "CityFree", "Garage", "Coffee-Guest")
@@ -526,6 +538,7 @@ ONE_LAMP = pictured(
     ),
     "content: one lamp on the photo is green, or one is red",
     network=NETWORKS,
+    guess_loses="Which lamp is the odd one out, and its colour, is on the photo alone.",
 )
 
 TASKS = (

@@ -10,7 +10,7 @@ from automotive_cosim.tasking.checks import AllOf, AppDataIs, Counted, Entered, 
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import FromCockpit, param
 from automotive_cosim.tasking.records import EnteredAll
-from automotive_cosim.tasking.task import Half, Module, Start
+from automotive_cosim.tasking.task import Ability, Half, Module, Start
 from automotive_cosim.tasks.forms import linked
 from automotive_cosim.tasks.hard.forms import (
     A_RED_LIGHT,
@@ -77,6 +77,8 @@ TRAILER_ROUTE = hard(
     "content: tunnels and ferries are out, or motorways and toll roads",
     parameters={"place": FromCockpit("favourite_places")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.PLANNING,
+    guess_loses="Four kinds of roads can be ruled out; his message alone tells which two.",
 )
 
 THERE_AT = ("09:30", "10:00", "10:30", "11:00", "11:30")
@@ -144,6 +146,8 @@ LEAVE_IN_TIME = hard(
     "content: the drive takes an hour, or half an hour",
     parameters={"time": THERE_AT},
     tags=frozenset({"two_modules"}),
+    ability=Ability.PLANNING,
+    guess_loses="Both times follow from an arrival and the length of the drive, which only her message has.",
 )
 
 STAYS = {"half an hour": 30, "two hours": 120, "four hours": 240}
@@ -199,6 +203,11 @@ TWO_TICKETS = hard(
         may_write=frozenset(),
     ),
     parameters={"car": tuple(STAYS), "trailer": tuple(STAYS)},
+    ability=Ability.CHAIN,
+    guess_loses=(
+        "Two payments that cannot be taken back, each with its own zone and time, in one form that keeps the last"
+        " values."
+    ),
 )
 
 NETWORKS = ("CityFree", "Garage", "Coffee-Guest")
@@ -249,6 +258,10 @@ HOTEL_NETWORK = hard(
     ),
     parameters={"network": NETWORKS, "device": tuple(DEVICES)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses=(
+        "Four networks, three devices: the memo names one, and the mobile data must go only after it is joined."
+    ),
 )
 
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
@@ -301,6 +314,8 @@ CABLE_IN = hard(
     "settings: no cable, or the cable still in",
     parameters={"words": ("Where are you?", "Yes", "No", "Thank you", "On my way")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.PLANNING,
+    guess_loses="Whether the cable is in shows on the charging screen alone.",
 )
 
 LOOK = (Open("vehicle"), Tap("vehicle.tab.driving"), Tap("vehicle.tab.lights"))
@@ -339,6 +354,8 @@ WASHER_ENOUGH = hard(
     "settings: the tank is four fifths full, or nearly empty",
     parameters={"words": ("Where are you?", "Yes", "No", "Thank you", "On my way")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.PLANNING,
+    guess_loses="The level of the fluid is behind a screen, and decides between washing and a message.",
 )
 
 WAY_KM = {80: 170, 90: 180, 100: 190, 110: 210, 120: 240}
@@ -380,6 +397,8 @@ FAR_ENOUGH = hard(
     "content: a way that the range covers twice, or only once",
     parameters={"km": tuple(WAY_KM)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.PLANNING,
+    guess_loses="There and back against the range: the distance is in a message, the range on another screen.",
 )
 
 TASKS = (TRAILER_ROUTE, LEAVE_IN_TIME, TWO_TICKETS, HOTEL_NETWORK, CABLE_IN, WASHER_ENOUGH, FAR_ENOUGH)

@@ -12,7 +12,7 @@ from automotive_cosim.contracts import Weather
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.parameters import param
-from automotive_cosim.tasking.task import Deadline, Module
+from automotive_cosim.tasking.task import Ability, Deadline, Module
 from automotive_cosim.tasks.hard.forms import (
     A_RED_LIGHT,
     MALIK,
@@ -64,6 +64,8 @@ BLUETOOTH_BACK = hard(
     ),
     parameters={"words": tuple(TOLD)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="The link has to come on for the message and go off after it; either half alone leaves it wrong.",
 )
 
 STAYS = {"half an hour": 30, "one hour": 60, "two hours": 120, "four hours": 240}
@@ -100,6 +102,8 @@ DATA_FOR_A_TICKET = hard(
     ),
     parameters={"stay": tuple(STAYS), "zone": ("B", "C")},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="The payment is refused without the data link, which must be off again at the end.",
 )
 
 DOORS = (Open("vehicle"), Tap("vehicle.tab.doors"))
@@ -154,6 +158,10 @@ COOL_WITH_AIR = hard(
     ),
     parameters={"fan": (60, 70, 80, 90), "degrees": (18, 19)},
     tags=frozenset({"two_modules", "conflict"}),
+    ability=Ability.CHAIN,
+    guess_loses=(
+        "Cooling comes on only with the windows nearly closed, and the button that closes them all closes too much."
+    ),
 )
 
 WARM = (17, 18, 19, 20, 21)
@@ -203,6 +211,8 @@ SWAP_SIDES = hard(
     ),
     parameters={"warm": WARM},
     tags=frozenset({"preference"}),
+    ability=Ability.OCCUPANTS,
+    guess_loses="Each side has what the other wants; levelling them, or setting one, gives nobody what is theirs.",
 )
 
 EVENING = replace(
@@ -262,6 +272,8 @@ DARK_AND_QUIET = hard(
     ),
     parameters={"percent": (10, 20, 30, 40, 50)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="What shines is on three screens, and the switch that ends all light ends that on the road too.",
 )
 
 AGENDA = (
@@ -312,6 +324,8 @@ HOUR_OFF = hard(
         may_write=frozenset(),
     ),
     parameters={"first": tuple(EARLIER)},
+    ability=Ability.CHAIN,
+    guess_loses="Three entries move, each on a page of its own, and one that is moved twice is wrong again.",
 )
 
 WASH = (
@@ -368,6 +382,8 @@ CAR_WASH = hard(
     ),
     parameters={"people": (1, 2, 3, 4, 5)},
     tags=frozenset({"two_modules"}),
+    ability=Ability.CHAIN,
+    guess_loses="Ten things on five screens, of which the usual button covers only some.",
 )
 
 TASKS = (

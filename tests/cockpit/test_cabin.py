@@ -3,11 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import product
 
 import pytest
 
 from automotive_cosim.cockpit.cabin import (
+    AIR_CP,
+    AIR_DENSITY,
+    BLOWER_FULL,
+    CABIN_LOSS,
+    CABIN_VOLUME_M3,
+    COMPRESSOR_MINIMUM_C,
+    EVAPORATOR_C,
     FOG_OPAQUE,
+    LEAK_PER_HOUR,
+    LEAK_PER_HOUR_KMH,
+    OCCUPANT_HEAT_W,
+    SUPPLY_MAXIMUM_C,
     Air,
     Cabin,
     CabinStart,
@@ -19,6 +31,7 @@ from automotive_cosim.cockpit.cabin import (
     sweeps_per_minute,
 )
 from automotive_cosim.errors import UnknownNameError, UserError
+from tests.laws import over
 
 COLD_DAMP = Air(4.0, 92.0, 0.0, 50 / 3.6)
 MUGGY = Air(28.0, 85.0, 0.0, 8.0)
@@ -148,6 +161,25 @@ def test_heating_and_cooling_go_to_the_set_temperature() -> None:
     cool = Cabin.at(CabinStart(temperature_c=40.0), summer).after(1200.0, cool_down, summer)
     assert warm.temperature_c == pytest.approx(21.0, abs=3.0)
     assert cool.temperature_c == pytest.approx(21.0, abs=3.0)
+
+
+@pytest.mark.slow
+@over(product((-15, 0, 10, 25, 40), (20, 50, 100), (19.0, 24.0), (False, True)))
+def test_the_cabin_settles_at_what_is_set_where_the_power_suffices(
+    outside_c: int, fan_pct: int, set_c: float, is_closed: bool
+) -> None:
+    air = Air(outside_c, 50.0, 0.0, 50 / 3.6)
+    set_up = Controls(set_c, fan_pct, False, True, is_closed, False, False, 0.0, 0.0)
+    later = Cabin.at(CabinStart(temperature_c=21.0), air).after(900.0, set_up, air)
+    leak = AIR_DENSITY * CABIN_VOLUME_M3 * (LEAK_PER_HOUR + LEAK_PER_HOUR_KMH * 50) / 3600
+    gained_w = (CABIN_LOSS + leak * AIR_CP) * (outside_c - set_c) + OCCUPANT_HEAT_W
+    needed_c = set_c - gained_w / (BLOWER_FULL * fan_pct / 100 * AIR_CP)
+    taken_c = set_c if is_closed else outside_c
+    coldest_c = min(taken_c, EVAPORATOR_C) if outside_c > COMPRESSOR_MINIMUM_C else taken_c
+    if coldest_c <= needed_c <= SUPPLY_MAXIMUM_C:
+        assert later.temperature_c == pytest.approx(set_c, abs=0.5)
+    else:
+        assert (later.temperature_c > set_c) is (needed_c < coldest_c)
 
 
 def test_shorter_steps_change_little() -> None:

@@ -6,9 +6,11 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from datetime import timedelta
+from itertools import product
 
 import numpy as np
 import pytest
+from shapely import LineString, Point
 
 from automotive_cosim.cockpit.apps.map.state import Viewpoint
 from automotive_cosim.cockpit.cockpit import Cockpit
@@ -32,6 +34,8 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.ids import resource_id as shown_id
+
+from .conftest import town
 
 Make = Callable[..., Cockpit]
 
@@ -163,13 +167,25 @@ def test_incidents_at_one_place_and_on_unknown_roads_break_nothing(make: Make, a
     assert words == "Road closed: Pont Neuf", "the gravest"
 
 
-def test_a_mark_does_not_cover_the_car(make: Make, around: Surroundings) -> None:
-    cockpit = make(surroundings=with_incidents(around, RoadIncident(IncidentKind.CLOSURE, "e6_5", 60.0)))
-    cockpit.open_app("map")
-    badge = next(widget for widget in cockpit.tree.walk() if widget.key == "map.incident.0")
-    x, y = View(*_frame(view(cockpit))).pixel(around.driving.x_m, around.driving.y_m)
-    assert not badge.rect.overlaps(Rect(round(x) - 20, round(y) - 20, 40, 40))
-    assert math.dist(badge.rect.centre, (x, y)) < 80
+def test_a_mark_lies_on_its_road_and_does_not_cover_the_car(make: Make, around: Surroundings) -> None:
+    moved, ways = 0, [LineString(road.shape_m) for road in town().roads]
+    for at_m, zoom in product(range(0, 121, 24), range(len(ZOOMS_M_PER_PX))):
+        cockpit = make(
+            surroundings=with_incidents(around, RoadIncident(IncidentKind.BREAKDOWN, "e6_5", float(at_m)))
+        )
+        cockpit._state.keep(Viewpoint(zoom))
+        cockpit.open_app("map")
+        badge = next((widget for widget in cockpit.tree.walk() if widget.key == "map.incident.0"), None)
+        if badge is None:
+            continue  # below the edge of the map
+        frame = View(*_frame(view(cockpit)))
+        x, y = frame.pixel(around.driving.x_m, around.driving.y_m)
+        assert not badge.rect.overlaps(Rect(round(x) - 20, round(y) - 20, 40, 40)), (at_m, zoom)
+        metres = Point(frame.metres(*badge.rect.centre))
+        away_px = min(way.distance(metres) for way in ways) / frame.camera.metres_per_pixel
+        assert away_px < 2, (at_m, zoom)
+        moved += abs(metres.x - 600.0 - at_m) > 10
+    assert moved > 8
 
 
 def test_of_two_marks_of_one_jam_the_route_s_is_shown(make: Make, around: Surroundings) -> None:

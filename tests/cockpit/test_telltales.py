@@ -4,16 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.notices import NAMES, lit
-from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, LIGHTS, OUTSIDE, SEAT, TYRE
+from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, HMI, LIGHTS, OUTSIDE, SEAT, TYRE
 from automotive_cosim.cockpit.telltales import RoadSign, SignKind, Telltale, sign_picture, symbol
 from automotive_cosim.contracts import Element, Limit, LimitSource, Surroundings
 from automotive_cosim.contracts.ids import key_of
+
+from .conftest import View
 
 CAUSES = {
     Telltale.BELT: {SEAT.DRIVER_BELT.path: False},
@@ -87,3 +90,23 @@ def test_without_the_camera_there_is_no_sign(make: Callable[..., Cockpit]) -> No
     keys = {key_of(each.resource_id) for each in cockpit.elements()}
     assert "home.telltales" in keys
     assert "home.sign" not in keys
+
+
+FIGURES = {"km/h": (50 / 3.6, "50"), "mph": (30 * 0.44704, "30")}
+
+
+@pytest.mark.slow
+def test_a_sign_shows_its_own_figure_on_every_screen(
+    cockpit: Cockpit, around: Surroundings, walker: Callable[[Cockpit], tuple[View, ...]]
+) -> None:
+    for view, signed, shown in product(walker(cockpit), FIGURES, FIGURES):
+        limit_mps, figure = FIGURES[signed]
+        there = replace(around.driving.road, limit=Limit(limit_mps, LimitSource.POSTED))
+        view.cockpit.inject(HMI.DISTANCE_UNIT.path, "MILES" if shown == "mph" else "KILOMETERS")
+        view.cockpit.sense(replace(around, driving=replace(around.driving, road=there), sign_unit=signed), 1.0)
+        words = figure if signed == shown else f"{figure} {signed}"
+        elements = {key_of(each.resource_id): each for each in view.cockpit.elements()}
+        plate = elements["status.limit_sign"]
+        assert (plate.text, plate.content_description) == (figure, f"Limit sign {words}"), view.name
+        for key in elements.keys() & {"home.sign", "map.sign"}:
+            assert elements[key].content_description == f"Last sign: Limit sign {words}", view.name

@@ -20,6 +20,7 @@ from pathlib import Path
 
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, Tracker
+from automotive_cosim.drives.events.errands import UNASKED
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import facts_of
 from automotive_cosim.drives.script import script_json
@@ -52,7 +53,7 @@ class Recorded:
 
     def against(self, kind: EventKind, time_s: float) -> str | None:
         """What spoke against a warning of a kind when the facts were looked up last."""
-        known = self.facts[kind.name]
+        known = self.facts.get(kind.name, ((0.0, UNASKED),))  # on record nobody asks for anything
         return known[max(0, bisect_right(known, time_s, key=lambda fact: fact[0]) - 1)][1]
 
 
@@ -78,7 +79,9 @@ def drive(family: str, simulations: Simulations) -> Recorded:
     """Drives it."""
     script = FAMILIES[family].draw(SEED)
     tracker, alarm, wakes_s, facts_s = Tracker(KINDS), Alarm(), [], []
-    facts: dict[str, list[tuple[float, str | None]]] = {name: [] for name in KINDS}
+    facts: dict[str, list[tuple[float, str | None]]] = {
+        name: [] for name, kind in KINDS.items() if not kind.by_state
+    }
     with closing(depart(script, simulations)) as world:
         moments = [world.moment]
         while moments[-1].time_s < moments[0].time_s + script.duration_s:

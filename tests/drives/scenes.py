@@ -7,7 +7,7 @@ from functools import cache
 from typing import Any
 from zoneinfo import ZoneInfo
 
-from automotive_cosim.cockpit.signals import CATALOGUE, LIGHTS, MOTION
+from automotive_cosim.cockpit.signals import CATALOGUE, LIGHTS, LINK, MOTION
 from automotive_cosim.contracts import (
     Around,
     Connectivity,
@@ -21,6 +21,7 @@ from automotive_cosim.contracts import (
     Sight,
     Weather,
 )
+from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker
 from automotive_cosim.geo.locate import Geo
@@ -56,6 +57,7 @@ AHEAD = RoadAhead(
 AROUND = Around(None, None, None, None, 1.0)
 CLEAR = Weather(15.0, 60.0, 0.0, 1, 20.0, 20_000.0, 10.0)
 NOON = datetime(2026, 6, 9, 13, 0, tzinfo=ZoneInfo("Europe/Paris"))
+UNDONE: dict[str, Any] = {"messages.sent": [], "calls.declined": [], "navigation.destination": ""}
 SWITCHED = {"Vehicle.Powertrain.Range": 250_000.0, LIGHTS.LOW_BEAM.path: True, LIGHTS.SWITCH.path: "BEAM"}
 
 
@@ -81,9 +83,14 @@ def moment(
     at: datetime = NOON,
     position: tuple[float, float] = (2.0, 48.3),
     sights: tuple[Sight, ...] = (),
+    asked: tuple[Errand, ...] = (),
+    done: dict[str, Any] | None = None,
     **changes: Any,
 ) -> Moment:
-    """A moment; other changes go to the field of road, ahead, around or weather that has that name."""
+    """A moment, with what is commanded besides signals as ``done``.
+
+    Other changes go to the field of road, ahead, around or weather that has that name.
+    """
     parts = {}
     for name, whole in (("road", ROAD), ("ahead", AHEAD), ("around", AROUND), ("weather", CLEAR)):
         mine = {field.name for field in fields(whole)} & changes.keys()
@@ -111,7 +118,7 @@ def moment(
     local_time = at + timedelta(seconds=time_s)
     gps = GpsFix(True, *position, 3.0, 0.0, 90.0)
     values = {path: signal.default for path, signal in CATALOGUE.items()}
-    values |= SWITCHED | {MOTION.SPEED.path: kmh} | (signals or {})
+    values |= SWITCHED | {LINK.ONLINE.path: True, MOTION.SPEED.path: kmh} | (signals or {})
     return Moment(
         time_s=time_s,
         local_time=local_time,
@@ -123,8 +130,9 @@ def moment(
         connectivity=Connectivity(True, "5g", 4),
         context=_geo().locate(driving, gps, parts["weather"], local_time),
         signals=values,
-        commands=values,
+        commands=values | UNDONE | (done or {}),
         sights=sights,
+        asked=asked,
     )
 
 

@@ -39,7 +39,9 @@ def seen(now: Moment, words: Sequence[str] = (), changed: Sequence[str] = (), **
     """An observation with what the watcher reads of it; the words stand for readings of the car."""
     feedback = SimpleNamespace(text="1 s passed")
     vehicle = SimpleNamespace(**(CAR | {"noticed": "\n".join([noticed([now], changed), *words])} | car))
-    return SimpleNamespace(time_s=now.time_s, vehicle=vehicle, context=now.context.text(), feedback=feedback)
+    return SimpleNamespace(
+        time_s=now.time_s, vehicle=vehicle, context=now.context.text(), feedback=feedback, said=(), elements=()
+    )
 
 
 def watched(drive: Sequence[Moment], **car: Any) -> list[Action]:

@@ -134,7 +134,8 @@ def test_place_is_worth_what_decided_pairs_lose_without_it_and_placebo_nothing()
 
 def test_labels_count_an_episode_for_each_it_has():
     found = results(row("a", skills=("type", "infer")), row("b", skills=("type",), success=False), row("c"))
-    rows = {each[0]: str(each[1]) for each in findings.by_label(found, "Skill", lambda row: row.skills).rows}
+    told = findings.by_label(found, "skill", "skills", lambda row: row.skills)
+    rows = {each[0]: str(each[1]) for each in told.rows}
     assert list(rows) == ["infer", "type"]
     assert rows["infer"].endswith("1/1")
     assert rows["type"].endswith("1/2")

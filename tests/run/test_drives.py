@@ -8,18 +8,22 @@ from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
 from itertools import pairwise
+from math import inf
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 from typer.testing import CliRunner
 
+from automotive_cosim.agents import make_agent
 from automotive_cosim.cli.main import app
 from automotive_cosim.contracts.given import Clock
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.score import together
+from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import UserError
 from automotive_cosim.publish.bundle import write_bundle
 from automotive_cosim.publish.leaderboard import write_leaderboard
@@ -32,7 +36,7 @@ from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import DriveJob
+from automotive_cosim.run.jobs import DriveJob, EpisodeJob
 from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.regrade import regrade
@@ -403,3 +407,30 @@ def test_intervals_come_from_whole_drives(folder: Path) -> None:
     assert interval(repeated, value) is None  # type: ignore[arg-type]
     assert [table.name for table in tables(mixed)] == ["watchers", "kinds", "families", "measures", "exposure"]
     assert len(grouped(mixed)) == 2
+
+
+@pytest.mark.parametrize(("limits", "steps"), [({"drive_steps": 2}, 2), ({"drive_model_s": 9.0}, 100_000)])
+def test_a_drive_has_limits_of_its_own(limits: dict[str, float], steps: int) -> None:
+    values = {"drives": ["grid_june"], "tasks": ["hvac_fan_max"], "agents": ["silent"], "limits": limits}
+    drive, episode = sorted(make_plan(values).jobs(), key=lambda job: isinstance(job, EpisodeJob))
+    assert drive.limits == episode.limits.of_drives
+    assert episode.setup.max_steps == 20
+    assert drive.limits.model_s == limits.get("drive_model_s", 14_400.0)
+    assert drive.setup.max_steps == steps
+
+
+def test_the_rest_of_a_drive_is_unwatched_once_a_limit_is_reached(simulations: Simulations) -> None:
+    for most_steps, wall_s, end, from_s in (
+        (2, inf, End.OUT_OF_STEPS, 11.0),
+        (100, 0.0, End.OUT_OF_BUDGET, 0.0),
+        (100, inf, End.WATCH_OVER, None),
+    ):
+        settings = DriveSettings(minutes=0.5)
+        setup = DriveSetup("grid_june", 3, settings=settings, max_steps=most_steps, agent="alert-often")
+        agent = make_agent("alert-often")
+        record = run_drive(DriveJob(setup).planned(), setup, agent, simulations=simulations, wall_s=wall_s)
+        row, score = record.row, record.row.score
+        assert (row.end, row.unwatched_from_s) == (end, from_s)
+        assert score is not None
+        assert score.driven_s == pytest.approx(30.0)
+        assert record.timeline["watched_until_s"] == from_s

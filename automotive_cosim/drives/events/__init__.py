@@ -3,14 +3,14 @@
 base     what a kind of event is, a sighting, an act
 tracker  folds a drive's moments into events
 law      what law and measurement say at one moment
-speed, light, weather, road, car, people, border
+speed, light, weather, road, car, people, border, errands
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
-from automotive_cosim.drives.events import border, car, light, people, road, speed, weather
+from automotive_cosim.drives.events import border, car, errands, light, people, road, speed, weather
 from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
 from automotive_cosim.drives.events.tracker import DriveEvent, Tracker
 
@@ -44,6 +44,10 @@ KINDS: Mapping[str, EventKind] = {
         people.LeftBehind(),
         border.LimitUnits(),
         border.RuleChange(),
+        errands.ErrandClimate(),
+        errands.ErrandMessage(),
+        errands.ErrandCall(),
+        errands.ErrandPlace(),
     )
 }
 """Every kind by its name."""

@@ -42,6 +42,8 @@ class Sighting:
     """Seconds until it is too late; None leaves that to the kind's ``grace_s``."""
     value: float | None = None
     """What an act is measured against, e.g. the limit in km/h."""
+    done_s: float | None = None
+    """Since when what was asked for is done, for a kind that is judged ``by_state``."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +113,8 @@ class EventKind(ABC):
     lasts_s: ClassVar[float] = 60.0
     """For how long before the obligation a warning prepares for it: a driver remembers for a minute, and what comes
     slowly for longer."""
+    by_state: ClassVar[bool] = False
+    """Whether the state that the car reaches settles it, and not an act by itself."""
     neutral: ClassVar[str]
     """What makes a warning true although nothing is due, so that it costs nothing."""
 

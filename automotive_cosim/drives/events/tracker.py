@@ -33,6 +33,8 @@ class DriveEvent:
     """The last instant at which something was due."""
     obliged_s: float | None = None
     deadline_s: float | None = None
+    done_s: float | None = None
+    """Since when what was asked for is done, of a kind that is judged by the state."""
     ended: bool = False
     severities: list[tuple[float, float]] = field(default_factory=list)
     """Instants at which it became worse, and how bad."""
@@ -89,7 +91,9 @@ class Tracker:
         event.last_s, event.ended = now_s, False
         if sighting.severity > event.severity_at(now_s):
             event.severities.append((now_s, sighting.severity))
-        if not sighting.due or sighting.lookalike:
+        if event.done_s is None:
+            event.done_s = sighting.done_s
+        if not sighting.due or sighting.lookalike or event.done_s is not None:
             event.due_since_s = None
             return
         event.due_until_s = now_s

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import pairwise
 
 from automotive_cosim.cockpit.apps.map.state import Viewpoint
@@ -14,6 +16,31 @@ from automotive_cosim.contracts import IncidentKind, Road
 
 EgoPose = tuple[float, float, float]
 """x and y in metres, heading in degrees."""
+FARTHEST = 24
+"""Steps that a mark moves along its road at most, so as not to cover the car."""
+
+
+@dataclass(frozen=True, slots=True)
+class Spot:
+    """A spot on the road that has a mark on the map."""
+
+    roads: tuple[Road, ...]
+    """The road that it is on, and those of the route that follow."""
+    at_m: float
+    """From the start of the first."""
+
+    @property
+    def road(self) -> Road:
+        """The road that it is on."""
+        return self.roads[0]
+
+    def points(self, step_m: float) -> Iterator[tuple[float, float]]:
+        """Its point, then others of its road, step by step onward and back."""
+        steps = (way * number for number in range(1, FARTHEST + 1) for way in (1, -1))
+        for step in (0, *steps):
+            point = _along(self.roads, self.at_m + step * step_m)
+            if point is not None:
+                yield point
 
 
 def ego(state: State) -> EgoPose | None:
@@ -51,20 +78,24 @@ def scene(state: State, camera: Camera) -> MapScene:
     return MapScene(camera, ego(state), ahead.route_edges, others, slow)
 
 
-def jam(state: State) -> tuple[float, float] | None:
+def jam(state: State) -> Spot | None:
     """Where the next jam on the route begins, as last received."""
     if state.heard is None:
         return None
     road, ahead = state.heard.driving.road, state.heard.driving.ahead
     if ahead.jam_distance_m is None:
         return None
-    return _along(state.roads, ahead.route_edges, road.lane_position_m + ahead.jam_distance_m)
+    at_m = road.lane_position_m + ahead.jam_distance_m
+    for number, edge in enumerate(ahead.route_edges):
+        there = state.roads.find(edge)
+        if there is not None and at_m < there.length_m:
+            return Spot(_ways(state.roads, ahead.route_edges[number:]), at_m)
+        at_m -= 0.0 if there is None else there.length_m
+    return None
 
 
-def incidents(
-    state: State, *, besides_jam: bool = False
-) -> tuple[tuple[IncidentKind, Road, tuple[float, float]], ...]:
-    """Incidents last reported by live traffic: kind, road, and the point where a driver meets them.
+def incidents(state: State, *, besides_jam: bool = False) -> tuple[tuple[IncidentKind, Spot], ...]:
+    """Incidents last reported by live traffic: kind, and where a driver meets them.
 
     Args:
         state: the cockpit's state.
@@ -75,15 +106,19 @@ def incidents(
     ahead = state.heard.driving.ahead
     marked = frozenset(ahead.route_edges) if besides_jam else frozenset()
     told = (one for one in ahead.incidents if one.kind is not IncidentKind.JAM or one.edge_id not in marked)
-    known = ((one, state.roads.find(one.edge_id)) for one in told)
-    return tuple((one.kind, road, _point(road, one.position_m)) for one, road in known if road is not None)
+    route = ahead.route_edges
+    known = (
+        (one, _ways(state.roads, route[route.index(one.edge_id) :] if one.edge_id in route else (one.edge_id,)))
+        for one in told
+    )
+    return tuple((one.kind, Spot(ways, min(one.position_m, ways[0].length_m))) for one, ways in known if ways)
 
 
-def goal(state: State) -> tuple[float, float] | None:
+def goal(state: State) -> Spot | None:
     """Where the route ends."""
     route = () if state.outside is None else state.outside.driving.ahead.route_edges
     last = state.roads.find(route[-1]) if route else None
-    return None if last is None else last.shape_m[-1]
+    return None if last is None else Spot((last,), last.length_m)
 
 
 def box_of(camera: Camera, area: Rect, point_m: tuple[float, float], side: int) -> Rect:
@@ -93,14 +128,18 @@ def box_of(camera: Camera, area: Rect, point_m: tuple[float, float], side: int) 
     return Rect(area.x + round(x) - side // 2, area.y + round(y) - side // 2, side, side)
 
 
-def _along(roads: RoadMap, route: tuple[str, ...], driven_m: float) -> tuple[float, float] | None:
-    """The point of a route at a distance from its start."""
-    for road in map(roads.find, route):
-        if road is None:
-            continue
-        if driven_m < road.length_m:
-            return _point(road, driven_m)
-        driven_m -= road.length_m
+def _ways(roads: RoadMap, edges: tuple[str, ...]) -> tuple[Road, ...]:
+    """The roads of the first edges, as far as a mark may move; none unless the map has the first."""
+    found = [roads.find(edge) for edge in edges[:FARTHEST]]
+    return tuple(road for road in found if road is not None) if found and found[0] is not None else ()
+
+
+def _along(roads: tuple[Road, ...], at_m: float) -> tuple[float, float] | None:
+    """The point of roads at a distance from their start; None beyond them."""
+    for road in roads:
+        if at_m <= road.length_m:
+            return _point(road, at_m) if at_m >= 0 else None
+        at_m -= road.length_m
     return None
 
 

@@ -7,14 +7,23 @@ from datetime import timedelta
 
 from automotive_cosim.cockpit.apps.map import lookout
 from automotive_cosim.cockpit.apps.map.commands import Follow, Guide, Zoom
-from automotive_cosim.cockpit.apps.map.scene import box_of, ego, goal, incidents, jam, map_camera, scene
+from automotive_cosim.cockpit.apps.map.scene import Spot, box_of, ego, goal, incidents, jam, map_camera, scene
 from automotive_cosim.cockpit.apps.map.state import Navigation, Turn, Viewpoint, turns
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
 from automotive_cosim.cockpit.messages import Pick, Show
-from automotive_cosim.cockpit.parts import choices, content, distance, heading, rows, search, speed
+from automotive_cosim.cockpit.parts import (
+    choices,
+    content,
+    distance,
+    heading,
+    rows,
+    search,
+    sign_figure,
+    sign_in_words,
+)
 from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
 from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.signals import VOICE
@@ -52,8 +61,8 @@ _CLASSES = {
 }
 PANEL_WIDTH, PANEL_HEIGHT = 372, 544
 RESULTS = ENTRIES_LIMIT
-CHARGER = 28
-"""Side of the mark of a charging stop."""
+CHARGER, MARK, STEP = 28, 40, 5
+"""Side of the mark of a charging stop, of any other mark, and by how much that moves on its road, in pixels."""
 
 
 def map_screen(state: State) -> tuple[Widget, ...]:
@@ -144,17 +153,19 @@ def sign_view(rect: Rect, key: str, state: State) -> tuple[SignView, ...]:
     if not state.sign_camera:
         return ()
     sign = state.last_sign
-    figure = "" if sign is None or sign.limit_kmh is None else speed(state.signals, sign.limit_kmh)
-    return (SignView(rect=rect, key=key, description=_sign_in_words(sign, figure), sign=sign, figure=figure),)
+    figure = "" if sign is None or sign.limit_kmh is None else sign_figure(sign.limit_kmh, sign.unit)
+    told = _last_sign(sign, state)
+    return (SignView(rect=rect, key=key, description=told, sign=sign, figure=figure),)
 
 
-def _sign_in_words(sign: RoadSign | None, figure: str) -> str:
+def _last_sign(sign: RoadSign | None, state: State) -> str:
     """What the last sign says, for the list."""
     if sign is None:
         return say("Last sign")
     match sign.kind:
         case SignKind.LIMIT:
-            shown = say("Limit sign {limit}", limit=figure)
+            limit = sign_in_words(state.signals, sign.limit_kmh or 0.0, sign.unit)
+            shown = say("Limit sign {limit}", limit=limit)
         case SignKind.END_OF_LIMIT:
             shown = say("End of limit")
         case SignKind.SCHOOL:
@@ -239,25 +250,28 @@ def _chargers(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...])
 def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) -> tuple[Widget, ...]:
     """Marks of jam, destination and incidents, as far as they are visible.
 
-    A mark that would cover the car stands beside it.
+    A mark that would cover the car stands before or behind it on its road.
     """
-    known: list[tuple[str, str, Icon, tuple[float, float] | None]] = [
+    known: list[tuple[str, str, Icon, Spot | None]] = [
         ("jam", say("A jam begins here"), Icon.JAM, jam(state)),
         ("end", say("The route ends here"), Icon.GOAL, goal(state)),
     ]
     told = enumerate(incidents(state, besides_jam=known[0][3] is not None))
-    for at, (kind, road, place) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
+    for at, (kind, spot) in sorted(told, key=lambda one: list(INCIDENTS).index(one[1][0])):
         words, icon = INCIDENTS[kind]
-        known.append((f"incident.{at}", say("{name}: {value}", name=words, value=road_name(road)), icon, place))
+        named = say("{name}: {value}", name=words, value=road_name(spot.road))
+        known.append((f"incident.{at}", named, icon, spot))
     here = ego(state)
     car = None if here is None else box_of(camera, rect, here[:2], 48)
     found: list[Badge] = []
-    for name, words, icon, point in known:
-        if point is None:
+    for name, words, icon, place in known:
+        if place is None:
             continue
-        box = box_of(camera, rect, point, 40)
+        points = place.points(STEP * camera.metres_per_pixel)
+        box = first = box_of(camera, rect, next(points), MARK)
         if car is not None and box.overlaps(car):
-            box = box.moved(car.right - box.x, 0)
+            others = (box_of(camera, rect, point, MARK) for point in points)
+            box = next((each for each in others if not each.overlaps(car)), first)
         taken = (*avoid, *(mark.rect for mark in found))
         if rect.inset(4).encloses(box) and not any(box.overlaps(other) for other in taken):
             found.append(Badge(rect=box, key=f"map.{name}", description=words, icon=icon, warns=name != "end"))

@@ -25,6 +25,8 @@ class Arrival:
     """Name of a contact, or a number; empty takes a contact drawn from the seed."""
     text: str = ""
     """Text of a message; empty takes one drawn from the seed."""
+    after: str = ""
+    """Somebody who has to be written to first: it comes ``at_s`` after the first message to them, as an answer."""
 
 
 def checked(arrival: Arrival) -> Arrival:

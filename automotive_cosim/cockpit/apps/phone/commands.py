@@ -131,7 +131,7 @@ class SendReply(Command):
         ringing = state.of(Phone).ringing
         if ringing is not None and ringing.who == self.to:
             DeclineCall().perform(state)
-        state.keep(state.of(Phone).replied(self.to, self.text))
+        state.keep(state.of(Phone).replied(self.to, self.text, state.time_s))
         tell(state)
         return state.said(say("Sent to {to}: {text}", to=self.to, text=self.text), Icon.REPLY)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -174,6 +175,8 @@ class Sent:
 
     to: str
     text: str
+    time_s: float = 0.0
+    """When it was sent."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -225,9 +228,9 @@ class Phone(AppData):
         read = tuple(who for who in self.read if who != message.who)
         return replace(self, inbox=(*self.inbox, message), read=read)
 
-    def replied(self, who: str, text: str) -> Phone:
+    def replied(self, who: str, text: str, time_s: float) -> Phone:
         """With a sent message; what they wrote stays unread until it is opened."""
-        return replace(self, sent=(*self.sent, Sent(who, text)))
+        return replace(self, sent=(*self.sent, Sent(who, text, time_s)))
 
     def opened(self, who: str) -> Phone:
         """A copy with a contact's messages read."""
@@ -260,7 +263,7 @@ class Phone(AppData):
             _missed(state, self.ringing.who)
         waiting = []
         for arrival in self.expected:
-            if arrival.at_s > state.time_s - state.departed_s:
+            if self._due_s(arrival, state.departed_s) > state.time_s:
                 waiting.append(arrival)
             elif arrival.kind == "call":
                 _ring(state, arrival, linked)
@@ -270,6 +273,13 @@ class Phone(AppData):
                 waiting.append(arrival)
         state.keep(replace(state.of(Phone), expected=tuple(waiting)))
         tell(state)
+
+    def _due_s(self, arrival: Arrival, departed_s: float) -> float:
+        """When it comes; never as long as it answers a message that has not been sent."""
+        if not arrival.after:
+            return departed_s + arrival.at_s
+        sent_s = (sent.time_s for sent in self.sent if sent.to == arrival.after)
+        return next(sent_s, math.inf) + arrival.at_s
 
     def put_back(self, state: State, departed: State) -> None:
         """Calls of the way are forgotten, messages have come just now."""
