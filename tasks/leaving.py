@@ -175,7 +175,7 @@ MIRRORS_SHOW_NOTHING = pair(
         "My side mirrors are useless this evening; sort that out before I reverse.",
         "No view to the back on either side. Do what it takes, please.",
         "I can't pull out like this: make those two mirrors work again.",
-        "What's wrong with both of them out there? I'd like to see who overtakes, so fix it.",
+        "What's wrong with the pair of them out there? I want to see who's overtaking, so fix it.",
     ),
     act(
         replace(

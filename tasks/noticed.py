@@ -242,7 +242,7 @@ ONE_MISSING = pair(
         "I did the lamps by heart and forgot one. Add what the law demands in here, and nothing else.",
         "Complete my lighting for this weather, as the rules have it.",
         "The car in front shines in more ways than mine. Which is still compulsory for me? On with that, please.",
-        "Go through the lamps like an inspector: what's lacking in such thick air? Switch that on, please.",
+        "Check the lamps like an inspector: what's still missing in air this thick? Switch it on, please.",
     ),
     Half(
         MISSING,
@@ -398,15 +398,15 @@ CAKE = hazard(
         "It has to arrive in one piece: adjust the car, or sound an alert if it takes my hands.",
         "The bride will cry if it slides. Something is still against us: fix it, or tell me off with a warning.",
         "Precious cargo in the back! Anything wrong for that? Do it yourself if you can, else alert me.",
-        "I promised to drive like an angel. Set the car to match, or warn me about the load, whichever is amiss.",
+        "I promised to drive like an angel. If the car isn't set for that, change it; if it's the load, warn me.",
     ),
     act(
         at("border", "south", on(REAR_LEFT, Kind.OBJECT), signals={DRIVE.MODE: "SPORT"}),
-        SignalIs(DRIVE.MODE, ("NORMAL", "ECONOMY")),
+        SignalIs(DRIVE.MODE, ("NORMAL", "ECONOMY", "SNOW", "RAIN")),
         *DRIVING_TAB,
         Tap("drive.mode.normal"),
         rule=FLYING_SOURCE,
-        ways=((*DRIVING_TAB, Tap("drive.mode.economy")),),
+        ways=((*DRIVING_TAB, Tap("drive.mode.economy")), (*DRIVING_TAB, Tap("drive.mode.snow"))),
     ),
     act(
         at("border", "south", on(REAR_LEFT, Kind.OBJECT, belted=False)),

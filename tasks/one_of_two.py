@@ -54,7 +54,7 @@ BUTTONS_AND_HANDLES = hazard(
         "Two little hands at work back there! Take the last toy from them, please.",
         "Of what keeps him in, one is missing. Find it and switch it on.",
         "I've done most of the child-proofing on his side; do the rest.",
-        "He mustn't be able to open anything at all on the left. Complete that for me.",
+        "He mustn't be able to open anything on the left. Do whatever's still missing for that.",
     ),
     act(
         at("grid", "round", *SMALL_HANDS, signals={CABIN.LEFT_CHILD_LOCK: True}),
@@ -310,7 +310,7 @@ WHY_DOES_HE_CRY = hazard(
         "My son is soaked in sweat. Something on his side or in the air must be wrong; mend it.",
         "The little one can't tell me why he cries in this heat. You look, and help him.",
         "Too warm, he says, and won't say where. See to the cause, please.",
-        "Cool the boy down by whatever it is that heats him.",
+        "The boy is too hot. Find what's heating him and put a stop to it.",
     ),
     act(
         at(
@@ -420,7 +420,7 @@ BABY_MOVED = hazard(
         "Is all well on the baby's side? Change what could hurt her.",
         "A grown-up sat there until now. Adapt the place to our smallest.",
         "Her first ride beside me: what's set for grown-ups on that seat, put it right for a baby.",
-        "Look at the front passenger's place once more for the sake of our baby, and correct it.",
+        "Have another look at the front passenger's seat, now that our baby is in it, and put right what's wrong.",
     ),
     act(
         at(

@@ -389,7 +389,7 @@ LIMITER_AT_THE_LINE = pair(
         "Make the limiter respect the plates on this side; round down if you have to.",
         "Keep me just under what's posted here, in the car's own kilometres.",
         "Different country, different figures: cap it so that no camera here can complain, no lower than needed.",
-        "Convert that roadside number for me and limit us to it, in steps of five.",
+        "Set the limiter to the number on the signs here, in the car's own units, rounded down to a five.",
     ),
     limited(
         start("border", "north", capped(90.0), start=NOON, weather=FAIR, sign_camera=False),

@@ -79,7 +79,7 @@ LESS_LIGHT = pair(
         "Black night out there, disco in here: reduce whatever blinds me.",
         "My eyes can't get used to the dark; take away the light that does it.",
         "Something inside glares at me. Dim it or put it out, please.",
-        "It's far too light on this side of the glass to drive by night. Change that.",
+        "It's far too bright on this side of the glass for driving at night. Change that.",
     ),
     act(
         start(
@@ -172,7 +172,7 @@ SLID_DOWN = hazard(
         "Look at my passenger, out like a light. Does the belt still hold? Otherwise bring the backrest up.",
         "Make sure that my sleeping beauty wouldn't slip under the belt if I had to brake.",
         "Is the seat beside me good for a nap while we drive? Correct it if it's a bed.",
-        "My friend sleeps the kilometres away; see to it that the seat still protects him.",
+        "My friend is sleeping the miles away beside me; make sure his seat still protects him.",
     ),
     act(
         at(
@@ -204,7 +204,7 @@ BREEZE = hazard(
         "Wind in the hair on the rear seat! Is that safe for this one? If not, bring it up halfway at least.",
         "We'll go faster in a moment; put the rear window where it belongs for whoever is next to it.",
         "Check that nobody in the back can hang out, and wind up whatever lets them.",
-        "Open to the sill behind me, I hear. Fine, as long as no little arms get out; otherwise raise it.",
+        "The window behind me is all the way down, I hear. Fine, unless little arms can get out; then close it.",
     ),
     act(
         at("sydney", "putty_road", on(REAR_RIGHT, Kind.CHILD), signals={CABIN.REAR_RIGHT_WINDOW: 100.0}),
@@ -265,7 +265,7 @@ FLASHED = pair(
         "They keep blinking at me tonight; check what burns and what doesn't, and correct it by the law.",
         "What are they all hooting for? Go over the lamps and leave them as they have to be now.",
         "Am I a nuisance out here in the dark? Set the outside lights as is legal at this hour.",
-        "My lamps after dusk, please, exactly as the rules of this country want them.",
+        "It's dark: set my lamps exactly as the rules of this country want them, please.",
     ),
     Half(
         start(
