@@ -88,7 +88,10 @@ def pressure(signals: Signals, kpa: float) -> str:
 
 def minutes(seconds: float) -> str:
     """Minutes and seconds."""
-    return f"{int(seconds) // 60}:{int(seconds) % 60:02d}"
+    whole = int(seconds)
+    if whole >= 3600:
+        return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
+    return f"{whole // 60}:{whole % 60:02d}"
 
 
 def heading(rect: Rect, text: str, key: str = "") -> Label:

@@ -102,12 +102,12 @@ MY_MOTHER = hard(
         " way'.",
         "Mother beside me: make it warm for her as my notes of these days have it, and write Isla that I'm on my"
         " way.",
-        "Do for my mother, here on the passenger's seat, what I asked for on the trips before; see the memos. Isla"
+        "My mother is beside me. Do for her what I asked for on our earlier trips, it's in the memos. Isla"
         " gets"
         " 'On my way'.",
     ),
     _mother(
-        "Wed 18 Nov: That was too hot for my mother. {degrees} from now on, the seat as it was",
+        "Wed 18 Nov: Too hot for my mother. {degrees} from now on, the seat still on high",
         {first: float(later) for first, (_, later, _) in DEGREES.items()},
         LATER_UPS,
         FIRST_UPS,
@@ -238,9 +238,8 @@ CHARGE_AS_TOLD = hard(
         "Set the charging for tonight, a Friday, by what you've noted of my wishes since Monday; Isla gets a"
         " 'Yes'.",
         "Tonight's charge: limit and time are in my notes of the week, mind what still holds. Tell Isla yes.",
-        "It's Friday evening at home. Put limit and time of charging where my memos of these days want them, then"
-        " text"
-        " Isla 'Yes'.",
+        "It's Friday evening at home. Set the charge limit and the ready time as my memos of this week"
+        " say, then text Isla 'Yes'.",
     ),
     _friday("Wed 18 Nov: The hut is sold, so Fridays are as the other days", USUAL, MORE),
     _friday("Wed 18 Nov: The hut is let this winter, but my Fridays stay as I said", MORE, USUAL),
@@ -409,7 +408,7 @@ def _office(note: str, zone: str, other: str) -> Half:
     start = _trips(
         PARKED,
         note,
-        "Tue 17 Nov: Only on Thursdays {short} are enough at the office",
+        "Tue 17 Nov: But on Thursdays it's {short} at the office",
         "Mon 16 Nov: At the office always zone C, for an hour",
         contacts=knowing(WANDA),
     )
@@ -435,8 +434,8 @@ OFFICE_TICKET = hard(
         " Wanda.",
         "The ticket for the office, by my notes since Monday; it's Thursday. Wanda gets a 'Thank you'.",
         "Parking here at work: zone and time are in what I said on our trips. Buy that, then 'Thank you' to Wanda.",
-        "Get the office ticket by the memos of these days, with what counts on a Thursday, and send Wanda 'Thank"
-        " you'.",
+        "Buy the parking ticket for the office as my memos of this week have it for a Thursday, and send Wanda"
+        " 'Thank you'.",
     ),
     _office("Wed 18 Nov: They've put up new signs at the office, it's zone B now", "B", "C"),
     _office("Wed 18 Nov: At the gym it's zone B, for half an hour", "C", "B"),

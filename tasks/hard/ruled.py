@@ -337,8 +337,8 @@ NO_UNIT = hard(
         "Have the limiter hold what is written at Yusuf's gate, rounded down to a step, active. Then text him that"
         " I'm"
         " on my way.",
-        "There's a number on a plate at Yusuf's, it's in his message. Limiter on, as fast as that lets me go and no"
-        " faster, and 'On my way' to him.",
+        "There's a number on a plate at Yusuf's, it's in his message. Limiter on, at the fastest step"
+        " that it allows and no faster, and 'On my way' to him.",
     ),
     _estate(LEEDS, "GB", PLATES, SAME_PLATE),
     _estate(LYON, "FR", SAME_PLATE, PLATES),

@@ -146,9 +146,9 @@ BY_HAND = hard(
         "Hold the tyre display against Malik's message. If a tyre really is soft, vehicle alert; if it's the"
         " sensor's"
         " fault, tell me so and nothing else. He gets a 'Thank you' in any case.",
-        "Malik measured all four tyres with a gauge, it's in his text. Alert me to the vehicle only if one is soft"
-        " by"
-        " that as well; if only the sensor thinks so, tell me that it's wrong. And thank Malik.",
+        "Malik measured all four tyres with a gauge, it's in his text. Vehicle alert only if one is"
+        " soft by his gauge as well; if only the sensor says so, tell me that it's"
+        " wrong. And thank Malik.",
     ),
     _half(
         with_letter(STUCK_LOW, MALIK, "Just measured, by hand:", "2.5 on every wheel, all four"),
@@ -577,7 +577,7 @@ def _behind(arrival: Arrival, goal: tuple[Check, ...], moves: Moves, wrong: Move
     start = with_papers(
         replace(ON_THE_ROAD, aboard=BEHIND, interruptions=(arrival,)),
         contacts=(Contact(BEN, "555 45 72"), *knowing(PRIYA, OSKAR)),
-        threads=(Thread(BEN, "Today 08:10", ("Play {playlist} later, please",), unread=True),),
+        threads=(Thread(BEN, "Today 08:10", ("Later please the playlist {playlist}",), unread=True),),
     )
     return _half(
         start, goal, moves, wrong, may_write=READ | {MEDIA.SOURCE.path, MEDIA.SELECTED.path, "media.playlist"}
@@ -600,7 +600,7 @@ BEN_ASLEEP = hard(
         " his phone. Then a Yes to Priya; or a No, and the list he has asked for.",
         "Is Ben asleep, as the seat camera has it? Wait some ten seconds for a sign of life on the phone. No sign:"
         " text"
-        " Priya 'Yes' and leave it quiet. If there is one: 'No' to her, and play what he had asked for.",
+        " Priya 'Yes' and leave it quiet. If there is one: 'No' to her, and play the list he had asked for.",
     ),
     _behind(
         Arrival("message", 5.0, BEN, "Are we there yet? I'm bored"),

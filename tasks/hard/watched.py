@@ -82,8 +82,8 @@ AFTER_THE_KERB = hard(
         "For the next three quarters of a minute tell me of a tyre with less than 2 bar by the vehicle alert. If"
         " they"
         " all stay over it, leave me in peace.",
-        "That was a hard kerb. Look at the tyres for forty-five seconds and sound the alert about the vehicle only"
-        " when one has lost so much that it's under 2 bar.",
+        "That was a hard kerb. Look at the tyres for forty-five seconds and give me the vehicle alert"
+        " only if one drops below 2 bar.",
     ),
     _watched(
         ON_THE_ROAD,
@@ -123,9 +123,8 @@ LET_IT_RING = hard(
         " school: answer that.",
         "Turn it to {percent}. Calls may ring themselves out for three quarters of a minute, don't pick up, don't"
         " reject; if it's the school, connect me.",
-        "{percent} for the sound. Then just keep an ear on the phone for some forty-five seconds: the school I'd"
-        " speak"
-        " to at once, nobody else, and no declining either.",
+        "Sound down to {percent}. Then just keep an ear on the phone for some forty-five seconds: pick up if it's"
+        " the school; anyone else rings on, don't decline.",
     ),
     _watched(
         NURSERY,
@@ -424,8 +423,8 @@ TOW_TRUCK = hard(
         " nothing, for the next forty-five seconds.",
         "Don't touch the hazards before the tow truck has come; when it has, off with them and put the ambient"
         " light at {percent}. Give it three quarters of a minute.",
-        "As soon as I see our tow truck, warning lights out and {percent} for the ambient light. If it doesn't"
-        " come in some forty-five seconds, all stays as it is.",
+        "I'll say when I see our tow truck: then hazards off and the ambient light to {percent}. If it isn't here"
+        " in some forty-five seconds, leave everything as it is.",
     ),
     replace(
         _watched(

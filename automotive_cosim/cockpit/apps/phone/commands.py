@@ -162,4 +162,4 @@ class Read(Command):
 
 def _sentence(text: str) -> str:
     """A message as it is read out before another: with its stop."""
-    return text if text.endswith((".", "!", "?", "…", "。", "！", "？")) else f"{text}."
+    return text if text.endswith((".", "!", "?", "…", ":", "。", "！", "？", "：")) else f"{text}."
