@@ -42,6 +42,7 @@ from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.map import road_map
 from automotive_cosim.cockpit.messages import Back, Show, write
 from automotive_cosim.cockpit.picture import picture
+from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.readings import readings
 from automotive_cosim.cockpit.registry import apps, by_any_name, docked, pages
 from automotive_cosim.cockpit.restrictions import REASONS, Restriction
@@ -432,7 +433,10 @@ class Cockpit:
         return self._perform(AskDriver(text))
 
     def ask_road(self, request: SlowDown | PullOver | Reroute) -> Feedback:
-        """Makes a request to the driver or the router."""
+        """Makes a request to the driver or the router; a destination may be a place that the driver has saved."""
+        if isinstance(request, Reroute) and request.destination:
+            known = self._state.of(Gazetteer).find(request.destination)
+            request = request if known is None else replace(request, destination=known.edge_id)
         return self._perform(Ask(request))
 
     # --- what was commanded --------------------------------------------------------------------------------

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
-from automotive_cosim.contracts import KMH_PER_MPS
+from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import WatchAct
 from automotive_cosim.geo.breaches import binding_limit
@@ -34,6 +34,7 @@ class Harm:
     short_ttc_s: float
     """Time below three seconds to collision with the vehicle in front, while only hard braking avoids it."""
     collided: bool
+    """Whether the car itself was in a collision; those of others are not its drive's."""
 
 
 def harm(drive: Sequence[Moment]) -> Harm:
@@ -59,7 +60,7 @@ def harm(drive: Sequence[Moment]) -> Harm:
         over_limit_s=over_s,
         over_limit_m=over_m,
         short_ttc_s=short_s,
-        collided=any(event.kind == "collision" for moment in drive for event in moment.events),
+        collided=any(moment.driving.end is EgoEnd.COLLIDED for moment in drive),
     )
 
 

@@ -10,6 +10,7 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import StrEnum
+from math import ceil
 from typing import Any
 
 from automotive_cosim.contracts import AlertKind
@@ -49,6 +50,8 @@ CAUSED_S = 10.0
 """An event that becomes observable within this time of the agent's own contrary act is of its own making."""
 PASSED_S = 3.0
 """Who speaks of an event this soon after its end still speaks of it."""
+EARLY_S = 2.0
+"""Who acts this short before an event is observable has seen it come: readings are told once a second."""
 STEP_S = 2.0
 """The state is read once a second: what it reaches within this time of an act is that act's doing."""
 LATE_S = 30.0
@@ -218,7 +221,8 @@ class _Case:
         """Whether an act at that time can be about it."""
         event = self.event
         until_s = max(event.last_s, min(event.deadline_s or 0.0, event.last_s + LATE_S))
-        return event.observable_s <= time_s <= until_s + PASSED_S
+        early_s = 0.0 if event.lookalike or self.kind.by_state else EARLY_S
+        return event.observable_s - early_s <= time_s <= until_s + PASSED_S
 
 
 def judge(
@@ -252,8 +256,27 @@ def judge(
     bench = _Bench(tuple(kinds.values()), cases, against, at_start or {}, hold_s)
     judged = tuple(map(bench.act, acts))
     found = tuple(map(_event, cases))
-    evadable = [event for event in untouched if not kinds[event.kind].by_state]
+    heard = [act for act, what in zip(acts, judged, strict=True) if not what.worth.is_false]
+    evadable = [
+        event
+        for event in untouched
+        if not (kinds[event.kind].by_state or _has_passed(event, kinds[event.kind]))
+        and not any(_heeds(act, event, kinds[event.kind]) for act in heard)
+    ]
     return Judgement((*found, *_evaded(evadable, found, judged)), judged)
+
+
+def _has_passed(event: DriveEvent, kind: EventKind) -> bool:
+    """Whether it has passed by itself before its deadline, or in the end only looked like one."""
+    ended = event.deadline_s is not None and (event.due_until_s or 0.0) < event.deadline_s - SELF_ENDED_S
+    return ended or (kind.eases and event.eased_s is not None)
+
+
+def _heeds(act: WatchAct, event: DriveEvent, kind: EventKind) -> bool:
+    """Whether an act told of an event of the do-nothing run, or settled it, in time."""
+    if event.obliged_s is None or event.deadline_s is None:
+        return False
+    return event.obliged_s - kind.lasts_s <= act.time_s <= event.deadline_s and kind.settles(act, event.value)
 
 
 def _evaded(
@@ -263,10 +286,9 @@ def _evaded(
     held = [(act.time_s, act.time_s + act.holds_s + AFTER_S) for act in acts if act.holds_s]
     for event in untouched if held else ():
         due_s = event.obliged_s
-        if event.lookalike or due_s is None or event.deadline_s is None or event.due_until_s is None:
+        if event.lookalike or due_s is None or event.deadline_s is None:
             continue
-        passed = event.deadline_s - due_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S
-        if passed or not any(from_s <= due_s <= until_s for from_s, until_s in held):
+        if event.deadline_s - due_s < CHANCE_S or not any(from_s <= due_s <= until_s for from_s, until_s in held):
             continue
         same = (other.obliged_s or 0.0 for other in found if other.kind == event.kind and other.outcome.counts)
         if any(abs(other_s - due_s) <= NEAR_S for other_s in same):
@@ -327,7 +349,7 @@ class _Bench:
         if judged.worth.is_nuisance:
             judged = replace(judged, cost=max(NUISANCE, judged.cost))
         self.written |= {path for path, _ in act.writes}
-        if judged.worth.is_nuisance and act.holds_back:
+        if judged.worth.is_false and act.holds_back:
             judged = replace(judged, holds_s=self.hold_s)
         if act.alert is not None:
             self.alerted_s[act.alert] = act.time_s
@@ -348,12 +370,12 @@ class _Bench:
             return JudgedAct(act.time_s, act.words, Worth.NEUTRAL)
         meant = [kind for kind in self.kinds if kind.settles(act, None) or kind.concerns(act)]
         facts = {kind.name: self.against(kind, act.time_s) for kind in meant}
-        supported = [name for name, fact in facts.items() if fact is None]
+        supported = [kind for kind in meant if facts[kind.name] is None]
         holds_back = act.alert is None and act.holds_back  # no warning: it must be due, not only true
         if (supported and not holds_back) or (
             act.said and not meant
         ):  # of other words nobody can say whether they are true
-            return self._supported(act, supported[0] if supported else "")
+            return self._supported(act, meant, supported)
         alike = [case for case in there if case.event.lookalike and case.kind.settles(act, case.event.value)]
         again = bool(alike) and all(case.taken and case.kind.by_state for case in alike)
         for case in alike:
@@ -368,13 +390,20 @@ class _Bench:
         wrong = any((case.event.obliged_s or 0.0) <= act.time_s for case in due)
         return JudgedAct(act.time_s, act.words, Worth.WRONG if wrong else Worth.FALSE, "", reason)
 
-    def _supported(self, act: WatchAct, about: str) -> JudgedAct:
-        """An act that is true for all that is known, although nothing is due: neutral, unless it was just told."""
+    def _supported(self, act: WatchAct, meant: Sequence[EventKind], supported: Sequence[EventKind]) -> JudgedAct:
+        """An act that is true for all that is known, although nothing is due: neutral, unless it was just told, and
+        something has supported it ever since."""
+        about = min(supported, key=lambda kind: len(kind.alerts)).name if supported else ""
         told_s = self.alerted_s.get(act.alert) if act.alert is not None else None
-        if told_s is not None and act.time_s - told_s < REPEAT_S:
+        if told_s is not None and act.time_s - told_s < REPEAT_S and self._lasts(meant, told_s, act.time_s):
             reason = f"told {act.time_s - told_s:.0f} s before"
             return JudgedAct(act.time_s, act.words, Worth.REPEAT, about, reason)
         return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, about)
+
+    def _lasts(self, meant: Sequence[EventKind], from_s: float, until_s: float) -> bool:
+        """Whether at every second between two alerts something supported them."""
+        seconds = (from_s + count for count in range(1, ceil(until_s - from_s)))
+        return all(any(self.against(kind, at_s) is None for kind in meant) for at_s in seconds)
 
 
 def _step(act: WatchAct, cases: Sequence[_Case]) -> JudgedAct:
@@ -460,10 +489,9 @@ def _outcome(case: _Case) -> EventOutcome:
     if case.caused:
         return EventOutcome.CAUSED
     assert event.deadline_s is not None
-    assert event.due_until_s is not None
     if acted_s is not None and acted_s <= event.deadline_s:
         return EventOutcome.PREPARED if acted_s < event.obliged_s else EventOutcome.HIT
-    if event.deadline_s - event.obliged_s < CHANCE_S or event.due_until_s < event.deadline_s - SELF_ENDED_S:
+    if event.deadline_s - event.obliged_s < CHANCE_S or _has_passed(event, case.kind):
         return EventOutcome.VOID
     return EventOutcome.LATE if acted_s is not None else EventOutcome.MISSED
 

@@ -8,6 +8,7 @@ from typing import Any
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import KMH_PER_MPS, Json
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.driver import DRIVES_ON, HEEDS, RELEASED, driver_events
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.geo.breaches import limit_at
 
@@ -18,9 +19,6 @@ LAMPS = {
     "rear_fog": LIGHTS.REAR_FOG,
     "hazard": LIGHTS.HAZARD,
 }
-RELEASED = "driver_released"
-HEEDS = frozenset({"driver_slows", "driver_holds", "driver_opens_gap", "driver_wakes", "driver_pulls_over"})
-"""Events of the road after which the driver keeps to what was advised."""
 
 
 def timeline(watch: Watch) -> Json:
@@ -59,7 +57,7 @@ def timeline(watch: Watch) -> Json:
         "grip": each(lambda now: round(now.driving.road.friction, 2)),
         "lamps": each(lambda now: [name for name, lamp in LAMPS.items() if now.signals[lamp.path]]),
         "wakes": [[since(time_s), list(names)] for time_s, names in watch.woken],
-        "driver": [[since(event.time_s), event.text] for event in _of_driver(moments)],
+        "driver": [[since(event.time_s), event.text] for event in driver_events(moments)],
         "advice": [[since(from_s), since(to_s)] for from_s, to_s in _advice(moments)],
         "watched_until_s": unwatched_s,
     }
@@ -80,17 +78,13 @@ def _ttc_s(moment: Moment) -> float | None:
     return None if ttc_s is None else round(ttc_s, 2)
 
 
-def _of_driver(moments: Sequence[Moment]) -> Iterator[Any]:
-    return (event for moment in moments for event in moment.events if event.kind.startswith("driver_"))
-
-
 def _advice(moments: Sequence[Moment]) -> Iterator[tuple[float, float]]:
     """From the first thing that the driver heeds until the release."""
     from_s: float | None = None
-    for event in _of_driver(moments):
+    for event in driver_events(moments):
         if event.kind in HEEDS:
             from_s = event.time_s if from_s is None else from_s
-        elif event.kind == RELEASED and from_s is not None:
+        elif event.kind in (RELEASED, DRIVES_ON) and from_s is not None:
             yield from_s, event.time_s
             from_s = None
     if from_s is not None:

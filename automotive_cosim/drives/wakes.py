@@ -10,10 +10,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field
-from math import floor
+from math import ceil, floor
 
 from automotive_cosim.cockpit.aboard import Seat, seated_by
-from automotive_cosim.cockpit.reach import HORIZON_M
+from automotive_cosim.cockpit.reach import HORIZON_M, RADAR_M
 from automotive_cosim.cockpit.signals import (
     BODY,
     CABIN,
@@ -27,7 +27,7 @@ from automotive_cosim.cockpit.signals import (
     OCCUPANT,
     TYRE,
 )
-from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
+from automotive_cosim.contracts import KMH_PER_MPS, OtherVehicle, Sight, SightKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.margins import margin_kmh
 from automotive_cosim.geo.text import KM_PER_MILE
@@ -55,6 +55,8 @@ RECOMMENDED_KPA = 250.0
 SOFT_KPA = 240.0
 TREND_S = 10.0
 """A reading rises or falls if it does over this time."""
+TURN_S = 3.0
+"""A reading that has turned round within this time reads as it goes now."""
 WINDOWS = (
     CABIN.DRIVER_WINDOW,
     CABIN.PASSENGER_WINDOW,
@@ -128,8 +130,16 @@ def _trend(now: float, before: float, by: float) -> str:
     return "steady" if abs(now - before) < by else "rising" if now > before else "falling"
 
 
+def _trend_of(drive: Drive, read: Callable[[Moment], float], by: float, over_s: float = TREND_S) -> str:
+    """The trend over some seconds; that of the last three, where these go the other way as fast."""
+    now = read(drive[-1])
+    whole = _trend(now, read(_before(drive, over_s)), by)
+    turned = _trend(now, read(_before(drive, TURN_S)), by * TURN_S / over_s)
+    return turned if {whole, turned} == {"rising", "falling"} else whole
+
+
 def _signal_trend(drive: Drive, path: str, by: float) -> str:
-    return _trend(float(drive[-1].signals[path]), float(_before(drive).signals[path]), by)
+    return _trend_of(drive, lambda moment: float(moment.signals[path]), by)
 
 
 def _share(value: float) -> str:
@@ -162,15 +172,21 @@ def _limit_words(drive: Drive) -> str:
 
 def _speed_words(drive: Drive) -> str:
     kmh, limit = _kmh(drive[-1]), _limit_kmh(drive[-1])
-    trend = _trend(kmh, _kmh(_before(drive, 5.0)), 3.0)
+    trend = _trend_of(drive, _kmh, 3.0, over_s=5.0)
     if limit is not None:
         return f"{kmh:.0f} km/h, limit {limit:.0f}, {trend}"
     lifted = drive[-1].driving.road.limit.is_posted
     return f"{kmh:.0f} km/h, {'no limit' if lifted else 'limit unknown'}, {trend}"
 
 
+def _in_sight(now: Moment) -> OtherVehicle | None:
+    """The vehicle ahead, within the reach of the radar."""
+    leader = now.driving.around.leader
+    return leader if leader is not None and leader.gap_m <= RADAR_M else None
+
+
 def _leader(drive: Drive) -> Hashable:
-    leader, mps = drive[-1].driving.around.leader, drive[-1].driving.speed_mps
+    leader, mps = _in_sight(drive[-1]), drive[-1].driving.speed_mps
     if leader is None or mps < QUEUE_MPS:
         return None
     left_s = leader.time_to_collision_s
@@ -179,7 +195,7 @@ def _leader(drive: Drive) -> Hashable:
 
 
 def _leader_words(drive: Drive) -> str:
-    leader, mps = drive[-1].driving.around.leader, drive[-1].driving.speed_mps
+    leader, mps = _in_sight(drive[-1]), drive[-1].driving.speed_mps
     if leader is None:
         return ""
     gap_s = f"time gap {leader.gap_m / mps:.1f} s" if mps >= 1.0 else "the car stands"
@@ -296,7 +312,7 @@ def _lamp_words(drive: Drive) -> str:
 
 def _weather_words(drive: Drive) -> str:
     weather = drive[-1].weather
-    trend = _trend(weather.visibility, _before(drive).weather.visibility, 0.05 * weather.visibility)
+    trend = _trend_of(drive, lambda moment: moment.weather.visibility, 0.05 * weather.visibility)
     return f"{weather_words(weather.weather_code)}, visibility {weather.visibility:.0f} m, {trend}"
 
 
@@ -323,6 +339,11 @@ def _unwiped(now: Moment) -> float:
 def _hours(now: Moment) -> float | None:
     sight = _seen(now, SightKind.DRIVING_TIME)
     return None if sight is None else sight.value
+
+
+def _rolling(now: Moment, what: Hashable) -> Nearness:
+    """It is there; a second step once the car sets off with it, which a queue does not take back."""
+    return Nearness(what, 1 + (_kmh(now) >= ROLLING_KMH))
 
 
 def _unbelted(now: Moment) -> tuple[tuple[str, str], ...]:
@@ -353,6 +374,11 @@ def _parked_words(drive: Drive) -> str:
 
 def _lowest_kpa(now: Moment) -> float:
     return float(min(now.signals[tyre.path] for tyre in TYRES.values()))
+
+
+def _soft_steps(kpa: float) -> int:
+    """How many tens of kPa have been lost below 240 and one; 0 above."""
+    return 0 if kpa > SOFT_KPA else 1 + ceil((SOFT_KPA - kpa) / 10.0 - 1e-9)
 
 
 def _tyre_words(drive: Drive) -> str:
@@ -481,8 +507,8 @@ WAKES: tuple[Wake, ...] = (
     ),
     Wake(
         "tyres",
-        "the softest tyre, below 240 kPa, every 10 kPa",
-        _of(lambda now: _step(-_lowest_kpa(now), 10.0, -SOFT_KPA)),
+        "the softest tyre, below 240 kPa, every 10 kPa that it loses",
+        _of(lambda now: Nearness("tyre", _soft_steps(_lowest_kpa(now)))),
         _tyre_words,
     ),
     Wake(
@@ -494,19 +520,19 @@ WAKES: tuple[Wake, ...] = (
     Wake(
         "belt",
         "the belt of a seat that is taken is opened, or the car sets off without it",
-        _of(lambda now: (_unbelted(now), _kmh(now) >= ROLLING_KMH) if _unbelted(now) else None),
+        _of(lambda now: _rolling(now, _unbelted(now)) if _unbelted(now) else None),
         lambda drive: f"open: {_who(_unbelted(drive[-1]))}" if _unbelted(drive[-1]) else "",
     ),
     Wake(
         "open",
         "a door, flap or window is open, or the car sets off with it",
-        _of(lambda now: (_open_parts(now), _kmh(now) >= ROLLING_KMH) if _open_parts(now) else None),
+        _of(lambda now: _rolling(now, _open_parts(now)) if _open_parts(now) else None),
         lambda drive: ", ".join(_open_parts(drive[-1])),
     ),
     Wake(
         "phone",
         "the driver takes a phone, in the hand or in its cradle, or sets off with it",
-        _of(lambda now: None if _phone(now) == "AWAY" else (_phone(now), _kmh(now) >= ROLLING_KMH)),
+        _of(lambda now: None if _phone(now) == "AWAY" else _rolling(now, _phone(now))),
         lambda drive: {"AWAY": "", "HAND": "in the driver's hand", "CRADLE": "in use in its cradle"}[
             _phone(drive[-1])
         ],

@@ -9,7 +9,7 @@ change is an event.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Self
 
@@ -17,6 +17,7 @@ from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCod
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, spoken
+from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
 from automotive_cosim.drives.errands import said
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
@@ -203,18 +204,9 @@ class Watch(JudgedSession):
         self.changes.clear()
         vehicle = self.observation.vehicle
         if vehicle is not None:
-            lines = [noticed(self.moments[-READ_BACK:], self.marked), *self._driver_line()]
+            lines = [noticed(self.moments[-READ_BACK:], self.marked), *driver_line(self.moments[-IN_FORCE_S:])]
             vehicle = replace(vehicle, noticed="\n".join(lines))
         self.observation = replace(self.observation, vehicle=vehicle, on_watch=True)
-
-    def _driver_line(self) -> Iterator[str]:
-        """What the driver did last after a request, as long as that is news."""
-        for moment in reversed(self.moments[-LONGEST_S:]):
-            for event in reversed(moment.events):
-                if event.kind.startswith("driver_"):
-                    ago_s = self.moments[-1].time_s - event.time_s
-                    yield f"driver: {event.text.removeprefix('driver ')}, {ago_s:.0f} s ago"
-                    return
 
     @property
     def _is_woken(self) -> bool:

@@ -96,6 +96,7 @@ class Event:
     |---|---|
     | ``driver_...`` | the driver's reaction to a request: slows, holds, ignores, opens_gap, gives_way, ... |
     | ``driver_parks``, ``driver_sets_off`` | the ego is parked as planned, and drives on |
+    | ``driver_drives_on`` | a stop that was asked for is over |
     | ``driver_released`` | what was asked or advised has ended; the driver drives as before |
     | ``incident`` | an incident of the scenario begins or ends |
     | ``pet`` | the ego and another crossed or merged within five seconds, with their post-encroachment time |

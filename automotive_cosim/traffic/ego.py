@@ -109,6 +109,7 @@ EARLY_MPS2 = 2.5
 """How hard an attentive driver brakes for what stands ahead: most people's decelerations before a signal lie below
 (Gates and others, 2007: 85th percentile 3.0, mean 2.2 m/s2)."""
 RELEASED = "driver_released"
+DRIVES_ON = "driver_drives_on"
 PARKS = "driver_parks"
 SETS_OFF = "driver_sets_off"
 """Kinds of the events of a planned halt."""
@@ -349,8 +350,7 @@ class Driver:
             case SlowDown(speed_kmh):
                 limit_mps = state.road.limit.mps
                 if self.plan.advice_s < math.inf and speed_kmh / KMH_PER_MPS >= (limit_mps or FASTEST_MPS) - 0.1:
-                    self._advised_until_s = state.time_s  # which takes all advice back
-                    return ()
+                    return (self._release(state.time_s, f"advice taken back, {after} the request"),)
                 self._bounds.asked, self._bounds.asked_under = speed_kmh / KMH_PER_MPS, limit_mps
                 self._advised_until_s = state.time_s + self.plan.advice_s
                 return (self._slows(state, f"{after} the request"),)
@@ -408,17 +408,24 @@ class Driver:
         elif self._stop and self.pedals.is_parked() is not (self._stop == "made"):
             if self._stop == "made":
                 self._stop, self._search_until_s = "", -math.inf
-                yield Event(now.time_s, RELEASED, "driver drives on")
+                yield Event(now.time_s, DRIVES_ON, "driver drives on")
             else:
                 self._stop = "made"
+        elif not self._stop and -math.inf < self._search_until_s <= now.time_s:
+            self._search_until_s = -math.inf
+            yield Event(now.time_s, "driver_cannot_stop", "driver has found no place to stop")
         bounds = self._bounds
         if bounds.asked < math.inf and now.limit_mps != bounds.asked_under:
             self._advised_until_s = now.time_s
         if now.time_s >= self._advised_until_s:
-            self._advised_until_s = math.inf
-            bounds.asked = bounds.advised = math.inf
-            self._drive_as(self._profile.name)
-            yield Event(now.time_s, RELEASED, "driver drives as before; what was advised has ended")
+            yield self._release(now.time_s, "what was advised has ended")
+
+    def _release(self, now_s: float, why: str) -> Event:
+        """Drives as without any advice."""
+        self._advised_until_s = math.inf
+        self._bounds.asked = self._bounds.advised = math.inf
+        self._drive_as(self._profile.name)
+        return Event(now_s, RELEASED, f"driver drives as before; {why}")
 
     def _make_room(self, alert: Alert, state: DrivingState, after: str) -> Event:
         """Gives way to an emergency vehicle behind, in a jam by a corridor, or to a stopped vehicle at the kerb."""

@@ -124,6 +124,16 @@ def test_the_road_replies_as_it_did(drive: Drive) -> None:
     assert drive.beyond("navigation.destination", "requests") == set()
 
 
+def test_a_destination_may_be_a_place_that_the_driver_has_saved(drive: Drive) -> None:
+    """The road knows only its edges."""
+    place = drive.cockpit.content["places"][0]
+    drive.act(lambda cockpit: cockpit.ask_road(Reroute(place)))
+    ((request, _),) = drive.cockpit.given[-1].answers
+    assert isinstance(request, Reroute)
+    assert request.destination not in ("", place)
+    assert drive.cockpit.commands()["navigation.destination"] == place
+
+
 def test_a_stop_slipped_in_on_the_way_is_no_part_of_the_destination(drive: Drive) -> None:
     stop, home = drive.cockpit.content["places"][:2]
     drive.act(lambda cockpit: cockpit._perform(Guide(stop, home)))

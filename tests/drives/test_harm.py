@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from automotive_cosim.contracts import EgoEnd
 from automotive_cosim.drives.harm import harm
+from automotive_cosim.traffic.base import Event
 from tests.drives.scenes import stream, vehicle
 
 
@@ -23,3 +27,11 @@ def test_a_near_collision_is_one_that_only_hard_braking_avoids(
 def test_above_the_limit_time_and_metres_count() -> None:
     found = harm(stream(10, kmh=68.0))
     assert (found.over_limit_s, found.over_limit_m) == (10.0, pytest.approx(50.0))
+
+
+def test_a_collision_of_two_others_is_not_the_cars() -> None:
+    drive = stream(3)
+    others = replace(drive[-1], events=(Event(3.0, "collision", "b hits c"),))
+    assert not harm([*drive[:-1], others]).collided
+    mine = replace(others, driving=replace(others.driving, end=EgoEnd.COLLIDED))
+    assert harm([*drive[:-1], mine]).collided

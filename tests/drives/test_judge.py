@@ -4,8 +4,8 @@ from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.cockpit.signals import LIGHTS
-from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
+from automotive_cosim.cockpit.signals import CABIN, LIGHTS
+from automotive_cosim.contracts import AlertKind, PullOver, Severity, SlowDown
 from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
 from automotive_cosim.drives.judge import NOT_DUE, NUISANCE, ORDER, EventOutcome, Judgement, Worth, judge
 from automotive_cosim.drives.score import score, together
@@ -51,7 +51,8 @@ def warn(time_s: float, kind: AlertKind = AlertKind.SPEED) -> WatchAct:
 @pytest.mark.parametrize(
     ("at_s", "outcome", "worth", "credit"),
     [
-        (99.0, EventOutcome.MISSED, Worth.FALSE, -1.0),
+        (97.0, EventOutcome.MISSED, Worth.FALSE, -1.0),
+        (98.5, EventOutcome.PREPARED, Worth.RIGHT, 1.0),
         (101.0, EventOutcome.PREPARED, Worth.RIGHT, 1.0),
         (106.0, EventOutcome.HIT, Worth.RIGHT, 1.0),
         (110.5, EventOutcome.HIT, Worth.RIGHT, 0.5),
@@ -244,6 +245,43 @@ def test_what_is_true_and_was_just_told_is_a_repeat() -> None:
     assert worths == [Worth.NEUTRAL, Worth.REPEAT, Worth.NEUTRAL]
 
 
+def test_what_was_just_told_of_another_case_is_no_repeat() -> None:
+    """Two vehicles that brake ahead, half a minute apart, and nobody in between."""
+
+    def against(kind: EventKind, time_s: float) -> str | None:
+        there = kind.name == "leader_brakes" and not 310.0 <= time_s <= 325.0
+        return None if there else "nobody ahead"
+
+    acts = [warn(300.0, AlertKind.COLLISION), warn(335.0, AlertKind.COLLISION)]
+    found = judge(KINDS, (), acts, {}, against).acts
+    assert [(act.worth, act.about) for act in found] == [(Worth.NEUTRAL, "leader_brakes")] * 2
+
+
+def test_hazard_lights_for_who_comes_fast_from_behind_are_neutral() -> None:
+    lit = WatchAct(300.0, writes=((LIGHTS.HAZARD.path, True),))
+    assert judged(lit, true=("rear_end",)).acts[0].worth is Worth.NEUTRAL
+    assert judged(lit).acts[0].worth is Worth.FALSE
+
+
+def test_a_repeat_holds_nobody_back() -> None:
+    """A red warning of a tyre that the driver was told of just now costs a nuisance, and no minutes."""
+    soft = replace(SPEEDING, kind="tyre", subject="", value=None)
+    red = WatchAct(120.0, AlertKind.VEHICLE, Severity.CRITICAL)
+    found = judged(warn(105.0, AlertKind.VEHICLE), red, events=(soft,)).acts[1]
+    assert (found.worth, found.holds_s) == (Worth.REPEAT, 0.0)
+    assert judged(replace(red, time_s=300.0)).acts[0].holds_s > 0.0
+
+
+def test_a_limit_that_the_car_keeps_at_its_sign_is_void() -> None:
+    """A driver who brakes late, but in time."""
+    falls = replace(SPEEDING, kind="limit_falls", due_until_s=118.0)
+    assert judged(events=(falls,)).events[0].outcome is EventOutcome.MISSED
+    eased = replace(falls, eased_s=119.0)
+    assert judged(events=(eased,)).events[0].outcome is EventOutcome.VOID
+    assert judged(warn(105.0), events=(eased,)).events[0].outcome is EventOutcome.HIT
+    assert judged(events=(replace(SPEEDING, eased_s=141.0),)).events[0].outcome is EventOutcome.MISSED
+
+
 def test_a_command_that_no_kind_concerns_is_against_the_order() -> None:
     assert (
         judged(WatchAct(10.0, writes=(("Vehicle.Cabin.Infotainment.Media.Volume", 50.0),))).acts[0].reason == ORDER
@@ -321,6 +359,20 @@ def test_what_was_avoided_by_stopping_for_no_reason_is_missed() -> None:
     assert (event.kind, event.outcome) == ("over_limit", EventOutcome.EVADED)
     assert not stopped().events
     assert not stopped(replace(STOP, time_s=300.0)).events
+
+
+def test_what_was_told_or_settled_in_time_was_not_avoided() -> None:
+    """The tailgate would have been open on the road; the car was stopped for nothing, and the tailgate closed."""
+    door = replace(SPEEDING, kind="door", subject=CABIN.TRUNK.path, value=None)
+    closed = WatchAct(100.0, writes=((CABIN.TRUNK.path, False),))
+
+    def outcomes(*acts: WatchAct) -> list[EventOutcome]:
+        against = {"door": None} if closed in acts else {}
+        found = judge(KINDS, (), acts, {}, lambda kind, at_s: against.get(kind.name, "nothing"), {}, (door,))
+        return [event.outcome for event in found.events]
+
+    assert outcomes(STOP) == [EventOutcome.EVADED]
+    assert outcomes(STOP, closed) == []
 
 
 def test_a_stop_for_no_reason_costs_the_minutes_that_it_takes() -> None:

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim.agents import Thinker, make_agent
-from automotive_cosim.cockpit.signals import HMI, TYRE
+from automotive_cosim.cockpit.signals import CABIN, CALL, GLASS, HMI, SEAT, TYRE
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -22,6 +22,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.driver import driver_line
 from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
@@ -38,6 +39,7 @@ from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.spaces import GOAL_BYTES
 from automotive_cosim.tasks.spoken import FOREIGN, phrasings
+from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import limit, moment, vehicle
 
@@ -177,6 +179,58 @@ def test_a_reading_states_quantity_limit_and_trend() -> None:
     )
     ahead = noticed([moment(leader=vehicle(25.0, 36.0, time_to_collision_s=6.4))]).splitlines()
     assert "vehicle ahead: 25 m at 36 km/h, time gap 1.8 s, time to collision 6.4 s" in ahead
+
+
+def test_a_reading_that_has_just_turned_round_reads_as_it_goes() -> None:
+    fogged = [0.02 * second for second in range(8)] + [0.1, 0.06]
+    drive = [moment(float(s), signals={GLASS.WINDSHIELD_FOG.path: fog}) for s, fog in enumerate(fogged)]
+    assert "windshield fogged by 6.0%, falling" in noticed(drive)
+    assert "windshield fogged by 14.0%, rising" in noticed(drive[:8])
+
+
+def test_beyond_the_radar_there_is_no_vehicle_ahead() -> None:
+    assert "vehicle ahead" not in noticed([moment(leader=vehicle(160.0))])
+    assert "vehicle ahead" in noticed([moment(leader=vehicle(140.0))])
+
+
+@pytest.mark.parametrize(
+    ("name", "signals"),
+    [
+        ("belt", {SEAT.DRIVER_BELT.path: False}),
+        ("open", {CABIN.TRUNK.path: True}),
+        ("phone", {CALL.PHONE.path: "HAND"}),
+    ],
+)
+def test_what_stays_open_in_a_queue_wakes_once_more_and_no_oftener(name: str, signals: dict[str, Any]) -> None:
+    scenes = [{"kmh": kmh, "signals": signals} for kmh in (0.0, 0.0, 8.0, 0.0, 8.0, 3.0, 9.0)]
+    told = woken(scenes)
+    assert [second for second, names in told.items() if name in names] == [0, 2]
+
+
+def test_a_tyre_that_warms_up_is_no_change() -> None:
+    kpa = (241.0, 239.0, 229.0, 231.0, 241.0, 239.0, 219.0)
+    told = woken([{"signals": {TYRE.REAR_LEFT.path: value}} for value in kpa])
+    assert told == {1: ["tyres"], 2: ["tyres"], 6: ["tyres"]}
+
+
+def driver_words(*events: tuple[float, str, str], until_s: float, stands_s: float = 0.0) -> list[str]:
+    """The line about the driver after some events, each at its second."""
+    drive = [moment(float(second)) for second in range(int(until_s) + 1)]
+    for at_s, kind, text in events:
+        then = drive[int(at_s)]
+        drive[int(at_s)] = replace(then, events=(*then.events, Event(at_s, f"driver_{kind}", f"driver {text}")))
+    drive[-1] = replace(drive[-1], driving=replace(drive[-1].driving, standing_s=stands_s))
+    return list(driver_line(drive))
+
+
+def test_what_the_driver_was_asked_for_is_told_as_long_as_it_is_in_force() -> None:
+    slows, stops = (10.0, "slows", "slows to 50 km/h"), (20.0, "pulls_over", "pulls over in 30 m")
+    both = driver_words(slows, stops, until_s=100, stands_s=42.0)
+    assert both == ["driver: slows to 50 km/h, 90 s ago; pulls over in 30 m, 80 s ago; the car stands for 42 s"]
+    released = (90.0, "released", "drives as before; advice taken back")
+    assert driver_words(slows, released, until_s=100) == ["driver: drives as before; advice taken back, 10 s ago"]
+    assert driver_words(slows, released, until_s=160) == []
+    assert driver_words(stops, (90.0, "drives_on", "drives on"), until_s=100) == ["driver: drives on, 10 s ago"]
 
 
 def leak(second: int) -> dict[str, Any]:

@@ -135,6 +135,12 @@ def test_the_state_says_how_the_road_is(forked: Forked, grid: Scenario) -> None:
     assert limits == {30}
 
 
+def test_the_first_look_is_on_the_road_of_its_weather(forked: Forked, hurried: EgoPlan) -> None:
+    """Not on that of the scenario's own weather, which is dry."""
+    with closing(forked.depart(replace(hurried, weather=under(ICE)))) as traffic:
+        assert traffic.state.road.friction == condition_of(ICE).friction
+
+
 def test_a_scripted_road_is_slippery_too() -> None:
     """A harder stop than the road allows is not to be had."""
     hardest = []

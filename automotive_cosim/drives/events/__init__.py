@@ -29,6 +29,7 @@ KINDS: Mapping[str, EventKind] = {
         weather.Slippery(),
         road.TunnelAhead(),
         road.JamTail(),
+        road.RearEnd(),
         road.BreakdownAhead(),
         road.RoadworksAhead(),
         road.BlueLight(),

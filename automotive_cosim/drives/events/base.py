@@ -115,8 +115,13 @@ class EventKind(ABC):
     slowly for longer."""
     by_state: ClassVar[bool] = False
     """Whether the state that the car reaches settles it, and not an act by itself."""
+    eases: ClassVar[bool] = False
+    """Whether it has passed by itself if in the end it only looks like one."""
     neutral: ClassVar[str]
     """What makes a warning true although nothing is due, so that it costs nothing."""
+
+    is_due_ever: ClassVar[bool] = True
+    """Whether an act is ever due; if not, the kind only says what acts are true."""
 
     @abstractmethod
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:

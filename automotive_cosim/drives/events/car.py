@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import ClassVar
 
 from automotive_cosim.cockpit.aboard import Seat, seated_by
 from automotive_cosim.cockpit.notices import LOW_KPA, TYRES
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, MOTION
 from automotive_cosim.contracts import AlertKind, PullOver, Reroute
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting
+from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, off
 from automotive_cosim.drives.events.law import grows, speed_kmh
 
 BELT_KMH = 25.0
@@ -87,16 +88,19 @@ class FlapOpen(EventKind):
     grace_s = 20.0
     alerts = frozenset({AlertKind.VEHICLE})
     requests = (PullOver,)
+    writes: ClassVar[Mapping[str, Wanted]] = {CABIN.TRUNK.path: off, ENERGY.CHARGE_FLAP.path: off}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Reads the switches of the latches."""
         signals = drive[-1].signals
-        if speed_kmh(drive[-1]) < ROLLING_KMH:
+        is_rolling = speed_kmh(drive[-1]) >= ROLLING_KMH
+        if not is_rolling and signals[MOTION.GEAR.path] == "P":
             return
         for part, words in ((CABIN.TRUNK, "the trunk is open"), (ENERGY.CHARGE_FLAP, "the charging flap is open")):
             if signals[part.path]:
-                yield Sighting(f"{words} while driving", part.path, due=True, hold_s=2.0)
-        if any(float(signals[part.path]) > 0 for part in WINDOWS):
+                where = "while driving" if is_rolling else "while the car stands"
+                yield Sighting(f"{words} {where}", part.path, due=is_rolling, hold_s=2.0)
+        if is_rolling and any(float(signals[part.path]) > 0 for part in WINDOWS):
             yield Sighting("a window is open", "window", lookalike=True)
 
     def against(self, drive: Sequence[Moment]) -> str | None:
@@ -127,10 +131,11 @@ class Tyre(EventKind):
         signals = drive[-1].signals
         lowest_kpa = min(float(signals[tyre.path]) for tyre in TYRES)
         words = f"a tyre at {lowest_kpa:.0f} kPa"
+        severity = max(1.0, (RECOMMENDED_KPA - lowest_kpa) / (RECOMMENDED_KPA - WARM_KPA))
         if lowest_kpa < LOW_KPA:
-            yield Sighting(words, due=True, hold_s=5.0, severity=LOW_KPA / max(lowest_kpa, 1.0))
+            yield Sighting(words, due=True, hold_s=5.0, severity=severity)
         elif any(grows(drive, tyre.path, -LEAK_KPA) for tyre in TYRES):
-            yield Sighting(f"{words}, and falling")
+            yield Sighting(f"{words}, and falling", severity=severity)
         elif lowest_kpa < WARM_KPA:
             yield Sighting(words, lookalike=True)
 

@@ -66,14 +66,12 @@ def seen(moment: Moment, kind: SightKind) -> Sight | None:
 
 
 def grows(drive: Sequence[Moment], path: str, by: float, within_s: float = TREND_S) -> bool:
-    """Whether a signal has grown at least by so much within the last seconds of a drive; with a negative ``by``,
-    whether it has fallen."""
-    now_s, value = drive[-1].time_s, float(drive[-1].signals[path])
-    for moment in reversed(drive):
-        if moment.time_s <= now_s - within_s:
-            change = value - float(moment.signals[path])
-            return change >= by if by > 0 else change <= by
-    return False
+    """Whether a signal has grown at least by so much within the last seconds of a drive, or since it began; with a
+    negative ``by``, whether it has fallen."""
+    from_s = drive[-1].time_s - within_s
+    then = next((moment for moment in reversed(drive) if moment.time_s <= from_s), drive[0])
+    change = float(drive[-1].signals[path]) - float(then.signals[path])
+    return change >= by if by > 0 else change <= by
 
 
 def time_left_s(distance_m: float, speed_mps: float, end_mps: float = 0.0) -> float:

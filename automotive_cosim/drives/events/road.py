@@ -60,6 +60,7 @@ TRACTOR_KMH = (8.0, 40.0)
 FAST_ROAD_KMH = 65.0
 TRACTOR_DUE_S = 8.0
 SOON_S = 15.0
+REAR_END_S = 5.0
 
 
 class TunnelAhead(EventKind):
@@ -140,6 +141,33 @@ class JamTail(EventKind):
             return None
         flows = now.driving.around.relative_speed
         return f"no jam within 2 km; traffic flows at {flows:.0%} of its usual speed"
+
+
+class RearEnd(EventKind):
+    """A vehicle that comes fast from behind: hazard lights warn its driver. Nothing is ever due."""
+
+    name = "rear_end"
+    about = "hazard lights warn a vehicle behind that would soon run into the car"
+    lookalike = "a vehicle behind that comes no closer, or slowly"
+    source = "UN R48, 6.25: the rear-end collision alert signal; 5 s, our choice, leave its driver time to brake"
+    neutral = "a vehicle behind less than 5 s away at the speed at which it closes; never due"
+    is_due_ever = False
+    alerts = frozenset[AlertKind]()
+    writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.HAZARD.path: on}
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """Nothing that would have to be met."""
+        return iter(())
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """Nobody behind who would soon be there."""
+        now = drive[-1]
+        follower = seen(now, SightKind.VEHICLE_BEHIND) or seen(now, SightKind.EMERGENCY_VEHICLE)
+        if follower is None or follower.distance_m is None:
+            return "nobody comes close from behind"
+        closing_mps = max(follower.value or 0.0, 0.1)
+        left_s = follower.distance_m / closing_mps
+        return None if left_s < REAR_END_S else f"the vehicle behind is {left_s:.0f} s away"
 
 
 class StandsAhead(EventKind):

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from automotive_cosim.cockpit.reach import HORIZON_M
 from automotive_cosim.cockpit.signals import ADAS
-from automotive_cosim.contracts import AlertKind, Cruise, PullOver, SightKind, SlowDown
+from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, Cruise, PullOver, SightKind, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
 from automotive_cosim.drives.events.law import (
@@ -113,11 +113,13 @@ class LimitFalls(SpeedKind):
     source = "coasting 1 m/s2; deadline: reaction 1.1 s and braking at 3.4 m/s2 (AASHTO) end at the sign"
     neutral = "a lower limit within 2 km, which the car does not keep yet"
     weight = 0.5
+    eases = True
     alerts = frozenset({AlertKind.SPEED, AlertKind.SCHOOL})
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
-        """Sights posted limits within the map's horizon."""
+        """Sights posted limits within the map's horizon, and the sign that the car has just passed."""
         now = drive[-1]
+        yield from _kept_at_the_sign(drive)
         ahead, here, kmh = now.driving.ahead, limit_here(now), speed_kmh(now)
         following, away_m = ahead.next_limit, ahead.next_limit_distance_m
         if following is None or away_m is None or away_m > AHEAD_M or kmh < SLOW_KMH:
@@ -148,6 +150,19 @@ class LimitFalls(SpeedKind):
         if kmh > following.kmh + margin_kmh(following.kmh):
             return None
         return f"{kmh:.0f} km/h, and {following.kmh:.0f} apply in {away_m:.0f} m"
+
+
+def _kept_at_the_sign(drive: Sequence[Moment]) -> Iterator[Sighting]:
+    """The look-alike of a lower limit that the car keeps at the first moment at which it binds."""
+    if len(drive) < 2:
+        return
+    here, mps = drive[-1].driving.road.limit, drive[-1].driving.speed_mps
+    ahead, old = drive[-2].driving.ahead.next_limit, limit_here(drive[-2])
+    if ahead is None or ahead.kmh is None or here != ahead or (old is not None and ahead.kmh > old.kmh - 9.0):
+        return
+    if mps <= (ahead.kmh + margin_kmh(ahead.kmh)) / KMH_PER_MPS:
+        kmh = mps * KMH_PER_MPS
+        yield Sighting(f"{kmh:.0f} km/h at the sign", f"{ahead.kmh:.0f}", lookalike=True, value=ahead.kmh)
 
 
 def is_school_time(moment: Moment) -> bool:

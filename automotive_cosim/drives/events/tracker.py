@@ -35,6 +35,8 @@ class DriveEvent:
     deadline_s: float | None = None
     done_s: float | None = None
     """Since when what was asked for is done, of a kind that is judged by the state."""
+    eased_s: float | None = None
+    """Since when it only looks like one, e.g. a limit that the car keeps by now; None while it does not."""
     ended: bool = False
     severities: list[tuple[float, float]] = field(default_factory=list)
     """Instants at which it became worse, and how bad."""
@@ -69,6 +71,8 @@ class Tracker:
             for key, event in self._latest.items():
                 if key[0] == kind.name and key not in seen and not event.ended:
                     event.due_since_s = None
+                    if (*key[:2], True) in seen:
+                        event.eased_s = now_s
                     event.ended = now_s - event.last_s > CLOSE_S
         return tuple(opened)
 
@@ -88,7 +92,7 @@ class Tracker:
         return event
 
     def _update(self, event: DriveEvent, kind: EventKind, sighting: Sighting, now_s: float) -> None:
-        event.last_s, event.ended = now_s, False
+        event.last_s, event.ended, event.eased_s = now_s, False, None
         if sighting.severity > event.severity_at(now_s):
             event.severities.append((now_s, sighting.severity))
         if event.done_s is None:
