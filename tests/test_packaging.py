@@ -149,7 +149,7 @@ def test_importing_the_package_is_light():
 def test_the_image_installs_the_libraries_that_libsumo_requires():
     text = (ROOT / "Dockerfile").read_text(encoding="utf-8")
     assert f"--no-install-recommends {DEBIAN_PACKAGES} " in text
-    assert DEBIAN_PACKAGES in (ROOT / "README.md").read_text(encoding="utf-8")
+    assert DEBIAN_PACKAGES in (ROOT / "docs" / "install.md").read_text(encoding="utf-8")
 
 
 def test_the_citation_names_this_version():

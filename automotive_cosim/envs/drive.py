@@ -71,7 +71,7 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         """
         family_named(family)
         under = Conditions.named(conditions)
-        told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value}
+        told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value is not None}
         self._spec = DriveSpec(
             family,
             conditions=under,

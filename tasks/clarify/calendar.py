@@ -89,7 +89,7 @@ TASKS = (
             "{who} and I agreed on a car park, Garden or Theatre. Go there.",
             "Theatre Car Park, Garden Car Park: take me to the one I arranged with {who}.",
             "I'm to meet {who} at noon, was it the Garden or the Theatre Car Park? Start the route.",
-            "Navigate to where {who} and I meet. It's the Theatre or the Garden Car Park.",
+            "Start guidance to the spot {who} and I settled on. Garden or Theatre Car Park, it's one of the two.",
         ),
         Topic(
             "which car park",

@@ -529,7 +529,7 @@ KIND_OF_ROAD = hard(
         "Three speeds in Theo's message, one of them is for this kind of road: that into the limiter, on, and"
         " 'Thank"
         " you' to Theo.",
-        "With Theo's caravan behind us, how fast may it be on a road like this one? Limiter active at that, then a"
+        "With Theo's caravan in tow, how fast may it be on a road like this one? Limiter active at that, then a"
         " thank you for him.",
         "Find in Theo's text the top speed for the sort of road under us and have the limiter keep it. Thank him"
         " afterwards.",

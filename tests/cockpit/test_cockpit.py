@@ -388,7 +388,7 @@ def test_units_are_those_chosen(cockpit: Cockpit) -> None:
     press(cockpit, "settings.temperature.fahrenheit")
     assert shown(cockpit, "status.speed") == "30"
     assert shown(cockpit, "status.speed_unit") == "mph"
-    assert shown(cockpit, "status.limit_sign") == "31"
+    assert shown(cockpit, "status.limit_sign") == "50", "a sign keeps its own figure"
     assert shown(cockpit, "status.outside_temperature") == "57 °F"
 
 

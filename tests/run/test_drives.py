@@ -112,7 +112,7 @@ def test_the_plan_of_a_folder_of_drives_of_0_2_is_read() -> None:
     }
     (job,) = make_plan(old).jobs()
     assert isinstance(job, DriveJob)
-    assert job.wall_s == 60.0
+    assert job.limits.wall_s == 60.0
     line = json.dumps({
         **{"id": job.id, "family": "grid_june", "seed": 0, "scenario": "grid", "season": "summer"},
         **{"agent": "silent", "model": "none", "geo": "full", "latency_s": 3.0, "see": "tree", "feedback": "quiet"},

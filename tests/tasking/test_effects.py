@@ -51,11 +51,12 @@ def test_where_the_heater_is_at_its_most_only_more_air_warms(command: tuple[Sign
         (((HVAC.FRONT_DEFROSTER, True),), True),
         (((HVAC.MAX_DEFROST, True),), True),
         (((HVAC.AIR_DISTRIBUTION, "UP"), (HVAC.RECIRCULATION, False)), True),
-        (((HVAC.AIR_DISTRIBUTION, "UP"),), False),
+        (((HVAC.AIR_DISTRIBUTION, "UP"),), True),
+        (((HVAC.AIR_DISTRIBUTION, "DOWN"),), False),
         (((HVAC.FAN_SPEED, 100.0),), False),
     ],
 )
-def test_dry_air_at_the_glass_clears_it_however_it_gets_there(
+def test_warm_or_dry_air_at_the_glass_clears_it_however_it_gets_there(
     commands: tuple[tuple[Signal[Any], Any], ...], clears: bool
 ) -> None:
     start, now = moment(4.0, 21.0, fog=0.6), moment(4.0, 21.0, *commands, fog=0.6)

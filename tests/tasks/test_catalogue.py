@@ -50,8 +50,9 @@ def test_every_cell_has_its_tasks(module):
 
 
 def test_instances_run_into_the_millions_and_each_task_has_twenty():
+    """Eight in the hard suite, whose messages and memos are written for each."""
     assert sum(map(instances, TASKS)) > 2_000_000
-    assert [task.id for task in TASKS if instances(task) < 20] == []
+    assert [task.id for task in TASKS if instances(task) < (8 if task.suite == "hard" else 20)] == []
 
 
 @over(TASKS)
