@@ -257,7 +257,7 @@ def test_an_open_flap_can_be_seen_before_the_car_drives_off_with_it() -> None:
 
 @pytest.mark.parametrize(("at_sign_kmh", "kept"), [(52.0, True), (58.0, False)])
 def test_a_lower_limit_that_the_driver_keeps_at_the_sign_eases(at_sign_kmh: float, kept: bool) -> None:
-    falling = {"limit": limit(80), "next_limit": limit(50)}
+    falling: dict[str, Any] = {"limit": limit(80), "next_limit": limit(50)}
     drive = [
         moment(float(second), kmh=80.0 - 2 * second, next_limit_distance_m=110.0 - 10 * second, **falling)
         for second in range(11)
