@@ -367,7 +367,7 @@ def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
         assert isinstance(agent, Thinker)
         asked.append((session.steps[-2].action, sum(stage.reply is not None for stage in agent.stages)))
 
-    play(watch, agent, (count,))
+    play(watch, agent, count)
     assert watch.judgement is not None
     assert score(watch.judgement, watch.seconds).met > 0
     waited = {calls for before, calls in asked if before is not None and before.action_type is ActionType.WAIT}
