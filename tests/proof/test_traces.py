@@ -2,9 +2,9 @@
 
 A change that means to alter them (another signal, another text on a screen) renews the record:
 
-    automotive-cosim tasks validate --suite all --gates start --workers 2 --json > tests/proof/traces.json
+    automotive-cosim tasks validate --suite all --gates start --seeds 0 --workers 2 --json > tests/proof/traces.json
 
-CI compares all that are on record for one seed, and the seeds take turns; here are some.
+CI compares a tenth of them in turn; here are some.
 """
 
 import json
