@@ -1,6 +1,6 @@
 # `make run` is the main job, `make test-fast` the inner loop, `make check test` what a change must pass. Each makes its
 # own environment.
-# `make test TURN=1/3` runs all quick tests, and of those that start SUMO or are slow a third.
+# `make test TURN=1/6` runs all quick tests, and of those that start SUMO or are slow a sixth.
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.phone.state import Contact
-from automotive_cosim.cockpit.signals import HMI
+from automotive_cosim.cockpit.signals import HMI, MEDIA
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Open, Tap, TapUntil
@@ -341,5 +341,6 @@ TASKS = (
         look=LOOK,
         difference="content: the calendar has the evening, or also its playlist",
         parameters={"which": LISTS, "what": ("birthday", "reunion", "wedding", "picnic")},
+        may_write=frozenset({MEDIA.SELECTED.path}),
     ),
 )

@@ -31,6 +31,7 @@ def clarify(
     parameters: Mapping[str, Choices],
     find: tuple[Move, ...] = (),
     dimension: Dimension = Dimension.EXPLICIT_CONTROL,
+    may_write: frozenset[str] = frozenset(),
 ) -> Task:
     """A task of the suite.
 
@@ -49,6 +50,7 @@ def clarify(
         parameters: what is drawn: ``which``, what is meant, among it.
         find: where the choices are to be seen, unless every phrasing names them.
         dimension: explicit, or implicit if the words do not say what to do.
+        may_write: what else may change, in both halves.
     """
     task = unclear(
         task_id,
@@ -69,8 +71,9 @@ def clarify(
     )
     assert task.second is not None
     ask = Consult(question)
-    guessed = replace(task.first, slips=(moves, (*moves, ask)))
-    asked = replace(task.second, slips=((ask, *moves),))
+    first, second = task.first, task.second
+    guessed = replace(first, slips=(moves, (*moves, ask)), may_write=first.may_write | may_write)
+    asked = replace(second, slips=((ask, *moves),), may_write=second.may_write | may_write)
     return replace(task, first=guessed, second=asked, suite=Suite.CLARIFY)
 
 

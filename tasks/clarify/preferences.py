@@ -331,6 +331,7 @@ TASKS = (
         look=MEMOS,
         difference="content: a memo says that she loves music, or also which list",
         parameters={"which": LISTS, "who": FRIENDS},
+        may_write=frozenset({MEDIA.SELECTED.path}),
     ),
     clarify(
         "clarify_mode_for_the_trip",
