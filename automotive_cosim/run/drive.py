@@ -12,7 +12,7 @@ from typing import Any
 from automotive_cosim.agents import Agent
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
-from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.judge import ORDER, JudgedAct, JudgedEvent, facts_of, judge
 from automotive_cosim.drives.result import DriveResult, judged_since, result_of
@@ -60,7 +60,7 @@ class JudgedDrive:
     commands: Mapping[str, Any]
     """What was commanded at departure."""
     facts: tuple[tuple[str, float, str | None], ...]
-    """What speaks against an act at its time, by kind of event; None for nothing."""
+    """What speaks against an act, by kind of event, at its time and when else the judge looks; None for nothing."""
     untouched: tuple[DriveEvent, ...]
     """Events of the do-nothing run, if an act of the agent holds something back."""
     begun_s: float
@@ -86,13 +86,23 @@ class JudgedDrive:
         """The input of a drive's judgement that is over."""
         against = facts_of(watch.moments)
         times_s = sorted({act.time_s for act in watch.acts})
+        facts = {(kind.name, time_s): against(kind, time_s) for kind in KINDS.values() for time_s in times_s}
+
+        def noted(kind: EventKind, time_s: float) -> str | None:
+            if (kind.name, time_s) not in facts:
+                facts[kind.name, time_s] = against(kind, time_s)
+            return facts[kind.name, time_s]
+
+        events, acts, due_anyway = tuple(watch.events), tuple(watch.acts), dict(watch.due_anyway)
+        commands, untouched = watch.moments[0].commands, watch.untouched
+        judge(KINDS, events, acts, due_anyway, noted, commands, untouched)  # which also asks between two alerts
         return cls(
-            tuple(watch.events),
-            tuple(watch.acts),
-            dict(watch.due_anyway),
-            watch.moments[0].commands,
-            tuple((kind.name, time_s, against(kind, time_s)) for kind in KINDS.values() for time_s in times_s),
-            watch.untouched,
+            events,
+            acts,
+            due_anyway,
+            commands,
+            tuple((name, time_s, fact) for (name, time_s), fact in facts.items()),
+            untouched,
             watch.moments[0].time_s,
             watch.seconds,
         )

@@ -27,6 +27,7 @@ from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
 from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
+from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
@@ -38,6 +39,7 @@ from automotive_cosim.episode.loop import Actor, play
 from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.spaces import GOAL_BYTES
+from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.tasks.spoken import FOREIGN, phrasings
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.fork import Simulations
@@ -352,7 +354,12 @@ def test_the_rule_perfect_watcher_meets_every_event_and_disturbs_nobody(perfect:
 @pytest.mark.slow
 @pytest.mark.parametrize("watcher", [AlertAll(), AlertOnWake(), AlertOften()])
 def test_who_alerts_by_rote_does_worse_than_nobody(begin: Begin, watcher: Actor) -> None:
-    assert played(begin(), watcher).value < 0.0
+    watch = begin()
+    found = played(watch, watcher)
+    assert found.value < 0.0
+    assert watch.judgement is not None
+    again = JudgedDrive.of(watch).judgement()
+    assert again == judged_since(watch.judgement, watch.moments[0].time_s, watch.seconds), "as from its file"
 
 
 @pytest.mark.slow

@@ -405,7 +405,8 @@ def test_intervals_come_from_whole_drives(folder: Path) -> None:
     assert bounds.low < value(mixed) < bounds.high
     repeated = [replace(row, repeat=number) for number, row in enumerate([perfect, silent] * LEAST_DRIVES)]
     assert interval(repeated, value) is None  # type: ignore[arg-type]
-    assert [table.name for table in tables(mixed)] == ["watchers", "kinds", "families", "measures", "exposure"]
+    names = ["watchers", "kinds", "families", "measures", "exposure", "policy_of_drives"]
+    assert [table.name for table in tables(mixed)] == names
     assert len(grouped(mixed)) == 2
 
 
