@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
+import secrets
 import shutil
-import tempfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -43,22 +43,22 @@ def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
         raise ImportMapError(f"{out} exists; choose another --out, or --force to replace the scenario in it")
     if out.exists() and not (out / "scenario.toml").is_file():
         raise ImportMapError(f"{out} is not a scenario folder, so it is not replaced; choose another --out")
-    scratch: Path | None = None
+    # Named before it is made, so that a signal between the two leaves nothing.
+    scratch = out.absolute().parent / f".{out.name}-{secrets.token_hex(4)}"
     try:
-        scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
+        scratch.mkdir(mode=0o700)
         building = scratch / "scenario"
         building.mkdir()
         yield building
         _put_in_place(building, out, scratch / "replaced")
     except OSError as error:
-        done = "created" if scratch is None else "written"
+        done = "written" if scratch.is_dir() else "created"
         raise ImportMapError(f"{out} cannot be {done} ({error.strerror}); choose another --out") from error
     finally:
-        if scratch is not None:
-            try:
-                shutil.rmtree(scratch, ignore_errors=True)
-            finally:  # where a signal interrupted that
-                shutil.rmtree(scratch, ignore_errors=True)
+        try:
+            shutil.rmtree(scratch, ignore_errors=True)
+        finally:  # where a signal interrupted that
+            shutil.rmtree(scratch, ignore_errors=True)
 
 
 def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
