@@ -50,7 +50,7 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     _road(state, surroundings)
     sun = surroundings.sun_elevation_deg
     state.vehicle.follow_light(driving.road.in_tunnel or (sun is not None and sun < DARK_BELOW_DEG))
-    feel(state.signals, surroundings)
+    feel(state.signals, surroundings, state.lookout)
     _climate(state, driving, weather, dt_s)
     _bodies(state, weather.temperature_2m, dt_s)
     if before is None:

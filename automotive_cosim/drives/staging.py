@@ -6,7 +6,7 @@ the drive itself, where the same causes may also lie in the road.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -17,7 +17,17 @@ from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.reach import RADAR_M
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, TYRE, Signal
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.sky import DENSE_FROM_S, DENSE_UNTIL_S, FOG_S, drizzle, fog_bank, rain, sleet
+from automotive_cosim.drives.sky import (
+    DENSE_FROM_S,
+    DENSE_UNTIL_S,
+    FOG_S,
+    SHOWER_S,
+    drizzle,
+    fog_bank,
+    rain,
+    shower,
+    sleet,
+)
 from automotive_cosim.scenarios.incidents import (
     AheadIncident,
     AnyIncident,
@@ -88,8 +98,6 @@ LEADER_WITHIN_S = 40.0
 """A leader that has not been found by then does not brake, lest it do so during the next staging."""
 LATE_M = 135.0
 """How far ahead it brakes: just within the reach of the radar."""
-SPAN_S = 120.0
-"""Length of a bank of fog or a shower."""
 PHONE_S = 40.0
 """How long a driver uses the phone."""
 AHEAD_S = 420.0
@@ -243,16 +251,25 @@ def _wipers(setting: Setting) -> Causes:
     mode = "RAIN_SENSOR" if setting.is_lookalike else "OFF"
     return Causes(
         changes=_set(setting, (BODY.FRONT_WIPER, mode)),
-        weather=(WeatherSpan(setting.at_s + 5.0, setting.at_s + 5.0 + SPAN_S, rain(setting.weather)),),
+        weather=_shower(setting, rain(setting.weather), 5.0),
     )
 
 
 def _bank(setting: Setting, visibility_m: float) -> tuple[WeatherSpan, ...]:
     """A bank of fog that comes over minutes."""
-    steps = [(setting.at_s + after_s, weather) for after_s, weather in fog_bank(setting.weather, visibility_m)]
-    ends_s = [*(at_s for at_s, _ in steps[1:]), setting.at_s + FOG_S]
+    return _spans(setting.at_s, fog_bank(setting.weather, visibility_m), FOG_S)
+
+
+def _shower(setting: Setting, full: Weather, after_s: float = 0.0) -> tuple[WeatherSpan, ...]:
+    return _spans(setting.at_s + after_s, shower(setting.weather, full), SHOWER_S)
+
+
+def _spans(begun_s: float, parts: Iterable[tuple[float, Weather]], length_s: float) -> tuple[WeatherSpan, ...]:
+    """Weather that comes and goes in steps, as parts of one whole."""
+    steps = [(begun_s + after_s, weather) for after_s, weather in parts]
+    ends_s = [*(at_s for at_s, _ in steps[1:]), begun_s + length_s]
     spans = zip(steps, ends_s, strict=True)
-    return tuple(WeatherSpan(at_s, end_s, weather, setting.at_s) for (at_s, weather), end_s in spans)
+    return tuple(WeatherSpan(at_s, end_s, weather, begun_s) for (at_s, weather), end_s in spans)
 
 
 def _weather_speed(setting: Setting) -> Causes:
@@ -267,10 +284,9 @@ def _weather_speed(setting: Setting) -> Causes:
 
 def _slippery(setting: Setting) -> Causes:
     """Freezing rain or snow that the driver takes no notice of; as a look-alike, a trace of drizzle."""
-    until_s = setting.at_s + SPAN_S
-    careless = (DriverAt(setting.at_s, "careless"), DriverAt(until_s, setting.driver))
+    careless = (DriverAt(setting.at_s, "careless"), DriverAt(setting.at_s + SHOWER_S, setting.driver))
     fallen = drizzle(setting.weather) if setting.is_lookalike else sleet(setting.weather)
-    return Causes(moods=careless, weather=(WeatherSpan(setting.at_s, until_s, fallen),))
+    return Causes(moods=careless, weather=_shower(setting, fallen))
 
 
 # --- the road -----------------------------------------------------------------------------------------------

@@ -50,6 +50,8 @@ BLUE_M = 150.0
 ROLLING_KMH = 5.0
 QUEUE_MPS = 3.0
 """Below this, in a queue, nothing ahead wakes."""
+GRIP_STEPS = (0.9, 0.7, 0.5, 0.3)
+"""Wet, soaked, snow or slush, packed snow or ice (``traffic.road_weather``)."""
 MIST = 0.1
 RECOMMENDED_KPA = 250.0
 SOFT_KPA = 240.0
@@ -323,9 +325,18 @@ def _road(drive: Drive) -> Hashable:
 
 def _road_words(drive: Drive) -> str:
     road = drive[-1].driving.road
-    grip = "" if road.friction >= 0.9 else f", grip {road.friction:.1f} of 1"
     zone = ", school zone" if road.school_zone else ""
-    return f"{road.road_class.replace('_', ' ') or 'road'}{zone}{grip}"
+    return f"{road.road_class.replace('_', ' ') or 'road'}{zone}"
+
+
+def _grip(drive: Drive) -> Hashable:
+    steps = sum(drive[-1].driving.road.friction < step for step in GRIP_STEPS)
+    return Nearness("grip", steps) if steps else None
+
+
+def _grip_words(drive: Drive) -> str:
+    trend = _trend_of(drive, lambda moment: moment.driving.road.friction, 0.02)
+    return f"{drive[-1].driving.road.friction:.2f} of 1, {trend}"
 
 
 def _unwiped(now: Moment) -> float:
@@ -484,6 +495,7 @@ WAKES: tuple[Wake, ...] = (
         ),
         _weather_words,
     ),
+    Wake("grip", "the grip of the road falls below 0.9, 0.7, 0.5 and 0.3 of that of a dry one", _grip, _grip_words),
     Wake(
         "glass",
         "the windshield fogs, every tenth",

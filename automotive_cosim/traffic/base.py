@@ -86,6 +86,8 @@ class EgoPlan:
     brakes_early: bool = False
     """Whether the driver brakes early and gently for what stands ahead, as attentive people do. SUMO's model brakes
     as late as it can: from 50 km/h at 21 m."""
+    settles_s: float = 0.0
+    """Over how many seconds the road takes on the grip of other weather; by default at once."""
 
 
 @dataclass(frozen=True, slots=True)

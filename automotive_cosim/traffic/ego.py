@@ -299,7 +299,7 @@ class Driver:
         """Does what is due and controls the speed; it takes effect from the next step."""
         events: tuple[Event, ...] = ()
         if self._forecast is None:
-            self._forecast = Forecast(self.plan.weather, now.time_s)
+            self._forecast = Forecast(self.plan.weather, now.time_s, self.plan.settles_s)
             self._departed_s = now.time_s
         if self._moods < len(self.plan.moods):
             self._change_mood(now.time_s - self._departed_s)

@@ -169,7 +169,7 @@ class World:
             raise NoRoomError(
                 f"the ego found no gap on {plan.trip.from_edge!r} in {INSERTION_LIMIT_S:.0f} s of simulated time"
             )
-        self._forecast = Forecast(plan.weather, self._sumo.time())
+        self._forecast = Forecast(plan.weather, self._sumo.time(), plan.settles_s)
         self._surface.put(self._forecast.read(self._sumo.time()))  # its first look is on the road of its weather
         self._sumo.set_parameter(EGO, "laneChangeModel.lcSpeedGain", f"{driver_profile.overtaking:g}")
         sensor = Sensor(
