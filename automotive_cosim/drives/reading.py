@@ -173,7 +173,7 @@ class Reader:
 def _noticed(text: str) -> dict[str, str]:
     """Each line's words by its name, without those of what has ended."""
     lines = (line.partition(": ") for line in text.splitlines())
-    return {name.removesuffix(" (changed)"): words for name, _, words in lines if words != "ended"}
+    return {name.removesuffix(" (changed)"): words for name, _, words in lines if not words.startswith("ended")}
 
 
 def _answer(text: str, label: str) -> LawLine:

@@ -105,3 +105,13 @@ def _falls(before: Weather, code: int, rate_mm_h: float, visibility_m: float) ->
         cloud_cover=100.0,
         visibility=visibility_m,
     )
+
+
+def together(one: Weather, other: Weather) -> Weather:
+    """The weather of two that come at a time: what falls harder, and the shorter sight."""
+    worse = max(one, other, key=lambda weather: (weather.precipitation, -weather.visibility))
+    return replace(
+        worse,
+        visibility=min(one.visibility, other.visibility),
+        relative_humidity_2m=max(one.relative_humidity_2m, other.relative_humidity_2m),
+    )

@@ -46,13 +46,6 @@ class WeatherSpan:
     from_s: float
     to_s: float
     weather: Weather
-    begun_s: float | None = None
-    """When the whole began of which this is a part; None if it is whole."""
-
-    @property
-    def whole_from_s(self) -> float:
-        """When the whole began; of two that overlap, the later one counts."""
-        return self.from_s if self.begun_s is None else self.begun_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +91,8 @@ LEADER_WITHIN_S = 40.0
 """A leader that has not been found by then does not brake, lest it do so during the next staging."""
 LATE_M = 135.0
 """How far ahead it brakes: just within the reach of the radar."""
+OPEN_S = 60.0
+"""How long a tailgate is open at least."""
 PHONE_S = 40.0
 """How long a driver uses the phone."""
 AHEAD_S = 420.0
@@ -191,10 +186,12 @@ def _set(setting: Setting, *values: tuple[Signal[bool] | Signal[str], bool | str
 
 
 def _door(setting: Setting) -> Causes:
-    """The tailgate springs open; as a look-alike, somebody opens a window."""
+    """The tailgate springs open, and the driver shuts it where the car stands; as a look-alike, somebody opens a
+    window."""
     if setting.is_lookalike:
-        return Causes(changes=(CarChange(setting.at_s, CABIN.REAR_LEFT_WINDOW.path, 30.0),))
-    return Causes(changes=_turned(CABIN.TRUNK, setting, True, 180.0))
+        return Causes(changes=(CarChange(setting.at_s, CABIN.REAR_LEFT_WINDOW.path, 15.0),))
+    shut = CarChange(setting.at_s + OPEN_S, CABIN.TRUNK.path, False, once_standing=True)
+    return Causes(changes=(CarChange(setting.at_s, CABIN.TRUNK.path, True), shut))
 
 
 def _tyre(setting: Setting) -> Causes:
@@ -265,11 +262,11 @@ def _shower(setting: Setting, full: Weather, after_s: float = 0.0) -> tuple[Weat
 
 
 def _spans(begun_s: float, parts: Iterable[tuple[float, Weather]], length_s: float) -> tuple[WeatherSpan, ...]:
-    """Weather that comes and goes in steps, as parts of one whole."""
+    """Weather that comes and goes in steps."""
     steps = [(begun_s + after_s, weather) for after_s, weather in parts]
     ends_s = [*(at_s for at_s, _ in steps[1:]), begun_s + length_s]
     spans = zip(steps, ends_s, strict=True)
-    return tuple(WeatherSpan(at_s, end_s, weather, begun_s) for (at_s, weather), end_s in spans)
+    return tuple(WeatherSpan(at_s, end_s, weather) for (at_s, weather), end_s in spans)
 
 
 def _weather_speed(setting: Setting) -> Causes:

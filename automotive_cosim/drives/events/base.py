@@ -62,10 +62,14 @@ class WatchAct:
     """Signals and app data that it commanded, with their values; None for app data."""
     said: str = ""
     """Words spoken to the driver."""
+    releases: bool = False
+    """Whether it only takes back what the driver was asked or advised."""
 
     @property
     def holds_back(self) -> bool:
         """Whether it makes the car stop or drive slowly, or tells the driver to."""
+        if self.releases:
+            return False
         slows = any(isinstance(request, SlowDown | PullOver | Cruise) for request in self.requests)
         return slows or (self.alert is not None and self.speed_kmh is not None) or self.stops
 
@@ -117,6 +121,9 @@ class EventKind(ABC):
     """Whether the state that the car reaches settles it, and not an act by itself."""
     eases: ClassVar[bool] = False
     """Whether it has passed by itself if in the end it only looks like one."""
+    told_by: ClassVar[tuple[str, ...]]
+    """Names of the readings (``wakes.WAKES``) that tell of it, and of what speaks against a warning of it; the
+    context states the rules."""
     neutral: ClassVar[str]
     """What makes a warning true although nothing is due, so that it costs nothing."""
 

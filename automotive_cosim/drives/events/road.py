@@ -66,6 +66,7 @@ REAR_END_S = 5.0
 class TunnelAhead(EventKind):
     """A tunnel ahead, with the lamps off."""
 
+    told_by = ("tunnel", "light", "lamps")
     name = "tunnel"
     about = "a tunnel comes and the lamps would stay off in it"
     lookalike = "a tunnel that is still a minute away"
@@ -107,6 +108,7 @@ class TunnelAhead(EventKind):
 class JamTail(EventKind):
     """The tail of a queue ahead, at speed."""
 
+    told_by = ("jam", "closure")
     name = "jam_tail"
     about = "the car approaches the tail of a jam at speed"
     lookalike = "traffic that flows slowly, but flows"
@@ -139,13 +141,13 @@ class JamTail(EventKind):
         now = drive[-1]
         if seen(now, SightKind.JAM) is not None or seen(now, SightKind.CLOSURE) is not None:
             return None
-        flows = now.driving.around.relative_speed
-        return f"no jam within 2 km; traffic flows at {flows:.0%} of its usual speed"
+        return "no jam is reported within 2 km"
 
 
 class RearEnd(EventKind):
     """A vehicle that comes fast from behind: hazard lights warn its driver. Nothing is ever due."""
 
+    told_by = ("behind",)
     name = "rear_end"
     about = "hazard lights warn a vehicle behind that would soon run into the car"
     lookalike = "a vehicle behind that comes no closer, or slowly"
@@ -209,6 +211,7 @@ class StandsAhead(EventKind):
 class BreakdownAhead(StandsAhead):
     """A broken-down vehicle ahead."""
 
+    told_by = ("breakdown",)
     name = "breakdown"
     about = "a broken-down vehicle stands ahead on the route"
     lookalike = "one that is reported on another road or the other carriageway"
@@ -219,6 +222,7 @@ class BreakdownAhead(StandsAhead):
 class RoadworksAhead(StandsAhead):
     """Roadworks ahead."""
 
+    told_by = ("roadworks",)
     name = "roadworks"
     about = "roadworks narrow the road ahead on the route"
     lookalike = "roadworks that are reported on another road or the other carriageway"
@@ -230,6 +234,7 @@ class RoadworksAhead(StandsAhead):
 class BlueLight(EventKind):
     """An emergency vehicle behind, with its blue light on."""
 
+    told_by = ("behind",)
     name = "blue_light"
     about = "an emergency vehicle with blue light comes from behind and wants to pass"
     lookalike = "a plain van close behind"
@@ -261,6 +266,7 @@ class BlueLight(EventKind):
 class LeaderClose(EventKind):
     """Too close behind the vehicle ahead."""
 
+    told_by = ("vehicle ahead",)
     name = "leader_close"
     about = "the gap to the vehicle ahead is shorter than the law asks, or than a driver needs to react"
     lookalike = "a gap a little longer than that"
@@ -312,6 +318,7 @@ def _lawful_s(now: Moment, *, verified: bool = True) -> Iterator[float]:
 class LeaderBrakes(EventKind):
     """The vehicle ahead brakes so hard that only hard braking helps."""
 
+    told_by = ("vehicle ahead",)
     name = "leader_brakes"
     about = "only hard braking avoids the vehicle ahead"
     lookalike = "a vehicle ahead that is slower, with room to brake gently"
@@ -351,6 +358,7 @@ class LeaderBrakes(EventKind):
 class TractorAhead(EventKind):
     """A slow vehicle ahead on a fast road."""
 
+    told_by = ("vehicle ahead",)
     name = "tractor"
     about = "the car comes up fast behind a slow vehicle on a fast road"
     lookalike = "a slow vehicle ahead in a town"
