@@ -33,7 +33,7 @@ def acts_of(given: Sequence[CommandRecord], driving: DrivingState) -> Iterator[W
         if isinstance(message, WarnDriver):
             alert = alert or message.alert
         if alert is not None:
-            yield WatchAct(record.time_s, alert.kind, alert.severity, alert.speed_kmh)
+            yield WatchAct(record.time_s, alert.kind, alert.severity, alert.speed_kmh, text=alert.text)
             continue
         releases = any(isinstance(each, SlowDown) and takes_back(each.speed_kmh, driving) for each in asked)
         yield WatchAct(record.time_s, requests=asked, writes=tuple(_writes(record)), releases=releases)

@@ -98,6 +98,7 @@ class Event:
     |---|---|
     | ``driver_...`` | the driver's reaction to a request: slows, holds, ignores, opens_gap, gives_way, ... |
     | ``driver_parks``, ``driver_sets_off`` | the ego is parked as planned, and drives on |
+    | ``driver_goes_on`` | the driver has entered the next destination of the round |
     | ``driver_drives_on`` | a stop that was asked for is over |
     | ``driver_released`` | what was asked or advised has ended; the driver drives as before |
     | ``incident`` | an incident of the scenario begins or ends |

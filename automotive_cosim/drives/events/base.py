@@ -18,6 +18,8 @@ from typing import Any, ClassVar
 from automotive_cosim.contracts import AlertKind, Cruise, PullOver, RoadRequest, Severity, SlowDown
 from automotive_cosim.cosim.moment import Moment
 
+MOST_QUOTED = 60
+"""Characters of what an act says that reports show."""
 Wanted = Callable[[Any], bool]
 """Whether a value written to a signal settles an event."""
 
@@ -62,6 +64,8 @@ class WatchAct:
     """Signals and app data that it commanded, with their values; None for app data."""
     said: str = ""
     """Words spoken to the driver."""
+    text: str = ""
+    """Words that stand with the alert."""
     releases: bool = False
     """Whether it only takes back what the driver was asked or advised."""
 
@@ -84,12 +88,13 @@ class WatchAct:
         """In words, for reports."""
         if self.alert is not None:
             speed = "" if self.speed_kmh is None else f", {self.speed_kmh:.0f} km/h"
-            return f"alert {self.alert}{speed}{'' if self.severity is Severity.WARNING else f', {self.severity}'}"
+            severity = "" if self.severity is Severity.WARNING else f", {self.severity}"
+            return f"alert {self.alert}{speed}{severity}{_quoted(': ', self.text)}"
         if self.requests:
             return ", ".join(type(request).__name__ for request in self.requests)
         if self.writes:
             return ", ".join(_written(path, value) for path, value in self.writes)
-        return "said something"
+        return "said" + (_quoted(" ", self.said) or " nothing")
 
 
 class EventKind(ABC):
@@ -172,6 +177,13 @@ class EventKind(ABC):
     def concerns(self, act: WatchAct) -> bool:
         """Whether an act touches what the kind is about, rightly or not."""
         return any(path in self.writes for path, _ in act.writes)
+
+
+def _quoted(before: str, words: str) -> str:
+    """Words in quotation marks, as far as a line has room."""
+    line = " ".join(words.split())
+    short = line if len(line) <= MOST_QUOTED else f"{line[: MOST_QUOTED - 1]}…"
+    return f'{before}"{short}"' if short else ""
 
 
 def _written(path: str, value: Any) -> str:

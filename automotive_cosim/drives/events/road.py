@@ -19,7 +19,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
-from automotive_cosim.drives.events.law import REACTION_S, certain, seen, speed_kmh, time_left_s
+from automotive_cosim.drives.events.law import REACTION_S, certain, may_say, seen, speed_kmh, time_left_s
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 
 NEAR_M = 500.0
@@ -60,7 +60,9 @@ TRACTOR_KMH = (8.0, 40.0)
 FAST_ROAD_KMH = 65.0
 TRACTOR_DUE_S = 8.0
 SOON_S = 15.0
-REAR_END_S = 5.0
+REAR_END_S = 10.0
+CORRIDOR_KMH = 30.0
+"""Slower than this where the law asks for a corridor, traffic may come to a halt; our choice."""
 
 
 class TunnelAhead(EventKind):
@@ -151,8 +153,8 @@ class RearEnd(EventKind):
     name = "rear_end"
     about = "hazard lights warn a vehicle behind that would soon run into the car"
     lookalike = "a vehicle behind that comes no closer, or slowly"
-    source = "UN R48, 6.25: the rear-end collision alert signal; 5 s, our choice, leave its driver time to brake"
-    neutral = "a vehicle behind less than 5 s away at the speed at which it closes; never due"
+    source = "UN R48, 6.25: the rear-end collision alert signal; 10 s, our choice, leave its driver time to brake"
+    neutral = "a vehicle behind less than 10 s away at the speed at which it closes; never due"
     is_due_ever = False
     alerts = frozenset[AlertKind]()
     writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.HAZARD.path: on}
@@ -261,6 +263,32 @@ class BlueLight(EventKind):
         if follower is not None:
             return f"a vehicle without a blue light {follower.distance_m or 0:.0f} m behind"
         return f"no blue light within {BLUE_LIGHT_M:.0f} m"
+
+
+class Corridor(EventKind):
+    """A jam in which the law asks for a corridor before anybody needs it. Nothing is ever due."""
+
+    told_by = ("speed", "jam")
+    name = "corridor"
+    about = "in a jam the law asks for a corridor, also before an emergency vehicle comes"
+    lookalike = "a jam where no rule asks for one, or traffic that flows"
+    source = "the law of the place, such as StVO 11(2); 30 km/h, our choice"
+    neutral = "slower than 30 km/h, or a jam ahead, where a rule asks for a corridor; never due"
+    is_due_ever = False
+    alerts = frozenset({AlertKind.CORRIDOR})
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """Nothing that would have to be met."""
+        return iter(())
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No rule that asks for a corridor, or no jam."""
+        now = drive[-1]
+        if not may_say(now.context, "emergency_corridor", "required"):
+            return "no rule here asks for a corridor"
+        if speed_kmh(now) < CORRIDOR_KMH or seen(now, SightKind.JAM) is not None:
+            return None
+        return f"no jam, at {speed_kmh(now):.0f} km/h"
 
 
 class LeaderClose(EventKind):

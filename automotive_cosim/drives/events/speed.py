@@ -252,7 +252,7 @@ class WeatherSpeed(SpeedKind):
         stopping_m = _stopping_m(now)
         if not now.driving.road.in_tunnel and stopping_m > now.weather.visibility:
             words = f"needs {stopping_m:.0f} m to stop and sees {now.weather.visibility:.0f} m"
-            yield Sighting(words, "sight", due=True, hold_s=3.0, severity=stopping_m / now.weather.visibility)
+            yield Sighting(words, "sight", due=True, hold_s=3.0, severity=FOG_M / now.weather.visibility)
             return
         for reduced in context.reduced_limits:
             value = reduced.rule.cases[0].value
