@@ -194,7 +194,7 @@ class _Writer:
         self._numbers: dict[type, int] = {}
         self._places: dict[str, int] = {}
         self._known: dict[int, tuple[object, Any]] = {}
-        """Of every tuple and dataclass, by identity: two drives share most of their states, and all states a route."""
+        """Of tuples and dataclasses, by identity: two drives share most of their states, and all states a route."""
 
     def value(self, value: Any) -> Any:
         kind = type(value)

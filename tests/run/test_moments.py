@@ -71,7 +71,9 @@ def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
     judged = read_judged(kept[0], "a")
     task = CATALOGUE["phenomenon_front_window_fogged"]
     instance = Instance(task, "first", judged.goal, judged.parameters)
-    again = judge(instance, judged.trace, judged.baseline, lambda: judged.counterfactual, judged.declared, judged.reason)
+    again = judge(
+        instance, judged.trace, judged.baseline, lambda: judged.counterfactual, judged.declared, judged.reason
+    )
     assert again == collected[1].verdict
 
 
