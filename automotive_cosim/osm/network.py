@@ -20,7 +20,7 @@ from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
 from automotive_cosim.osm.turns import BannedTurns, read_turns
 from automotive_cosim.traffic.georeference import GeoReference
-from automotive_cosim.traffic.network import Edge, Network, read_network
+from automotive_cosim.traffic.network import TIMED_TURN, Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
 
 GEOMETRY = (
@@ -143,9 +143,11 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
     _write(text, target)
     network = read_network(target)
-    watched = _watched(network, extract.cameras)
-    if watched:
-        _write(_with_parameters(text, lambda edge_id: _cameras(watched.get(edge_id, ()))), target)
+    more = {edge_id: _cameras(places_m) for edge_id, places_m in _watched(network, extract.cameras).items()}
+    for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
+        more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
+    if more:
+        _write(_with_parameters(text, lambda edge_id: more.get(edge_id, {})), target)
         network = read_network(target)
     return Built(network, tuple(network.edges.values()), signals, roundabouts, barred, turns, opened)
 
@@ -214,8 +216,27 @@ def _watched(network: Network, cameras: Sequence[Position]) -> dict[str, list[fl
     return found
 
 
-def _cameras(places_m: Sequence[float]) -> Mapping[str, str]:
-    return {"speed_camera": " ".join(f"{place_m:g}" for place_m in sorted(places_m))} if places_m else {}
+def _cameras(places_m: Sequence[float]) -> dict[str, str]:
+    return {"speed_camera": " ".join(f"{place_m:g}" for place_m in sorted(places_m))}
+
+
+def _timed_turns(network: Network, pieces: Sequence[Piece], turns: BannedTurns) -> dict[tuple[str, str], str]:
+    """The turns from edge to edge that cars may make at certain hours only, and when. Of several between the same
+    roads, those at the node that is meant."""
+    of_piece: dict[str, list[str]] = {}
+    for edge_id in network.edges if turns.timed else ():
+        of_piece.setdefault(edge_id.lstrip("-").partition("#")[0], []).append(edge_id)
+    found: dict[tuple[str, str], str] = {}
+    for ban, hours in turns.timed.items():
+        froms, tos = (of_piece.get(_id_of(pieces[each]), ()) for each in (ban.from_piece, ban.to_piece))
+        made = [(start, goal) for start in froms for goal in tos if goal in network.crossings.get(start, {})]
+        there = [turn for turn in made if str(ban.via) in _DIGITS.findall(network.edges[turn[0]].to_node)]
+        found |= dict.fromkeys(there or made, hours)
+    return found
+
+
+_DIGITS = re.compile(r"\d+")
+"""The OSM nodes in the id of a junction; netconvert joins several into one."""
 
 
 _EDGE = re.compile(r'(<edge id=("[^":][^"]*")(?: [^>]*)?[^/]>.*?)(\s*</edge>)', re.DOTALL)

@@ -49,10 +49,13 @@ DOUBTED = frozenset(("alternating", "reversible"))
 
 
 def directions(tags: Mapping[str, str]) -> Directions:
-    """The directions open to cars; neither where they may not drive at all."""
+    """The directions open to cars, at some hours at least; neither where they may not drive at all."""
     may = _signed(tags)
     return Directions(
-        *(is_open and access.access(tags, end).is_open for is_open, end in zip(may, access.ENDS, strict=True))
+        *(
+            is_open and (access.access(tags, end).is_open or bool(access.at_hours(tags, end)))
+            for is_open, end in zip(may, access.ENDS, strict=True)
+        )
     )
 
 
