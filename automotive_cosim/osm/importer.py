@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.contracts import Tell
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, ground, network, trips
@@ -111,10 +112,12 @@ def import_map(
         atlas = shipped()
         place = atlas.place(*mapped.centre)
         options = replace(options, country=options.country or place.country)
-        tell("building the network", None)
+        tell(f"reading the limits of {counted(len(mapped.ways), 'road')}", None)
         roads = describe(mapped, atlas, options.country)
+        tell("building the network", None)
         net = building / f"{options.name}.net.xml.gz"
-        built = network.convert(mapped, roads, net, options.country, building.parent)
+        built = network.convert(mapped, roads, net, options.country, building.parent, tell)
+        tell("drawing the ground around it", None)
         around = ground.draw(mapped.ground, built.network.map)
         if around.areas:
             ground.write(around.areas, building / _ground(options))
@@ -129,6 +132,7 @@ def import_map(
             rng=rng,
         )
         flow, journeys, stuck = _Search(building, options, place, drawn, rng, tell).run()
+        tell("comparing the network with the map", None)
         report = make_report(
             source,
             mapped,
@@ -241,6 +245,8 @@ class _Search:
 
     def _until_it_flows(self, scale: float, step_length_s: float, observe_s: float) -> Stability:
         for trials_left in reversed(range(TRIALS)):
+            what = f"traffic at scale {scale:g}, in steps of {step_length_s:g} s"
+            self._tell(what, 0.0)
             run = measure(
                 self._scenario(scale),
                 observe_s=observe_s,
@@ -248,7 +254,7 @@ class _Search:
                 seed=self._options.seed,
                 step_length_s=step_length_s,
                 stop_at=HALTED_SHARE_AIM,
-                on_progress=partial(self._tell, f"traffic at scale {scale:g}, in steps of {step_length_s:g} s"),
+                on_progress=partial(self._tell, what),
             )
             if run.stable and run.halted_share_max < HALTED_SHARE_AIM:
                 return run

@@ -12,6 +12,7 @@ from xml.sax.saxutils import quoteattr, unescape
 
 import shapely
 
+from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.barriers import Cut, Piece, cut
 from automotive_cosim.osm.country import LEFT_HAND
@@ -91,7 +92,14 @@ def _neighbours(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
     return found
 
 
-def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, country: str, scratch: Path) -> Built:
+def convert(
+    extract: Extract,
+    roads: Mapping[int, MappedRoad],
+    target: Path,
+    country: str,
+    scratch: Path,
+    tell: Tell = lambda stage, share: None,
+) -> Built:
     """Builds ``target`` (a ``.net.xml.gz``) with netconvert and reads it back.
 
     The same input gives the same bytes: netconvert's header with its date and paths is removed. Each edge gets the
@@ -103,12 +111,18 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
         target: the file to create.
         country: ISO 3166-1 code, which decides the driving side.
         scratch: a folder for intermediate files.
+        tell: called with the current activity.
 
     Raises:
         ImportMapError: netconvert refuses the map, or nothing drivable remains.
         SetupError: netconvert is not installed.
     """
     raw = scratch / "roads.net.xml"
+
+    def heard(line: str) -> None:
+        if stage := _stage(line):
+            tell(f"building the network, {stage}", None)
+
     barred = cut(extract)
     turns = read_turns(
         extract.restrictions, barred.pieces, [roads[piece.way.way_id].directions for piece in barred.pieces]
@@ -120,12 +134,14 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
             "--osm-files=roads.osm",
             f"--type-files={home() / 'data' / 'typemap' / 'osmNetconvert.typ.xml'}",
             "--osm.lane-access",
+            "--verbose",
             *GEOMETRY,
             *SIGNALS,
             *(["--lefthand"] if country in LEFT_HAND else []),
             f"--output-file={raw.name}",
         ),
         folder=scratch,
+        heard=heard,
     )
     if not ok and "No nodes loaded" not in printed:
         raise ImportMapError(f"netconvert cannot build a network from this map: {first_error(printed)}")
@@ -138,10 +154,13 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
     text = re.sub(r"<!-- generated on .*?-->\s*", "", text, count=1, flags=re.DOTALL)
     text = _ESCAPED_TWICE.sub(r"&\1;", text)
     text = _NUMBER.sub(lambda number: _id_of(barred.pieces[int(number[0]) - FIRST_NUMBER]), text)
+    tell("building the network, its lanes", None)
     text, opened = open_traps(text)
+    tell("building the network, its parameters", None)
     text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
     _write(text, target)
+    tell("reading the network", None)
     network = read_network(target)
     more = {edge_id: _cameras(places_m) for edge_id, places_m in _watched(network, extract.cameras).items()}
     for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
@@ -150,6 +169,12 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
         _write(_with_parameters(text, lambda edge_id: more.get(edge_id, {})), target)
         network = read_network(target)
     return Built(network, tuple(network.edges.values()), signals, roundabouts, barred, turns, opened)
+
+
+def _stage(line: str) -> str:
+    """What netconvert says it does, without dots, times and warnings; empty for other lines."""
+    found = re.match(r"[A-Z][a-z]+ing [\w\s-]+", line)
+    return f"{found[0][0].lower()}{found[0][1:].strip()}" if found else ""
 
 
 FIRST_NUMBER = 7 * 10**17
