@@ -81,7 +81,7 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
 
 
 def departed_on_a_free_road(simulation: Simulation, ego: EgoPlan) -> tuple[EgoPlan, Traffic]:
-    """The plan that begins with the first of its trips, in their order, on whose road there is a gap; and its drive.
+    """The plan that begins with the first of its trips, in their order, on whose road is a gap; and its drive.
 
     Raises:
         NoRoomError: there is none on any; the error is that of the first.
