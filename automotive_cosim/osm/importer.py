@@ -131,7 +131,7 @@ def import_map(
             duration_s=DEMAND_S,
             rng=rng,
         )
-        flow, journeys, stuck = _Search(building, options, place, drawn, rng, tell).run()
+        flow, journeys, stuck = _Search(building, options, place, drawn, rng, tell, edges=len(built.edges)).run()
         tell("comparing the network with the map", None)
         report = make_report(
             source,
@@ -179,7 +179,9 @@ def _title(options: ImportOptions) -> str:
     return options.name.replace("_", " ").replace("-", " ").capitalize()
 
 
-def _write(building: Path, options: ImportOptions, place: Place, ways: Sequence[Trip], *, scale: float) -> Scenario:
+def _write(
+    building: Path, options: ImportOptions, place: Place, ways: Sequence[Trip], *, scale: float, edges: int
+) -> Scenario:
     """Writes the scenario's own files and reads them back."""
     sumo = Sumo(config=f"{options.name}.sumocfg", scale=scale)
     folder.write_config(
@@ -188,6 +190,7 @@ def _write(building: Path, options: ImportOptions, place: Place, ways: Sequence[
         f"{options.name}.trips.xml.gz",
         sumo,
         ground=_ground(options) if (building / _ground(options)).exists() else "",
+        edges=edges,
     )
     folder.write_scenario(
         building / "scenario.toml",
@@ -213,6 +216,8 @@ class _Search:
         drawn: Demand,
         rng: np.random.Generator,
         tell: Tell,
+        *,
+        edges: int,
     ) -> None:
         self._building = building
         self._options = options
@@ -221,6 +226,7 @@ class _Search:
         self._most_stuck = math.ceil(STUCK_SHARE_MAX * len(drawn.journeys))
         self._ways = trips.pick(drawn.routes, rng)
         self._tell = tell
+        self._edges = edges
         self._stuck: list[Stuck] = []
 
     def run(self) -> tuple[Stability, Sequence[Journey], tuple[Stuck, ...]]:
@@ -284,7 +290,7 @@ class _Search:
         demand.write(self._journeys, self._building / f"{self._options.name}.trips.xml.gz")
 
     def _scenario(self, scale: float) -> Scenario:
-        return _write(self._building, self._options, self._place, self._ways, scale=scale)
+        return _write(self._building, self._options, self._place, self._ways, scale=scale, edges=self._edges)
 
 
 def _why(run: Stability) -> str:
