@@ -72,6 +72,8 @@ def expect(tags: Mapping[str, str], country: str, *, miles: Container[str], metr
         metric: those where it is in kilometres per hour.
     """
     way = _one_way(tags)
+    if way and _turns_at_times(tags, way):
+        way = 0
     forward, backward = (_admits(tags, side) or _at_times(tags, side) for side in ("forward", "backward"))
     limits = [_limit(tags, side, country, miles=miles, metric=metric) for side in ("forward", "backward")]
     return Expected(forward and way >= 0, backward and way <= 0, limits[0], limits[1])
@@ -173,6 +175,17 @@ def _one_way(tags: Mapping[str, str]) -> int:
             found = 0
         found = ONE_WAY.get(word, found)
     return found
+
+
+def _turns_at_times(tags: Mapping[str, str], way: int) -> bool:
+    """Whether a one-way road is open in the other direction at some hours."""
+    for group in (*reversed(GROUPS[1:]), ""):
+        key = f"oneway:{group}" if group else "oneway"
+        if tags.get(key) or tags.get(f"{key}:conditional"):
+            said = _CLAUSE.findall(tags.get(f"{key}:conditional", ""))
+            words = [word for word, when in said if _CLOCK.fullmatch(when)]
+            return any(word in TWO_WAY or ONE_WAY.get(word, way) != way for word in words)
+    return False
 
 
 def _limit(

@@ -133,7 +133,8 @@ def test_which_way_cars_may_drive(tags: dict[str, str], may: tuple[bool, bool]) 
         ({"oneway": "reversible"}, ["oneway=reversible"]),
         ({"oneway": "alternating"}, ["oneway=alternating"]),
         ({"oneway": "perhaps"}, ["oneway=perhaps"]),
-        ({"oneway": "yes", "oneway:conditional": "no @ (22:00-06:00)"}, ["oneway:conditional=no @ (22:00-06:00)"]),
+        ({"oneway": "yes", "oneway:conditional": "no @ (22:00-06:00)"}, []),
+        ({"oneway": "yes", "oneway:conditional": "no @ destination"}, ["oneway:conditional=no @ destination"]),
         ({"oneway": "yes"}, []),
     ],
 )
@@ -157,12 +158,17 @@ def test_doubtful_access_and_directions_are_told(tags: dict[str, str], told: lis
         ({"access": "no", "access:forward:conditional": "yes @ 24/7"}, "no @ (24/7); yes @ (24/7)", WITH),
         ({"access:conditional": "no @ (20:00-06:00)", "motor_vehicle": "yes"}, "", BOTH),
         ({"access": "no", "access:conditional": "yes @ (weight<3.5)"}, "", NEITHER),
+        ({"oneway:conditional": "-1 @ (Mo-Fr 07:00-09:00)"}, "no @ (Mo-Fr 07:00-09:00)", BOTH),
+        ({"oneway:conditional": "yes @ (Mo-Fr 07:00-09:00)"}, "", BOTH),
+        ({"oneway": "-1", "oneway:conditional": "no @ (22:00-06:00)"}, "no @ (24/7); yes @ (22:00-06:00)", BOTH),
+        ({"oneway": "yes", "oneway:conditional": "no @ destination"}, "", WITH),
+        ({"oneway": "yes", "oneway:motorcar": "no", "oneway:conditional": "-1 @ (07:00-09:00)"}, "", BOTH),
         ({"access": "no", "access:conditional": "yes @ (sunrise-sunset)"}, "", NEITHER),
     ],
 )
 def test_access_at_certain_hours(tags: dict[str, str], hours: str, may: tuple[bool, bool]) -> None:
     """With the nodes of the way; a road that is ever open is in the network."""
-    assert access.at_hours(tags, "forward") == hours
+    assert oneway.at_hours(tags, "forward") == hours
     assert directions({"highway": "tertiary"} | tags) == may
     expected = expect({"highway": "tertiary"} | tags, "DE", miles=(), metric=("DE",))
     assert (expected.forward, expected.backward) == may, "the second reading says the same"
