@@ -16,7 +16,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import date, datetime, timedelta
 
 from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS
 
@@ -41,6 +41,10 @@ _DAYS_OFF = re.compile(rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)\s+off")
 _MONTH = f"(?:{'|'.join(_MONTHS)})"
 _DATES = rf"{_MONTH}(?: \d\d?)?(?:-(?:{_MONTH}(?: \d\d?)?|\d\d?))?"
 _RULE = re.compile(rf"(?P<dates>{_DATES})?:?\s*(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?")
+_DAYS_ONE = re.compile(_DAY)
+_NTH = re.compile(r"(?<=[a-z])\[(-1|[1-5])\]")
+"""Which of a weekday in a month: ``Su[1]`` is the first Sunday."""
+_SEASONS = re.compile(rf"(?P<seasons>{_DATES}(?:\s*,\s*{_DATES})+):?\s+(?P<rest>.+)")
 _NEXT_RULE = re.compile(rf"(?<=\d)\s*,\s*(?={_DAY}\b)")
 """Where a comma parts two rules: after a time, before a day (``Mo-Fr 07:00-17:00, Sa 08:00-12:00``)."""
 _SPAN = re.compile(r"(\d\d?):(\d\d)-(\d\d?):(\d\d)")
@@ -64,6 +68,8 @@ class Hours:
     """The first and the last day of the year on which it holds; the last may be in the next year."""
     weather: str = ""
     """A key of ``WEATHERS`` if it holds in that weather only."""
+    weeks: frozenset[int] = frozenset()
+    """Which of these weekdays of a month, if not all: 1 is the first, -1 the last."""
 
     def holds(self, local_time: datetime, weather: str = "") -> bool:
         """Whether it is in force at the local time, in a weather of ``WEATHERS`` or none of them."""
@@ -75,8 +81,8 @@ class Hours:
         return in_season and self.weather in ("", weather) and self._holds_at(local_time)
 
     def _holds_at(self, local_time: datetime) -> bool:
-        minute, day = local_time.hour * 60 + local_time.minute, local_time.isoweekday()
-        today, yesterday = day in self.days, (day + 5) % 7 + 1 in self.days
+        minute, date = local_time.hour * 60 + local_time.minute, local_time.date()
+        today, yesterday = self._has(date), self._has(date - timedelta(days=1))
         for first, last in self.spans:
             if first < last:
                 if today and first <= minute < last:
@@ -84,6 +90,12 @@ class Hours:
             elif (today and minute >= first) or (yesterday and minute < last):
                 return True
         return False
+
+    def _has(self, day: date) -> bool:
+        if day.isoweekday() not in self.days:
+            return False
+        is_last = (day + timedelta(days=7)).month != day.month
+        return not self.weeks or (day.day - 1) // 7 + 1 in self.weeks or (is_last and -1 in self.weeks)
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,6 +212,7 @@ def read_hours(condition: str) -> list[Hours]:
     if not rules and not weather:
         raise ValueError(condition)
     free = frozenset[int]().union(*map(_weekdays, off))
+    rules = [each for rule in rules for each in _by_season(rule)]
     return [_hours(rule, free, off, weather) for rule in rules or ["24/7"]]
 
 
@@ -226,21 +239,31 @@ def _weather(condition: str) -> tuple[str, str]:
     return "".join(rest), "".join(found)
 
 
+def _by_season(rule: str) -> Iterator[str]:
+    """A rule for each of its parts of the year (``Jan-Mar,Oct-Dec Su 10:00-17:00``)."""
+    match = _SEASONS.fullmatch(rule)
+    if match is None:
+        yield rule
+    else:
+        yield from (f"{season.strip()} {match['rest']}" for season in match["seasons"].split(","))
+
+
 def _hours(rule: str, free: frozenset[int], off: Sequence[str], weather: str) -> Hours:
     """One rule such as ``Mo-Fr 08:00-09:30,14:30-16:00``."""
-    match = _RULE.fullmatch(rule)
-    if match is None or not rule:
+    nth = _NTH.search(rule)
+    match = _RULE.fullmatch(rule[: nth.start()] + rule[nth.end() :] if nth else rule)
+    if match is None or not rule or (nth is not None and not _DAYS_ONE.fullmatch(match["days"] or "")):
         raise ValueError(rule)
     dates, days = match["dates"] or "", re.sub(r"\s", "", match["days"] or "")
     times = (match["times"] or "").strip().removeprefix("24/7")
     spans = tuple(_span(span.strip()) for span in times.split(",")) if times else ((0, _DAY_MINUTES),)
     times_said = re.sub(r"\s*,\s*", ", ", times)
     but = f"but {', '.join(off)}" if off else ""
-    words = " ".join(
-        part for part in (dates, days.replace(",", ", "), times_said, but, WEATHERS.get(weather, "")) if part
-    )
+    said = days.replace(",", ", ") + (nth[0] if nth else "")
+    words = " ".join(part for part in (dates, said, times_said, but, WEATHERS.get(weather, "")) if part)
     weekdays = _weekdays(days) - free
-    return Hours(weekdays, spans, words, _dates(dates), weather)
+    weeks = frozenset((int(nth[1]),)) if nth else frozenset[int]()
+    return Hours(weekdays, spans, words, _dates(dates), weather, weeks)
 
 
 def _dates(text: str) -> tuple[Day, Day]:

@@ -17,7 +17,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.posted import in_force, sign_mps, timed_limits
+from automotive_cosim.traffic.posted import in_force, is_open, sign_mps, timed_access, timed_limits
 
 Edit = Callable[[Path], None]
 Variant = Callable[[Edit], Scenario]
@@ -163,6 +163,25 @@ def test_the_weather_decides_where_the_sign_says_so() -> None:
 def test_days_off_are_taken_from_the_week() -> None:
     limits, _ = timed_limits("30 @ (07:00-17:00; Sa,Su off)")
     assert [bool(in_force(limits, at(day, "12:00"))) for day in range(1, 8)] == [True] * 5 + [False] * 2
+
+
+def test_the_first_sunday_of_the_month_by_season() -> None:
+    """As on an avenue in Paris that is closed to cars then; every instant of a year."""
+    closed = timed_access("no @ (Jan-Mar,Oct-Dec Su[1] 10:00-17:00; Apr-Sep Su[1] 11:00-18:00)")
+    shut = [
+        day
+        for day in (datetime(2026, 1, 1, 17, 30) + timedelta(days=number) for number in range(365))
+        if not is_open(closed, day)
+    ]
+    assert [(day.month, day.isoweekday(), day.day <= 7) for day in shut] == [
+        (month, 7, True) for month in range(4, 10)
+    ]
+    assert not is_open(closed, datetime(2026, 11, 1, 10, 0))
+    assert is_open(closed, datetime(2026, 11, 8, 10, 0))
+    (last,) = timed_access("no @ (Fr[-1] 22:00-06:00)")
+    assert [last.hours.holds(datetime(2026, 10, day, 23)) for day in (23, 30)] == [False, True]
+    assert last.hours.holds(datetime(2026, 10, 31, 5))
+    assert not timed_access("no @ (Mo-Fr[1] 08:00-09:00)")
 
 
 def test_of_several_the_last_written_holds() -> None:
