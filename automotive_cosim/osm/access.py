@@ -80,6 +80,8 @@ def access(tags: Mapping[str, str], direction: str = "") -> Access:
 def at_hours(tags: Mapping[str, str], direction: str) -> str:
     """When cars may pass along a way in a direction of ``ENDS`` other than always or never, for ``timed_access``:
     ``"no @ (Mo-Fr 07:30-08:30)"``, ``"no @ (24/7); yes @ (18:00-06:00)"``; empty if no hour changes the answer."""
+    if not has_conditions(tags):
+        return ""
     usual = access(tags, direction).is_open
     found: list[tuple[bool, str]] = []
     for key in reversed(KEYS):
@@ -92,6 +94,11 @@ def at_hours(tags: Mapping[str, str], direction: str) -> str:
     if all(is_open is usual for is_open, _ in found):
         return ""
     return timed([*([] if usual else [(False, ALWAYS)]), *found])
+
+
+def has_conditions(tags: Mapping[str, str]) -> bool:
+    """Whether any tag holds under a condition."""
+    return any(key.endswith(":conditional") for key in tags)
 
 
 ALWAYS = "24/7"

@@ -72,7 +72,7 @@ def expect(tags: Mapping[str, str], country: str, *, miles: Container[str], metr
         metric: those where it is in kilometres per hour.
     """
     way = _one_way(tags)
-    if way and _turns_at_times(tags, way):
+    if way and tags.get("lanes", "1") == "1" and _turns_at_times(tags, way):
         way = 0
     forward, backward = (_admits(tags, side) or _at_times(tags, side) for side in ("forward", "backward"))
     limits = [_limit(tags, side, country, miles=miles, metric=metric) for side in ("forward", "backward")]

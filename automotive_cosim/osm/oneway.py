@@ -60,13 +60,16 @@ def directions(tags: Mapping[str, str]) -> Directions:
 
 def at_hours(tags: Mapping[str, str], end: str) -> str:
     """When cars may drive in a direction of ``access.ENDS`` other than always or never, for ``timed_access``; empty
-    if no hour changes the answer. Where both access and direction depend on hours, only access does here."""
+    if no hour changes the answer. Where both access and direction depend on hours, only access does here; and a
+    one-way road of several lanes keeps them all, since a network cannot turn lanes round."""
+    if not access.has_conditions(tags):
+        return ""
     found = access.at_hours(tags, end) if _signed(tags).open(end) else ""
     if found or not access.access(tags, end).is_open or any(access.at_hours(tags, each) for each in access.ENDS):
         return found
     said = [(VALUES[value].open(end), condition) for value, condition in _conditional(tags) if value in VALUES]
     usual = _signed(tags).open(end)
-    if all(is_open is usual for is_open, _ in said):
+    if all(is_open is usual for is_open, _ in said) or not (usual or tags.get("lanes", "1") == "1"):
         return ""
     return access.timed([*([] if usual else [(False, access.ALWAYS)]), *said])
 
