@@ -433,7 +433,7 @@ def _mirror(
     children: list[Widget] = [heading(inner.top(28), name)]
     sideways, upwards = _ANGLES[who]
     for line, key, text, told, signal, ways in (
-        (pan, "pan", say("Sideways"), sideways, angles[0], right_left),
+        (pan, "pan", say("Left, right"), sideways, angles[0], right_left),
         (tilt, "tilt", say("Up, down"), upwards, angles[1], lower_higher),
     ):
         children += [
