@@ -156,9 +156,11 @@ def test_every_sight_is_translated(make: Make, around: Surroundings, language: s
     for cockpit_ in (parked, empty):
         cockpit_.sense(replace(standing, parked=True), 1.0)
     told = [sight.text for each in (cockpit, riding, parked, empty) for sight in each.sights]
-    assert {"Seat belt unbuckled: Rear left", "Driver has left, aboard: Child", "Driver has left, nobody aboard"} <= {
-        *told
-    }
+    assert {
+        "Seat belt unbuckled: Rear left",
+        "Driver has left, aboard: Child",
+        "Driver has left, nobody aboard",
+    } <= {*told}
     for text in told:
         words = said(text, language)
         assert words != text or text.startswith("Tunnel")

@@ -316,7 +316,9 @@ def _schedule(rect: Rect, state: State) -> Widget:
                 checked=on,
                 on_tap=Put(
                     ClimateSchedule(replace(timer, on=not on)),
-                    say("The schedule is off") if on else say("The cabin will be ready at {time}", time=timer.shown),
+                    say("The schedule is off")
+                    if on
+                    else say("The cabin will be ready at {time}", time=timer.shown),
                 ),
             ),
             *time_setter(

@@ -190,7 +190,11 @@ def route(state: State) -> tuple[Widget, ...]:
             "route.tab",
             [
                 (name, text, None, shown == name, Pick("route", name))
-                for name, text in (("turns", say("Directions")), ("ways", say("Routes")), ("options", say("Options")))
+                for name, text in (
+                    ("turns", say("Directions")),
+                    ("ways", say("Routes")),
+                    ("options", say("Options")),
+                )
             ],
         ),
         *pages[shown](body, state),
