@@ -13,6 +13,7 @@ from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasks import (
     apps,
     apps_asking,
+    at_the_kerb,
     clarify,
     comms,
     comms_aboard,
@@ -51,6 +52,7 @@ from automotive_cosim.tasks import (
     system_aboard,
     system_asking,
     system_doors_aboard,
+    unasked,
     under_way,
 )
 
@@ -95,6 +97,8 @@ for _module in (
     one_of_two,
     noticed,
     left_to_the_car,
+    unasked,
+    at_the_kerb,
     hints,
     hard,
     limits,
