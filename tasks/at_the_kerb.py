@@ -309,7 +309,6 @@ PAST_THE_SCHOOL = pair(
         rule=CALL_SOURCE.partition(";")[0],
         trigger=Trigger(All((Driving(), Not(SignalHas(CALL.RINGING, "")), InSchoolZone())), 1.0, 300.0),
         deadline=WHILE_IT_RINGS,
-        ways=((Open("phone"), Tap("phone.decline")),),
     ),
     act(
         start("sydney", "school_run", **{**PUPILS, "start": "2026-11-18T11:20:00"}),
@@ -320,7 +319,6 @@ PAST_THE_SCHOOL = pair(
             All((Driving(), Not(SignalHas(CALL.RINGING, "")), InSchoolZone(in_force=False))), 1.0, 300.0
         ),
         deadline=WHILE_IT_RINGS,
-        ways=((Open("phone"), Tap("phone.answer")),),
     ),
     "date: half past eight, when the school zone is in force, or twenty past eleven, when it is not",
     tags=PLACE,
@@ -366,7 +364,7 @@ TO_THE_ROOF = hazard(
         rule=f"{SOFT_SOURCE}; under full load it overheats",
     ),
     rest(at("autobahn", "rest", *FULL_HOUSE, parked=True), SOFT_SOURCE),
-    "settings: a rear tyre has lost a third of its air, or all four are full",
+    "settings and equipment: a rear tyre has lost a third of its air, or all four are full",
 )
 
 TASKS = (

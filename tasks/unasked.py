@@ -170,7 +170,7 @@ ONE_SIDE = pair(
         rule=GUST_SOURCE,
         ways=((Warn(AlertKind.WEATHER),),),
     ),
-    "settings and weather: a front tyre has lost a third of its air, or a strong gale blows",
+    "settings and weather: a front tyre is at 1.5 bar, or a strong gale blows",
 )
 
 LITTLE_SLIDE = pair(
