@@ -210,10 +210,10 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
         Button(
             rect=message,
             key="call.reply",
-            description=say("Answer with a message"),
+            description=say("Reply with a message"),
             icon=Icon.MESSAGE,
             on_tap=Show("thread", who),
-            disabled=say("Choose an answer below")
+            disabled=say("Choose a reply below")
             if (state.screen, state.picked.get("thread")) == ("thread", who)
             else "",
         ),

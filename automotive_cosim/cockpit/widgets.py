@@ -85,6 +85,11 @@ class Widget:
         """Whether a tap does something."""
         return self.on_tap is not None
 
+    @property
+    def touched(self) -> Rect:
+        """Its bounds in a list of elements."""
+        return self.rect
+
 
 @frozen(frozen=True, slots=True, kw_only=True)
 class Screen(Widget):
@@ -175,6 +180,8 @@ class Tile(Widget):
     checked: bool = False
     level: str = ""
     """Text next to the name if on and off do not say enough."""
+    read: str = ""
+    """Name and level as a list of elements has them, if there is a level."""
 
     class_name: ClassVar[str] = "Switch"
 
@@ -198,6 +205,11 @@ class Slider(Widget):
     def track(self) -> Rect:
         """The part that represents the range."""
         return Rect(self.rect.x + 20, self.rect.bottom - 26, self.rect.width - 40, 8)
+
+    @property
+    def touched(self) -> Rect:
+        """As wide as the track, so that a touch at a share of its width sets that share of the range."""
+        return Rect(self.track.x, self.rect.y, self.track.width, self.rect.height)
 
     def message_at(self, x: float) -> Message:
         """The message of a touch at a column."""

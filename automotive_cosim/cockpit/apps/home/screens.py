@@ -251,7 +251,7 @@ def _outside_card(rect: Rect, state: State) -> Widget:
         Label(
             rect=note,
             key="home.outside.note",
-            text=say("Checked: rain, fog, ice, dust, wind")
+            text=say("Monitoring rain, fog, ice, dust, wind")
             if calm
             else say("{name}: {value}", name=worst.title, value=reading.value),
             style=Type.LABEL,
@@ -262,7 +262,7 @@ def _outside_card(rect: Rect, state: State) -> Widget:
 
 _WORDS = {kind: name for kind, (name, _) in KINDS.items()} | {
     AlertKind.SLIPPERY: say("Slippery"),
-    AlertKind.CORRIDOR: say("Corridor"),
+    AlertKind.CORRIDOR: say("Rescue lane"),
     AlertKind.YIELD: say("Yield"),
 }
 """Names of alerts in this card."""
@@ -272,7 +272,7 @@ def _safety_card(rect: Rect, state: State) -> Widget:
     value, note = _lines(rect)
     last = state.of(Alerts).given[-1] if state.of(Alerts).given else None
     title = say("Warn driver") if last is None else say("{kind} alert", kind=_WORDS[last.alert.kind])
-    words = say("No alerts given") if last is None else say("Given at {time}", time=last.clock)
+    words = say("No alerts yet") if last is None else say("Given at {time}", time=last.clock)
     return _live(
         rect,
         "home.safety",
@@ -302,7 +302,7 @@ def _phone_line(state: State) -> tuple[Icon, str, str]:
     """The state of the phone: icon, text and its subject."""
     phone, count = state.of(Phone), len(state.of(Directory).unread(state.of(Phone)))
     if phone.ringing is not None:
-        return Icon.CALL_IN, phone.ringing.who, say("Is calling")
+        return Icon.CALL_IN, phone.ringing.who, say("Incoming call")
     if phone.on_call is not None:
         return Icon.IN_CALL, phone.on_call.who, say("On the phone")
     new = counted("{n} new message", "{n} new messages", count) if count else say("No new messages")
