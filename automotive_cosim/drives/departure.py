@@ -20,6 +20,9 @@ from automotive_cosim.traffic.fork import Simulations
 ADVICE_S = 120.0
 """How long a driver keeps to advice, and stops when asked to: our choice; a reason that lasts is told again."""
 
+SETTLES_S = 60.0
+"""Over how long the road takes on the grip of other weather: our choice; snow and rain need minutes to cover it."""
+
 
 def depart(script: DriveScript, simulations: Simulations, observer: Observer | None = None) -> CoSimulation:
     """The drive at its first instant; whoever takes it over must close it. If the first trip's road is so full that
@@ -111,6 +114,7 @@ def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:
         halts=script.halts,
         incidents=script.incidents,
         advice_s=ADVICE_S,
+        settles_s=SETTLES_S,
         # A driver of SUMO's with blue light runs into a car that brakes early before it has made way.
         brakes_early=not any(isinstance(incident, EmergencyVehicle) for incident in script.incidents),
     )
