@@ -146,6 +146,9 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         f"{row.steps} steps in {found.driven_s / 60:.0f} min",
         soft_wrap=True,
     )
+    if row.harm is not None and row.baseline_harm is not None:
+        near_s, nobodys_s = row.harm.short_ttc_s, row.baseline_harm.short_ttc_s
+        console.print(f"Near-collision time {near_s:.0f} s; without the agent {nobodys_s:.0f} s", soft_wrap=True)
     if row.unwatched_from_s is not None:
         minutes, seconds = divmod(int(row.unwatched_from_s), 60)
         console.print(

@@ -22,6 +22,7 @@ PYTHON = os.environ.get("AUTOMOTIVE_COSIM_FRAMEWORKS", sys.executable)
 NEEDS = {
     "openai_agents.py": ("agents.mcp",),
     "langgraph_car.py": ("langgraph", "langchain_mcp_adapters", "langchain_openai"),
+    "smolagents_car.py": ("mcpadapt", "openai", "smolagents"),
 }
 LONGEST = 15
 """Lines of code of an example."""
@@ -32,7 +33,8 @@ class _Model(BaseHTTPRequestHandler):
 
     def do_POST(self) -> None:
         asked = json.loads(self.rfile.read(int(self.headers["Content-Length"])))
-        results = [json.dumps(each["content"]) for each in asked["messages"] if each["role"].startswith("tool")]
+        told = [(each["role"], json.dumps(each["content"])) for each in asked["messages"]]
+        results = [text for role, text in told if role == "tool" or (role == "user" and "Observation:" in text)]
         found = [match for each in results if (match := re.search(r"episode_id\W+([\w-]+)", each))]
         named = {"episode_id": found[0][1]} if found else {}
         script: list[tuple[str, dict[str, Any]]] = [
@@ -43,6 +45,8 @@ class _Model(BaseHTTPRequestHandler):
         ]
         message: dict[str, Any] = {"role": "assistant", "content": None}
         calls = script[len(results) :][:1]
+        if not calls and any(each["function"]["name"] == "final_answer" for each in asked["tools"]):
+            calls = [("final_answer", {"answer": results[-1]})]  # how an agent of smolagents ends
         if not calls:
             message["content"] = results[-1]
         else:
@@ -57,12 +61,12 @@ class _Model(BaseHTTPRequestHandler):
         choice = {"index": 0, "finish_reason": "tool_calls" if calls else "stop", "message": message}
         usage = {"prompt_tokens": 1, "completion_tokens": 1, "total_tokens": 2}
         body = {"id": "x", "object": "chat.completion", "created": 0, "model": "m", "choices": [choice]}
-        told = json.dumps(body | {"usage": usage}).encode()
+        answer = json.dumps(body | {"usage": usage}).encode()
         self.send_response(200)
         self.send_header("Content-Type", "application/json")
-        self.send_header("Content-Length", str(len(told)))
+        self.send_header("Content-Length", str(len(answer)))
         self.end_headers()
-        self.wfile.write(told)
+        self.wfile.write(answer)
 
     def log_message(self, *args: object) -> None:  # pyright: ignore[reportIncompatibleMethodOverride]
         """Says nothing."""

@@ -124,7 +124,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
 
 def drive_card(rect: Rect, state: State) -> Widget:
     """Speed, range and battery."""
-    signals = state.signals
+    signals, telltales = state.signals, lit(state)
     level = signals[ENERGY.LEVEL]
     inner = rect.inset(24, 14)
     head, _, reach, _, bar, _ = column(inner.right_part(220), 28, 2, 40, 14, 12, REST)
@@ -151,8 +151,8 @@ def drive_card(rect: Rect, state: State) -> Widget:
             Telltales(
                 rect=lamps.left(LAMPS_WIDTH).middle(LAMPS_WIDTH, LAMPS_WIDTH),
                 key="home.telltales",
-                description=lit_in_words(state),
-                lit=lit(state),
+                description=lit_in_words(telltales),
+                lit=telltales,
             ),
             heading(head, say("Range")),
             Label(
