@@ -246,7 +246,7 @@ FATHER_BEHIND = hazard(
     (
         "My father would rather shiver than speak. If he sits in the cold in here, do something about it.",
         "I drive in a fur coat, so don't go by me. Is it warm enough for a man of ninety? Otherwise heat.",
-        "He says that he's fine, as he said before his pneumonia. Check what the air in here is set to.",
+        "He says that he's fine, as he said before his pneumonia. Check the heating, and correct it if need be.",
         "Old bones on the back seat, and forty kilometres of wet road to go. See that they keep warm.",
         "Mind the old gentleman: the heating mustn't stand as low as I like it for myself.",
     ),
