@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
@@ -293,7 +294,7 @@ BLADES = pair(
     "weather: six degrees of frost, or eight above",
 )
 
-PUPILS = {"driver": "calm", "weather": FAIR, "sign_camera": False, "arrivals": RINGING}
+PUPILS: dict[str, Any] = {"driver": "calm", "weather": FAIR, "sign_camera": False, "arrivals": RINGING}
 PAST_THE_SCHOOL = pair(
     "comms_rings_past_the_school",
     Module.COMMS,

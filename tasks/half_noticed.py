@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind
 from automotive_cosim.cockpit.signals import (
@@ -16,8 +17,9 @@ from automotive_cosim.cockpit.signals import (
     LIGHTS,
     LINK,
     MEDIA,
+    Signal,
 )
-from automotive_cosim.tasking.checks import AllOf, SignalIs, SignalLowered, SignalRaised
+from automotive_cosim.tasking.checks import SignalIs, SignalLowered, SignalRaised
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks.aboard import REAR_LEFT, act, at, hazard, on, rest
@@ -130,26 +132,29 @@ BACKING_OUT = pair(
     "weather: steady rain, or a dry afternoon",
 )
 
-STICK = {MEDIA.SOURCE: "USB", MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 35.0}
-SILENT_RADIO = {MEDIA.SOURCE: "FM", MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 0.0}
+MUTED_RADIO: dict[Signal[Any], Any] = {
+    MEDIA.SOURCE: "FM",
+    MEDIA.ACTION: "PLAY",
+    MEDIA.VOLUME: 35.0,
+    MEDIA.MUTED: True,
+}
+SILENT_RADIO: dict[Signal[Any], Any] = {MEDIA.SOURCE: "FM", MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 0.0}
 ANNOUNCER = pair(
     "media_announcer_must_reach_me",
     Module.MEDIA,
     (
         "Somebody is driving the wrong way somewhere, a colleague texted. Their warnings must get to my ears.",
-        "There may be news about the pass any minute, on the air. I'd miss it the way things are; change that.",
+        "There may be news about the pass any minute. With the radio as it is I'd miss it; change that.",
         "The man with the traffic reports can't reach me at the moment. Let him.",
-        "If they close the road, they'll say so between two songs of theirs, not mine. I want to hear it.",
+        "If they close the road, they'll say so between two songs of theirs. I want to hear it.",
         "A warning is no use to a driver who can't hear the announcer. Make me one who can.",
     ),
     act(
-        start("alpine_pass", "villages", STICK, start="2026-06-16T12:30:00", weather=FAIR),
-        AllOf((SignalIs(MEDIA.ACTION, ("PLAY",)), SignalIs(MEDIA.SOURCE, ("FM", "DAB")))),
+        start("alpine_pass", "villages", MUTED_RADIO, start="2026-06-16T12:30:00", weather=FAIR),
+        SignalIs(MEDIA.MUTED, (False,)),
         Open("media"),
-        Tap("media.source.fm"),
+        Tap("media.mute"),
         rule=RADIO_SOURCE,
-        may_write=frozenset({MEDIA.SELECTED.path}),
-        ways=((Open("media"), Tap("media.source.dab")),),
     ),
     act(
         start("alpine_pass", "villages", SILENT_RADIO, start="2026-06-16T12:30:00", weather=FAIR),
@@ -159,7 +164,7 @@ ANNOUNCER = pair(
         rule=RADIO_SOURCE,
         ways=((Open("media"), Slide("media.volume", 60.0)),),
     ),
-    "settings: songs of a stick play, or the radio at no volume",
+    "settings: the radio is muted, or plays at no volume",
 )
 
 SOCKET = pair(

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind
-from automotive_cosim.cockpit.signals import ADAS, CABIN, DRIVE, LIGHTS
+from automotive_cosim.cockpit.signals import ADAS, CABIN, DRIVE, LIGHTS, Signal
 from automotive_cosim.tasking.checks import AnyOf, SignalIs, SignalWithin
 from automotive_cosim.tasking.moves import Tap, TapUntil
 from automotive_cosim.tasking.task import Basis, Deadline, Half, Module, Start
@@ -32,7 +33,7 @@ from automotive_cosim.tasks.phenomenon_light import CLEAR_NIGHT, FOG_90, FOGGY, 
 from automotive_cosim.tasks.road_lamps import DAZZLED, DIPPED, FULL
 from automotive_cosim.tasks.road_law import FAIR, LIGHT_RAIN, NOON, PLACE, SOON, fine, warned
 from automotive_cosim.tasks.unasked import ALREADY
-from automotive_cosim.tasks.under_way import ASSIST, DRIVING_TAB, LAMPS, start
+from automotive_cosim.tasks.under_way import ASSIST, DRIVING_TAB, LAMPS, REAR_FOG_SOURCE, start
 
 FOG_CRUISE_SOURCE = "at 70 km/h a car takes 86 m to stop (reaction 2 s, 4 m/s2), hardly less than is seen"
 LATCH_SOURCE = "doors have to stay shut in a crash, or who leans on them is thrown out (FMVSS 206)"
@@ -70,7 +71,7 @@ WET_ABROAD = pair(
     tags=PLACE,
 )
 
-TOKYO = {"driver": "hurried", "weather": replace(FAIR, temperature_2m=15.0), "sign_camera": False}
+TOKYO: dict[str, Any] = {"driver": "hurried", "weather": replace(FAIR, temperature_2m=15.0), "sign_camera": False}
 NARROW = pair(
     "road_streets_get_narrower",
     Module.ROAD,
@@ -134,8 +135,8 @@ LAMP_TOO_MANY = pair(
         SignalIs(LIGHTS.REAR_FOG, (False,)),
         (LAMPS, Tap("lights.rear_fog")),
         DAZZLED,
-        Basis.LAW,
-        "FR.rear_fog",
+        Basis.PHYSICS,
+        REAR_FOG_SOURCE,
     ),
     "settings: close behind a tractor at night high beam is on, or the rear fog lamp in clear air",
     tags=frozenset({"lamps"}),
@@ -177,7 +178,7 @@ DEER = pair(
     "settings: the collision warning is off and high beam on, or the warning is on and the beam dipped",
 )
 
-ENGAGED = {ADAS.CRUISE_ACTIVE: True, ADAS.CRUISE_SPEED: 70.0, LIGHTS.SWITCH: "BEAM"}
+ENGAGED: dict[Signal[Any], Any] = {ADAS.CRUISE_ACTIVE: True, ADAS.CRUISE_SPEED: 70.0, LIGHTS.SWITCH: "BEAM"}
 HANDS_OVER = pair(
     "phenomenon_cruise_runs_on",
     Module.PHENOMENON,
@@ -208,7 +209,7 @@ HANDS_OVER = pair(
     "weather: fog with 90 m of sight, or a clear morning; cruise control is on",
 )
 
-MERGE = {"start": NOON, "weather": FAIR, "sign_camera": False}
+MERGE: dict[str, Any] = {"start": NOON, "weather": FAIR, "sign_camera": False}
 WONT_PULL = pair(
     "road_she_wont_pull",
     Module.ROAD,
