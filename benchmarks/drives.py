@@ -79,6 +79,10 @@ class Kept:
     untouched: tuple[Found, ...]
     events: tuple[JudgedEvent, ...]
     acts: tuple[JudgedAct, ...]
+    short_ttc_s: float
+    """Near-collision time (``drives.harm``)."""
+    untouched_short_ttc_s: float
+    """The same in the do-nothing run."""
 
     @property
     def score(self) -> Score:
@@ -106,6 +110,7 @@ def played(who: str, family: str, seed: int, simulations: Simulations, *, errand
         agent.reset(watch.goal)
         play(watch, agent)
         assert watch.judgement is not None
+        mine, nobodys = watch.harms
         return Kept(
             family,
             seed,
@@ -116,6 +121,8 @@ def played(who: str, family: str, seed: int, simulations: Simulations, *, errand
             tuple(found(watch.baseline_moments)),
             watch.judgement.events,
             watch.judgement.acts,
+            mine.short_ttc_s,
+            nobodys.short_ttc_s,
         )
 
 
@@ -194,14 +201,16 @@ def watched(drives: Sequence[Kept]) -> Iterator[str]:
 
 
 def compared(whos: Sequence[str], drives: Sequence[Kept]) -> Iterator[str]:
-    """Watchers, one line each, with the lowest and the highest score of a family."""
+    """Watchers, one line each, with the lowest and the highest score of a family, and the near-collision time."""
     rows = []
     for who in whos:
         mine = [drive for drive in drives if drive.watcher == who]
         values = [together([drive.score for drive in kept]).value for _, kept in _by_family(mine)]
         spread = f"{min(values):.0f} to {max(values):.0f}" if values else "-"
-        rows.append((*_row(who, together([drive.score for drive in mine])), spread))
-    yield from _table(("watcher", *FIGURES, "by family"), rows)
+        near_s = f"{sum(drive.short_ttc_s for drive in mine):.0f}"
+        nobodys_s = f"{sum(drive.untouched_short_ttc_s for drive in mine):.0f}"
+        rows.append((*_row(who, together([drive.score for drive in mine])), spread, near_s, nobodys_s))
+    yield from _table(("watcher", *FIGURES, "by family", "near collision, s", "without it"), rows)
 
 
 def _row(name: str, total: Score) -> tuple[object, ...]:

@@ -159,6 +159,7 @@ def _drives() -> None:
         (
             each.name,
             each.about,
+            ", ".join(f"`{name}`" for name in each.told_by),
             each.neutral,
             each.lookalike,
             each.source,
@@ -172,6 +173,7 @@ def _drives() -> None:
     heads = (
         "kind",
         "the event",
+        "told by",
         "neutral: true, but not due",
         "its look-alike",
         "times",

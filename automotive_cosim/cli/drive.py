@@ -64,6 +64,7 @@ def drive(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.settings import DriveSettings
+    from automotive_cosim.episode.own_prompt import instructions
     from automotive_cosim.run.drive import DriveSetup, run_drive
     from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.jobs import DriveJob, Limits
@@ -73,7 +74,10 @@ def drive(
 
     under = Conditions.named(given(conditions))
     limits = Limits().of_drives.within(most_tokens, most_seconds)
-    budget = AgentSettings(under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s)
+    told = instructions(under.prompt)
+    budget = AgentSettings(
+        under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s, instructions=told
+    )
     player = make_agent(agent, model, budget)
     setup = DriveSetup(
         family,
@@ -142,6 +146,9 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         f"{row.steps} steps in {found.driven_s / 60:.0f} min",
         soft_wrap=True,
     )
+    if row.harm is not None and row.baseline_harm is not None:
+        near_s, nobodys_s = row.harm.short_ttc_s, row.baseline_harm.short_ttc_s
+        console.print(f"Near-collision time {near_s:.0f} s; without the agent {nobodys_s:.0f} s", soft_wrap=True)
     if row.unwatched_from_s is not None:
         minutes, seconds = divmod(int(row.unwatched_from_s), 60)
         console.print(

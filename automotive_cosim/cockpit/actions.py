@@ -407,12 +407,7 @@ def perform(action: Action, cockpit: Cockpit, elements: tuple[Element, ...]) -> 
             assert action.speed_kmh is not None
             return cockpit.ask_road(SlowDown(action.speed_kmh))
         case ActionType.REQUEST_REROUTE:
-            destination = action.destination or ""
-            try:
-                lon_lat(destination)
-            except ValueError as error:
-                return Feedback(FeedbackCode.REFUSED, str(error))
-            return cockpit.ask_road(Reroute(destination))
+            return cockpit.ask_road(Reroute(action.destination or ""))
         case ActionType.PULL_OVER:
             return cockpit.ask_road(PullOver())
         case ActionType.ESTIMATE_POSITION if position(action.text or "") is None:

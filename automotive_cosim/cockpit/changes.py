@@ -25,6 +25,8 @@ class CarChange:
     value: bool | float | str
     over_s: Annotated[float, Ge(0)] = 0.0
     """How long a number takes to get there, evenly; 0 is at once."""
+    once_standing: bool = False
+    """Whether it waits from then on until the car stands, as what somebody does who has to get out."""
     once_parked: bool = False
     """Whether ``at_s`` counts from when the driver parks on the way, and not from departure."""
 

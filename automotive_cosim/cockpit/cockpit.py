@@ -76,6 +76,7 @@ from automotive_cosim.contracts import (
     SlowDown,
     Surroundings,
     VehicleState,
+    lon_lat,
 )
 from automotive_cosim.contracts.text import say, say_in
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
@@ -389,7 +390,7 @@ class Cockpit:
             if page_of is not None:
                 return Feedback(
                     FeedbackCode.NO_SUCH_ELEMENT,
-                    say("{name} is no app; it is a page of {app}", name=wanted, app=page_of),
+                    say("{name} is not an app; it is a page of {app}", name=wanted, app=page_of),
                 )
             close = get_close_matches(wanted, apps(), n=1)
             missing = repr(name[:40])
@@ -437,6 +438,11 @@ class Cockpit:
         if isinstance(request, Reroute) and request.destination:
             known = self._state.of(Gazetteer).find(request.destination)
             request = request if known is None else replace(request, destination=known.edge_id)
+            try:
+                if lon_lat(request.destination) is None and not self._state.roads.knows(request.destination):
+                    return Feedback(FeedbackCode.REFUSED, say("No street or place with this name"))
+            except ValueError as error:
+                return Feedback(FeedbackCode.REFUSED, str(error))
         return self._perform(Ask(request))
 
     # --- what was commanded --------------------------------------------------------------------------------

@@ -94,6 +94,14 @@ class RoadMap:
         at = self._index.get(edge_id)
         return None if at is None else self.roads[at]
 
+    def knows(self, name: str) -> bool:
+        """Whether it is a street, whatever its capitals, or an edge."""
+        return name in self._index or name.casefold() in self._folded
+
+    @cached_property
+    def _folded(self) -> frozenset[str]:
+        return frozenset(name.casefold() for name in self.names)
+
     def in_sight(self, view: View, width: float, height: float) -> list[Stroke]:
         """The roads in a picture of that size, the uppermost last: tunnels, then minor roads, then major roads.
 

@@ -50,7 +50,7 @@ def sense(state: State, surroundings: Surroundings, dt_s: float) -> None:
     _road(state, surroundings)
     sun = surroundings.sun_elevation_deg
     state.vehicle.follow_light(driving.road.in_tunnel or (sun is not None and sun < DARK_BELOW_DEG))
-    feel(state.signals, surroundings)
+    feel(state.signals, surroundings, state.lookout)
     _climate(state, driving, weather, dt_s)
     _bodies(state, weather.temperature_2m, dt_s)
     if before is None:
@@ -173,6 +173,10 @@ def _change(state: State, dt_s: float) -> None:
             going_on.append(change)
             continue
         since_s = round(state.time_s - begun_s - change.at_s, 6)
+        is_moving = state.outside is not None and state.outside.driving.speed_mps >= MOVING_MPS
+        if change.once_standing and since_s >= 0 and is_moving:
+            going_on.append(change)
+            continue
         if since_s >= 0:
             _make(state, change, since_s, dt_s)
         if since_s < change.over_s:

@@ -32,8 +32,14 @@ GRADES = (
 """Upper bounds of fine dust in ug/m3 (European Air Quality Index, EEA, since 2024); above is extremely poor."""
 
 
-def feel(signals: Signals, surroundings: Surroundings) -> None:
-    """Writes the sensors' readings of the surroundings."""
+def feel(signals: Signals, surroundings: Surroundings, measures_grip: bool = False) -> None:
+    """Writes the sensors' readings of the surroundings.
+
+    Args:
+        signals: written to.
+        surroundings: what there is.
+        measures_grip: whether the car measures the road's grip, and does not also infer it from the weather.
+    """
     driving, weather = surroundings.driving, surroundings.weather
     tunnel = driving.road.in_tunnel
     signals[OUTSIDE.VISIBILITY] = weather.visibility
@@ -41,7 +47,8 @@ def feel(signals: Signals, surroundings: Surroundings) -> None:
     signals[OUTSIDE.LIGHT] = 2.0 if tunnel else _light_pct(surroundings.sun_elevation_deg, weather)
     signals[OUTSIDE.GLARE] = 0.0 if tunnel else _glare_pct(surroundings)
     signals[OUTSIDE.FINE_DUST] = _fine_dust(weather, tunnel, driving.around.relative_speed)
-    signals[ADAS.ROAD_FRICTION] = 100 * min(max(driving.road.friction, 0.0), 1.0, 1.0 if tunnel else _grip(weather))
+    inferred = 1.0 if tunnel or measures_grip else _grip(weather)
+    signals[ADAS.ROAD_FRICTION] = 100 * min(max(driving.road.friction, 0.0), 1.0, inferred)
 
 
 def air_grade(fine_dust: float) -> str:

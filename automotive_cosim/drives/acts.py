@@ -8,17 +8,24 @@ from typing import Any
 from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
 from automotive_cosim.cockpit.commands import Set, SetAll
 from automotive_cosim.cockpit.state import CommandRecord
-from automotive_cosim.contracts import Action, ActionType, Alert
+from automotive_cosim.contracts import Action, ActionType, Alert, DrivingState, SlowDown
 from automotive_cosim.drives.events.base import WatchAct
+from automotive_cosim.traffic.ego import takes_back
 
 BOOKKEEPING = frozenset({"alerts", "requests"})
 """Commands that only say that something was asked for."""
 
 
-def acts_of(given: Sequence[CommandRecord]) -> Iterator[WatchAct]:
-    """The acts in what was commanded, in order; preparations such as a typed text are none."""
+def acts_of(given: Sequence[CommandRecord], driving: DrivingState) -> Iterator[WatchAct]:
+    """The acts in what was commanded, in order; preparations such as a typed text are none, nor is what the road
+    refused.
+
+    Args:
+        given: the commands.
+        driving: how the car drove when they were given.
+    """
     for record in given:
-        if not record.aims:
+        if not record.aims or refusal(record):
             continue
         message = record.command
         asked = tuple(request for request, _ in record.answers)
@@ -26,9 +33,15 @@ def acts_of(given: Sequence[CommandRecord]) -> Iterator[WatchAct]:
         if isinstance(message, WarnDriver):
             alert = alert or message.alert
         if alert is not None:
-            yield WatchAct(record.time_s, alert.kind, alert.severity, alert.speed_kmh)
+            yield WatchAct(record.time_s, alert.kind, alert.severity, alert.speed_kmh, text=alert.text)
             continue
-        yield WatchAct(record.time_s, requests=asked, writes=tuple(_writes(record)))
+        releases = any(isinstance(each, SlowDown) and takes_back(each.speed_kmh, driving) for each in asked)
+        yield WatchAct(record.time_s, requests=asked, writes=tuple(_writes(record)), releases=releases)
+
+
+def refusal(record: CommandRecord) -> str:
+    """Why the road refuses what was asked of it; empty if it does not."""
+    return next((answer.reason for _, answer in record.answers if not answer.accepted), "")
 
 
 def _writes(record: CommandRecord) -> Iterator[tuple[str, Any]]:

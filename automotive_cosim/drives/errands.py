@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from automotive_cosim.cockpit.aboard import Seat
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.apps.phone.state import TEMPLATES
+from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.script import DriveScript
@@ -175,4 +176,9 @@ def with_errands(script: DriveScript) -> DriveScript:
     rings = (
         Arrival("call", errand.at_s - RINGS_S, errand.about) for errand in errands if errand.kind is ErrandKind.CALL
     )
-    return replace(script, errands=tuple(errands), arrivals=(*script.arrivals, *writes, *rings))
+    return replace(
+        script,
+        errands=tuple(errands),
+        arrivals=(*script.arrivals, *writes, *rings),
+        signals={HVAC.SYNC.path: False, **script.signals},  # each side has its own temperature
+    )

@@ -5,13 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from functools import reduce
 
 import numpy as np
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
+from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.script import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DriveScript, Staged
+from automotive_cosim.drives.sky import together
 from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGINGS, TAKES_S, Setting, WeatherSpan
 from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.tasking.draws import Draws, Purpose
@@ -22,6 +25,10 @@ LAST_S = 60.0
 """Nothing is staged later than this before the end, so that each deadline lies in the drive."""
 SPREAD_S = 25.0
 """How far the time between two stagings is drawn above its minimum."""
+PAUSE_S = 60.0
+"""It does not stop raining for a shorter time."""
+FAN_PCT = 60.0
+"""With it and the air conditioning on, the cabin keeps the temperature that is set, in the Gulf and in Kiruna."""
 FEWEST, MOST = 4, 8
 """Events that a drive stages, and as many look-alikes."""
 IN_FRONT = (Kind.ADULT, Kind.ADULT, Kind.ELDERLY, Kind.OBJECT)
@@ -102,6 +109,7 @@ class Family:
             aboard=company,
             moods=tuple(sorted((mood for each in causes for mood in each.moods), key=lambda mood: mood.at_s)),
             at_schools=tuple(at_schools) if SCHOOL_ZONE in self.cast else (),
+            signals={HVAC.AIR_CONDITIONING.path: True, HVAC.FAN_SPEED.path: FAN_PCT},
             halts=tuple(halt for each in causes for halt in each.halts),
             changes=tuple(change for each in causes for change in each.changes),
             arrivals=arrivals,
@@ -164,15 +172,25 @@ def _arrivals(rng: np.random.Generator, end_s: float) -> tuple[Arrival, ...]:
 
 
 def timeline(usual: Weather, weather: Sequence[WeatherSpan]) -> tuple[WeatherAt, ...]:
-    """The usual weather and the weather in it; where two overlap, the one that began later counts."""
-    edges_s = sorted({0.0, *(span.from_s for span in weather), *(span.to_s for span in weather)})
+    """The usual weather and the weather in it; where two overlap, both are there."""
+    spans = [_lasting(span, weather) for span in weather]
+    edges_s = sorted({0.0, *(span.from_s for span in spans), *(span.to_s for span in spans)})
 
     def at(time_s: float) -> Weather:
-        on = [span for span in weather if span.from_s <= time_s < span.to_s]
-        return max(on, key=lambda span: span.whole_from_s).weather if on else usual
+        on = [span.weather for span in spans if span.from_s <= time_s < span.to_s]
+        return reduce(together, on) if on else usual
 
     entries = [WeatherAt(time_s, at(time_s)) for time_s in edges_s]
     return tuple(_changing(entries))
+
+
+def _lasting(span: WeatherSpan, weather: Sequence[WeatherSpan]) -> WeatherSpan:
+    """Rain or snow does not stop for less than a minute: it lasts until it falls again."""
+    falls = [other for other in weather if other.weather.precipitation > 0]
+    if span not in falls or any(other.from_s <= span.to_s < other.to_s for other in falls):
+        return span
+    gaps_s = [other.from_s - span.to_s for other in falls]
+    return replace(span, to_s=span.to_s + min((gap_s for gap_s in gaps_s if 0 < gap_s < PAUSE_S), default=0.0))
 
 
 def _changing(entries: Iterable[WeatherAt]) -> Iterable[WeatherAt]:

@@ -356,6 +356,8 @@ class _Bench:
         return judged
 
     def _judged(self, act: WatchAct) -> JudgedAct:
+        if act.releases:
+            return JudgedAct(act.time_s, act.words, Worth.NEUTRAL)
         there = [case for case in self.cases if case.is_open(act.time_s)]
         true = [case for case in there if not case.event.lookalike]
         settled = [case for case in true if case.kind.settles(act, case.event.value)]

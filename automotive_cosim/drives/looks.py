@@ -25,6 +25,8 @@ SIGNS_M = 500.0
 """Limits that are signed further ahead oblige to nothing yet."""
 FASTEST_KMH = 130.0
 """What a driver may come to drive where no limit is known."""
+ICY = 0.5
+"""Below this grip a road is as slippery as with snow."""
 REACTION_S = 1.1
 """Mean time from a warning to the brake."""
 
@@ -83,19 +85,7 @@ def _speed(known: Gathered) -> Iterator[Concern]:
 
 def _stopping_m(known: Gathered, mps: float) -> float:
     """The distance to stop from a speed, with reaction, on the grip that the weather leaves."""
-    return mps * REACTION_S + mps**2 / (2 * _grip(known) * 9.81)
-
-
-GRIPS = (("freezing", 0.15), ("rime", 0.15), ("heavy snow", 0.25), ("snow", 0.35), ("heavy rain", 0.7))
-"""Friction by the words of the weather (Wallman and Astrom, VTI 911A, 2001), the worst first."""
-
-
-def _grip(known: Gathered) -> float:
-    """The friction that this weather leaves."""
-    found = next((grip for words, grip in GRIPS if words in known.weather), None)
-    if found is not None:
-        return found
-    return 0.75 if known.phenomena & {"precipitation"} else 1.0
+    return mps * REACTION_S + mps**2 / (2 * max(known.grip, 0.1) * 9.81)
 
 
 def _reduced_kmh(known: Gathered) -> float | None:
@@ -205,8 +195,9 @@ def _forbids_fog_lamp(known: Gathered, label: str) -> bool:
 
 def _weather(known: Gathered) -> Iterator[Concern]:
     moves = known.speed_kmh >= 1
-    if known.is_icy and known.speed_kmh >= 20:
-        yield Concern("slippery", AlertKind.SLIPPERY, known.speed_kmh > 40, 5.0, is_there=True)
+    if known.grip < ICY + 0.2 and known.speed_kmh >= 20:
+        is_icy = known.grip < ICY
+        yield Concern("slippery", AlertKind.SLIPPERY, is_icy and known.speed_kmh > 40, 5.0, is_there=is_icy)
     for name in ("glass", "rain"):
         share = re.search(r"(\d+\.\d)%", known.words(name))
         if share is not None:

@@ -14,7 +14,6 @@ from automotive_cosim.contracts import Action, ActionType, Observation, VehicleS
 KM_PER_MILE = 1.609344
 _SPEED = re.compile(r"(\d+(?:\.\d+)?) (km/h|mph)")
 _AWAY = re.compile(r"(\d+) m\b")
-_SNOW = ("snow", "freezing", "rime")
 _FALLING = ("rain", "drizzle", "snow", "thunderstorm", "hail")
 
 
@@ -104,9 +103,10 @@ class Gathered:
         return frozenset(found)
 
     @property
-    def is_icy(self) -> bool:
-        """Whether the road has snow or ice."""
-        return not self.in_tunnel and any(word in self.weather for word in _SNOW)
+    def grip(self) -> float:
+        """Grip of the road, 1 where it is dry."""
+        found = re.match(r"\d\.\d\d", self.words("grip"))
+        return 1.0 if found is None else float(found[0])
 
     def words(self, name: str) -> str:
         """The words of a reading; empty without any."""
@@ -173,7 +173,7 @@ class Reader:
 def _noticed(text: str) -> dict[str, str]:
     """Each line's words by its name, without those of what has ended."""
     lines = (line.partition(": ") for line in text.splitlines())
-    return {name.removesuffix(" (changed)"): words for name, _, words in lines if words != "ended"}
+    return {name.removesuffix(" (changed)"): words for name, _, words in lines if not words.startswith("ended")}
 
 
 def _answer(text: str, label: str) -> LawLine:

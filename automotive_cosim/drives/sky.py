@@ -45,6 +45,36 @@ FOG_S = DENSE_UNTIL_S + (RISING - 1) * STEP_S
 """Two minutes until a bank is as dense as it becomes, then almost two, and half a minute until it has gone."""
 
 
+def shower(before: Weather, full: Weather) -> Iterator[tuple[float, Weather]]:
+    """Rain or snow that sets in and passes: seconds since its first drops, and the weather from then on."""
+    codes = SETS_IN[full.weather_code]
+    parts = [_part(before, full, code, step / len(codes)) for step, code in enumerate(codes, 1)]
+    yield from ((step * SHOWER_STEP_S, part) for step, part in enumerate(parts))
+    yield SHOWER_UNTIL_S, parts[0]
+
+
+def _part(before: Weather, full: Weather, code: int, share: float) -> Weather:
+    seen_m = before.visibility * (full.visibility / before.visibility) ** share
+    falls_mm_h = round(full.precipitation * share, 2)
+    return replace(full, weather_code=code, precipitation=falls_mm_h, visibility=round(seen_m, 1))
+
+
+SETS_IN = {
+    51: (51, 51, 51),
+    63: (61, 61, 63),
+    65: (61, 63, 65),
+    66: (56, 56, 66),
+    73: (71, 71, 73),
+    75: (71, 73, 75),
+    77: (77, 77, 77),
+}
+"""Codes of the weather as it sets in, by the code of what it becomes."""
+SHOWER_STEP_S = 15.0
+SHOWER_UNTIL_S = 2 * SHOWER_STEP_S + 120.0
+SHOWER_S = SHOWER_UNTIL_S + SHOWER_STEP_S
+"""Half a minute until it falls as hard as it will, then two, and a quarter until it is over."""
+
+
 def rain(before: Weather) -> Weather:
     """A heavy shower; snow in the cold."""
     if before.temperature_2m <= FREEZING_C:
@@ -74,4 +104,14 @@ def _falls(before: Weather, code: int, rate_mm_h: float, visibility_m: float) ->
         weather_code=code,
         cloud_cover=100.0,
         visibility=visibility_m,
+    )
+
+
+def together(one: Weather, other: Weather) -> Weather:
+    """The weather of two that come at a time: what falls harder, and the shorter sight."""
+    worse = max(one, other, key=lambda weather: (weather.precipitation, -weather.visibility))
+    return replace(
+        worse,
+        visibility=min(one.visibility, other.visibility),
+        relative_humidity_2m=max(one.relative_humidity_2m, other.relative_humidity_2m),
     )

@@ -6,7 +6,7 @@ the drive itself, where the same causes may also lie in the road.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -17,7 +17,17 @@ from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.reach import RADAR_M
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, ENERGY, HVAC, LIGHTS, TYRE, Signal
 from automotive_cosim.contracts import Weather
-from automotive_cosim.drives.sky import DENSE_FROM_S, DENSE_UNTIL_S, FOG_S, drizzle, fog_bank, rain, sleet
+from automotive_cosim.drives.sky import (
+    DENSE_FROM_S,
+    DENSE_UNTIL_S,
+    FOG_S,
+    SHOWER_S,
+    drizzle,
+    fog_bank,
+    rain,
+    shower,
+    sleet,
+)
 from automotive_cosim.scenarios.incidents import (
     AheadIncident,
     AnyIncident,
@@ -36,13 +46,6 @@ class WeatherSpan:
     from_s: float
     to_s: float
     weather: Weather
-    begun_s: float | None = None
-    """When the whole began of which this is a part; None if it is whole."""
-
-    @property
-    def whole_from_s(self) -> float:
-        """When the whole began; of two that overlap, the later one counts."""
-        return self.from_s if self.begun_s is None else self.begun_s
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,8 +91,8 @@ LEADER_WITHIN_S = 40.0
 """A leader that has not been found by then does not brake, lest it do so during the next staging."""
 LATE_M = 135.0
 """How far ahead it brakes: just within the reach of the radar."""
-SPAN_S = 120.0
-"""Length of a bank of fog or a shower."""
+OPEN_S = 60.0
+"""How long a tailgate is open at least."""
 PHONE_S = 40.0
 """How long a driver uses the phone."""
 AHEAD_S = 420.0
@@ -183,10 +186,12 @@ def _set(setting: Setting, *values: tuple[Signal[bool] | Signal[str], bool | str
 
 
 def _door(setting: Setting) -> Causes:
-    """The tailgate springs open; as a look-alike, somebody opens a window."""
+    """The tailgate springs open, and the driver shuts it where the car stands; as a look-alike, somebody opens a
+    window."""
     if setting.is_lookalike:
-        return Causes(changes=(CarChange(setting.at_s, CABIN.REAR_LEFT_WINDOW.path, 30.0),))
-    return Causes(changes=_turned(CABIN.TRUNK, setting, True, 180.0))
+        return Causes(changes=(CarChange(setting.at_s, CABIN.REAR_LEFT_WINDOW.path, 15.0),))
+    shut = CarChange(setting.at_s + OPEN_S, CABIN.TRUNK.path, False, once_standing=True)
+    return Causes(changes=(CarChange(setting.at_s, CABIN.TRUNK.path, True), shut))
 
 
 def _tyre(setting: Setting) -> Causes:
@@ -243,16 +248,25 @@ def _wipers(setting: Setting) -> Causes:
     mode = "RAIN_SENSOR" if setting.is_lookalike else "OFF"
     return Causes(
         changes=_set(setting, (BODY.FRONT_WIPER, mode)),
-        weather=(WeatherSpan(setting.at_s + 5.0, setting.at_s + 5.0 + SPAN_S, rain(setting.weather)),),
+        weather=_shower(setting, rain(setting.weather), 5.0),
     )
 
 
 def _bank(setting: Setting, visibility_m: float) -> tuple[WeatherSpan, ...]:
     """A bank of fog that comes over minutes."""
-    steps = [(setting.at_s + after_s, weather) for after_s, weather in fog_bank(setting.weather, visibility_m)]
-    ends_s = [*(at_s for at_s, _ in steps[1:]), setting.at_s + FOG_S]
+    return _spans(setting.at_s, fog_bank(setting.weather, visibility_m), FOG_S)
+
+
+def _shower(setting: Setting, full: Weather, after_s: float = 0.0) -> tuple[WeatherSpan, ...]:
+    return _spans(setting.at_s + after_s, shower(setting.weather, full), SHOWER_S)
+
+
+def _spans(begun_s: float, parts: Iterable[tuple[float, Weather]], length_s: float) -> tuple[WeatherSpan, ...]:
+    """Weather that comes and goes in steps."""
+    steps = [(begun_s + after_s, weather) for after_s, weather in parts]
+    ends_s = [*(at_s for at_s, _ in steps[1:]), begun_s + length_s]
     spans = zip(steps, ends_s, strict=True)
-    return tuple(WeatherSpan(at_s, end_s, weather, setting.at_s) for (at_s, weather), end_s in spans)
+    return tuple(WeatherSpan(at_s, end_s, weather) for (at_s, weather), end_s in spans)
 
 
 def _weather_speed(setting: Setting) -> Causes:
@@ -267,10 +281,9 @@ def _weather_speed(setting: Setting) -> Causes:
 
 def _slippery(setting: Setting) -> Causes:
     """Freezing rain or snow that the driver takes no notice of; as a look-alike, a trace of drizzle."""
-    until_s = setting.at_s + SPAN_S
-    careless = (DriverAt(setting.at_s, "careless"), DriverAt(until_s, setting.driver))
+    careless = (DriverAt(setting.at_s, "careless"), DriverAt(setting.at_s + SHOWER_S, setting.driver))
     fallen = drizzle(setting.weather) if setting.is_lookalike else sleet(setting.weather)
-    return Causes(moods=careless, weather=(WeatherSpan(setting.at_s, until_s, fallen),))
+    return Causes(moods=careless, weather=_shower(setting, fallen))
 
 
 # --- the road -----------------------------------------------------------------------------------------------

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from math import ceil, floor
 
 from automotive_cosim.cockpit.aboard import Seat, seated_by
+from automotive_cosim.cockpit.notices import LOW_KPA
 from automotive_cosim.cockpit.reach import HORIZON_M, RADAR_M
 from automotive_cosim.cockpit.signals import (
     BODY,
@@ -38,6 +39,10 @@ LONGEST_S = 60
 """A wait without a reason to wake ends after this."""
 OVER_S = 3.0
 CLOSE_S = 2.0
+CLOSE_STEPS_S = (CLOSE_S, 1.0)
+"""Time gaps: what is advised, and less than a driver needs to react."""
+EASED_S = 10.0
+"""What has eased for as long may become worse again, and wakes."""
 CLOSING_S = (8.0, 5.0)
 """Times to collision: time to brake gently behind a slow vehicle, and the last for a warning to be heard."""
 BEFORE_S = (15.0, 2.0)
@@ -50,6 +55,9 @@ BLUE_M = 150.0
 ROLLING_KMH = 5.0
 QUEUE_MPS = 3.0
 """Below this, in a queue, nothing ahead wakes."""
+GRIP_STEPS = (0.9, 0.7, 0.5, 0.3)
+"""Wet, soaked, snow or slush, packed snow or ice (``traffic.road_weather``)."""
+PASSED = "ended, no longer ahead"
 MIST = 0.1
 RECOMMENDED_KPA = 250.0
 SOFT_KPA = 240.0
@@ -88,6 +96,17 @@ class Nearness:
 
 
 @dataclass(frozen=True, slots=True)
+class Level:
+    """How bad something is, in one or several kinds of steps: it wakes when it is at a higher step in any of them,
+    and is silent while it eases."""
+
+    steps: tuple[int, ...]
+
+    def __le__(self, other: Level) -> bool:
+        return all(mine <= its for mine, its in zip(self.steps, other.steps, strict=True))
+
+
+@dataclass(frozen=True, slots=True)
 class Wake:
     """One thing that the car reads, and whose changes end a wait."""
 
@@ -99,6 +118,10 @@ class Wake:
     """Quantity, limit and trend; empty while there is nothing to read."""
     hold_s: float = 0.0
     """How long the reading must have differed from what was told last."""
+    is_told_first: bool = False
+    """Whether the first look tells of it, without waiting for ``hold_s``."""
+    ended: str = "ended"
+    """What the reading says once there is nothing to read; it begins with ``ended``."""
 
 
 # --- quantities ------------------------------------------------------------------------------------------------
@@ -190,8 +213,9 @@ def _leader(drive: Drive) -> Hashable:
     if leader is None or mps < QUEUE_MPS:
         return None
     left_s = leader.time_to_collision_s
-    closing = left_s is not None and sum(left_s < step_s for step_s in CLOSING_S)
-    return closing or ("close" if leader.gap_m < CLOSE_S * mps else None)
+    closing = 0 if left_s is None else sum(left_s < step_s for step_s in CLOSING_S)
+    close = sum(leader.gap_m < step_s * mps for step_s in CLOSE_STEPS_S)
+    return Level((closing, close)) if closing or close else None
 
 
 def _leader_words(drive: Drive) -> str:
@@ -272,7 +296,11 @@ def _ahead(name: str, away_m: Callable[[Moment], float | None], about: str) -> W
 
     early, late = (seconds + DUE_S[name] for seconds in BEFORE_S)
     return Wake(
-        name, f"{about} on the route within {early:.0f} s, and {late:.0f} s, at the speed driven", reads, words
+        name,
+        f"{about} on the route within {early:.0f} s, and {late:.0f} s, at the speed driven",
+        reads,
+        words,
+        ended=PASSED,
     )
 
 
@@ -323,9 +351,18 @@ def _road(drive: Drive) -> Hashable:
 
 def _road_words(drive: Drive) -> str:
     road = drive[-1].driving.road
-    grip = "" if road.friction >= 0.9 else f", grip {road.friction:.1f} of 1"
     zone = ", school zone" if road.school_zone else ""
-    return f"{road.road_class.replace('_', ' ') or 'road'}{zone}{grip}"
+    return f"{road.road_class.replace('_', ' ') or 'road'}{zone}"
+
+
+def _grip(drive: Drive) -> Hashable:
+    steps = sum(drive[-1].driving.road.friction < step for step in GRIP_STEPS)
+    return Level((steps,)) if steps else None
+
+
+def _grip_words(drive: Drive) -> str:
+    trend = _trend_of(drive, lambda moment: moment.driving.road.friction, 0.02)
+    return f"{drive[-1].driving.road.friction:.2f} of 1, {trend}"
 
 
 def _unwiped(now: Moment) -> float:
@@ -386,7 +423,7 @@ def _tyre_words(drive: Drive) -> str:
     for name, tyre in TYRES.items():
         trend = _signal_trend(drive, tyre.path, 0.5)
         found.append(f"{name} {floor(drive[-1].signals[tyre.path])}" + (f" {trend}" if trend != "steady" else ""))
-    return f"{', '.join(found)} kPa, recommended {RECOMMENDED_KPA:.0f}"
+    return f"{', '.join(found)} kPa, recommended {RECOMMENDED_KPA:.0f}, too low below {LOW_KPA:.0f}"
 
 
 def _spare_m(now: Moment) -> float:
@@ -443,13 +480,15 @@ WAKES: tuple[Wake, ...] = (
         "another limit is signed ahead: 15 s, and 2 s, before a driver would have to lift the foot for it",
         _next_limit,
         _next_limit_words,
+        ended=PASSED,
     ),
     Wake(
         "vehicle ahead",
-        "a time gap of less than 2 s to the vehicle ahead, or less than 8 s to collision, and 5 s",
+        "a time gap of less than 2 s to the vehicle ahead, and 1 s, or less than 8 s to collision, and 5 s",
         _leader,
         _leader_words,
         1.0,
+        ended=f"ended, nobody within {RADAR_M:.0f} m",
     ),
     Wake(
         "behind",
@@ -464,7 +503,7 @@ WAKES: tuple[Wake, ...] = (
     _reported(SightKind.ROADWORKS, "roadworks"),
     _reported(SightKind.CLOSURE, "a closed road"),
     _reported(SightKind.SCHOOL_ZONE, "a school zone"),
-    Wake("road", "another class of road, or a school zone", _road, _road_words, hold_s=1.0),
+    Wake("road", "another class of road, or a school zone", _road, _road_words, hold_s=1.0, is_told_first=True),
     Wake(
         "light",
         "day, twilight, night; into or out of a tunnel",
@@ -484,6 +523,7 @@ WAKES: tuple[Wake, ...] = (
         ),
         _weather_words,
     ),
+    Wake("grip", "the grip of the road falls below 0.9, 0.7, 0.5 and 0.3 of that of a dry one", _grip, _grip_words),
     Wake(
         "glass",
         "the windshield fogs, every tenth",
@@ -504,6 +544,7 @@ WAKES: tuple[Wake, ...] = (
             if (film := _unwiped(drive[-1])) >= MIST / 2
             else ""
         ),
+        ended="ended, the glass is wiped or dry",
     ),
     Wake(
         "tyres",
@@ -585,7 +626,7 @@ def noticed(drive: Drive, changed: Sequence[str] = (), wakes: Sequence[Wake] = W
         words = wake.words(drive)
         has_changed = wake.name in changed
         if words or has_changed:
-            lines.append(f"{wake.name}{' (changed)' if has_changed else ''}: {words or 'ended'}")
+            lines.append(f"{wake.name}{' (changed)' if has_changed else ''}: {words or wake.ended}")
     return "\n".join(lines)
 
 
@@ -618,6 +659,7 @@ class Alarm:
         found = []
         now_s = drive[-1].time_s
         for wake in self.wakes:
+            is_first = wake.name not in self._told
             told = self._told.setdefault(wake.name, _Told())
             reading = _risen(wake.reads(drive), told.reading)
             if reading == told.reading:
@@ -625,15 +667,22 @@ class Alarm:
                 continue
             if told.differs_since_s is None:
                 told.differs_since_s = now_s
-            if now_s - told.differs_since_s >= wake.hold_s:
-                told.reading, told.differs_since_s = reading, None
-                if not isinstance(reading, Nearness) or reading.number:
-                    found.append(Noticed(wake.name, wakes=reading is not None))
+            eases = isinstance(reading, Level) and isinstance(told.reading, Level) and reading <= told.reading
+            hold_s = EASED_S if eases else 0.0 if is_first and wake.is_told_first else wake.hold_s
+            if now_s - told.differs_since_s < hold_s:
+                continue
+            told.reading, told.differs_since_s = reading, None
+            is_far = isinstance(reading, Nearness) and not reading.number
+            if not eases and not is_far:
+                found.append(Noticed(wake.name, wakes=reading is not None))
         return tuple(found)
 
 
 def _risen(reading: Hashable, told: Hashable) -> Hashable:
-    """A reading; the step of what was told before if it is no nearer, as in a queue."""
+    """A reading; the step of what was told before if it is no nearer, as in a queue, or no worse in one of its
+    kinds."""
+    if isinstance(reading, Level) and isinstance(told, Level) and not reading <= told:
+        return Level(tuple(map(max, reading.steps, told.steps)))
     if isinstance(reading, Nearness) and isinstance(told, Nearness) and reading.what == told.what:
         return told if reading.number <= told.number else reading
     return reading

@@ -16,7 +16,7 @@ from typing import Any, Self
 from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCode
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
-from automotive_cosim.drives.acts import acts_of, spoken
+from automotive_cosim.drives.acts import acts_of, refusal, spoken
 from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
 from automotive_cosim.drives.errands import said
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
@@ -119,7 +119,7 @@ class Watch(JudgedSession):
         """
         orders = ORDERS_WITH_ERRANDS if world.car.errands else STANDING_ORDERS
         begun: dict[str, Any] = beginning(world, orders[setup.conditions.language], setup, (), observer)
-        watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
+        watch = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
         watch._read()
         return watch
@@ -162,7 +162,8 @@ class Watch(JudgedSession):
 
     def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Feedback:
         """Lets an action's time pass: a wait lasts until something wakes."""
-        self._note_acts()
+        if why := self._note_acts():
+            feedback = self.world.cockpit.spoken(Feedback(FeedbackCode.REFUSED, why))
         if action is None or action.action_type is not ActionType.WAIT:
             feedback = super()._spend(action, feedback, cost_s)
             goes_on = action is not None and action.action_type is ActionType.STATUS
@@ -221,18 +222,11 @@ class Watch(JudgedSession):
         waited = action is not None and action.action_type is ActionType.WAIT
         return self.setup.given - {Channel.SCREENSHOT} if waited else self.setup.given
 
-    def _advance(self, duration_s: float) -> None:
-        """Advances second by second, together with the copies."""
-        left_s = duration_s
-        while left_s > ROUNDING_S and self.world.moment.driving.end is None:
-            tick_s = min(TICK_S, left_s)
-            self.baseline.start(self.world.moment.time_s + tick_s)
-            for moment in self._heard(self.world.advance(tick_s)):
-                self.moments.append(moment)
-                self._note(moment)
-            self.baseline.follow(self.world.moment.time_s)
-            self._follow()
-            left_s -= tick_s
+    def _passed(self, moments: tuple[Moment, ...]) -> None:
+        for moment in moments:
+            self.moments.append(moment)
+            self._note(moment)
+        self._follow()
 
     def _note(self, moment: Moment) -> None:
         changes = self.alarm.see(self.moments[-READ_BACK:])
@@ -270,10 +264,12 @@ class Watch(JudgedSession):
         """Events of the do-nothing run, if an act of the agent holds something back: then they are compared."""
         return tuple(self._untouched()) if any(act.holds_back for act in self.acts) else ()
 
-    def _note_acts(self) -> None:
+    def _note_acts(self) -> str:
+        """Notes what was commanded since, and returns why the road refuses it, if it does."""
         given = self.world.cockpit.given
-        self.acts += acts_of(given[self._given :])
-        self._given = len(given)
+        new, self._given = given[self._given :], len(given)
+        self.acts += acts_of(new, self.world.moment.driving)
+        return next(filter(None, map(refusal, new)), "")
 
     def _ended(self) -> End | None:
         end = super()._ended()

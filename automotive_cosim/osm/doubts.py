@@ -71,7 +71,7 @@ def _of_barriers(cut: barriers.Cut) -> Iterator[str]:
 
 def _of_turns(built: Built) -> Iterator[str]:
     for relations, about in (
-        (built.turns.at_times, "turn restrictions at certain times or under conditions, left out"),
+        (built.turns.at_times, "turn restrictions under conditions that are not understood, left out"),
         (built.turns.over_ways, "turn restrictions over a way that is reached from elsewhere too, left out"),
         (built.turns.unread, "turn restrictions that are not understood, left out"),
     ):

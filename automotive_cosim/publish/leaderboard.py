@@ -257,10 +257,7 @@ def _table(number: int, entries: Sequence[BoardEntry]) -> Table:
                 each.method,
                 each.base_model,
                 input_of(Contestant(each.agent, each.model)),
-                *(
-                    f"{value:g}" if isinstance(value, float) else value
-                    for value in each.conditions.as_json().values()
-                ),
+                *(line.told(line.of(each.conditions)) for line in TABLE),
                 *(rate_in_words(rate) if rate.planned else NONE for rate in entry.rates),
                 f"{entry.bundle} ({entry.version}), {entry.sha256[:12]}",
             )

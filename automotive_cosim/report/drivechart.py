@@ -78,7 +78,7 @@ def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
             (LAMPS_IN, lambda axes: _lamps(axes, timeline)),
         ]
     rows_in = ROW_IN * (len(kinds) + 3)
-    below_in = sum(height + GAP_IN for height, _ in panels) + 0.35 + LINE_IN * (len(told) + 1)
+    below_in = sum(height + GAP_IN for height, _ in panels) + 0.35 + LINE_IN * (len(told) + 3)
     height_in = rows_in + below_in
 
     def draw(axes: Axes) -> None:
@@ -89,6 +89,7 @@ def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
         axes.set_yticks(range(rows), ["acts", "wakes", *(kind.replace("_", " ") for kind in kinds)])
         _events(axes, row.events, kinds)
         _acts(axes, row)
+        _say_unwatched(axes, timeline, rows)
         for time_s, _ in timeline.get("wakes", ()):
             axes.plot(time_s, 1, "|", color=GREY, markersize=6, alpha=0.6)
         top = below_in / height_in
@@ -108,7 +109,7 @@ def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
         axes.set_xlim(0, end_s)
         axes.set_xticks(list(ticks), [])
         axes.spines["bottom"].set_visible(False)
-        lines = [_told(number, act, timeline) for number, act in enumerate(told, 1)]
+        lines = [KEY, *(_told(number, act, timeline) for number, act in enumerate(told, 1))]
         words = axes.text(
             0.0,
             max(0.0, top - 0.45 / height_in),
@@ -130,6 +131,26 @@ def _unwatched(axes: Axes, timeline: Json) -> None:
         axes.axvspan(from_s, timeline["time_s"][-1], color=GREY, alpha=0.2, linewidth=0)
 
 
+def _say_unwatched(axes: Axes, timeline: Json, rows: int) -> None:
+    """The same for the rows of acts, wakes and events, in words too; these end left of the end if they have to."""
+    from_s, end_s = timeline.get("watched_until_s"), timeline["time_s"][-1]
+    if from_s is None:
+        return
+    axes.fill_betweenx((-0.7, rows - 0.4), from_s, end_s, color=GREY, alpha=0.2, linewidth=0)
+    words = f"nobody watches from {int(from_s) // 60}:{int(from_s) % 60:02d} on"
+    left = from_s > 0.6 * end_s
+    axes.annotate(
+        words,
+        (from_s, 0),
+        (-8 if left else 8, 0),
+        textcoords="offset points",
+        ha="right" if left else "left",
+        va="center",
+        fontsize=7.5,
+        annotation_clip=False,
+    )
+
+
 def _told(number: int, act: JudgedAct, timeline: Json) -> str:
     """What an act said, what it was, and what the driver did."""
     answers = [
@@ -143,6 +164,10 @@ def _told(number: int, act: JudgedAct, timeline: Json) -> str:
     return line if len(line) <= LONGEST else f"{line[: LONGEST - 1]}…"
 
 
+KEY = (
+    "Bars: green met, blue prevented, orange late, red missed, grey void, hatched look-alike; | due, > too late.\n"
+    "Acts: dot right, X false, + wrong, diamond look-alike, square repeat."
+)
 LONGEST = 150
 """Characters of a line of the chart."""
 
@@ -201,15 +226,18 @@ def _gaps(axes: Axes, timeline: Json) -> None:
 
 
 def _sky(axes: Axes, timeline: Json) -> None:
-    """Visibility on a logarithmic scale, and grip."""
+    """Visibility on a logarithmic scale, and grip on a scale of its own."""
     axes.plot(timeline["time_s"], timeline["visibility_m"], color=BLUE, linewidth=1.0, label="visibility")
     axes.set_yscale("log")
     axes.set_ylim(10, 40_000)
     axes.set_yticks([10, 100, 1000, 10_000], ["10 m", "100 m", "1 km", "10 km"])
     axes.minorticks_off()
-    grips = [10 * 1000.0**grip for grip in timeline["grip"]]
-    axes.plot(timeline["time_s"], grips, color=ORANGE, linewidth=1.0, label="grip: 1 at 10 km, 0 at 10 m")
-    axes.legend(loc="lower right", ncols=2, frameon=False, fontsize=8)
+    grip = axes.twinx()
+    axes.plot([], [], color=ORANGE, linewidth=1.0, label="grip, from 0 at the bottom to 1 at the top")
+    grip.plot(timeline["time_s"], timeline["grip"], color=ORANGE, linewidth=1.0)
+    grip.set_ylim(0, 1.05)
+    grip.axis("off")
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, frameon=False, fontsize=7.5, borderpad=0)
 
 
 def _lamps(axes: Axes, timeline: Json) -> None:
@@ -225,11 +253,14 @@ def _speeds(axes: Axes, timeline: Json) -> None:
     times_s, speeds = timeline["time_s"], timeline["speed_kmh"]
     nobodys = timeline["baseline_kmh"][: len(times_s)]
     limits = [float("nan") if limit is None else limit for limit in timeline["limit_kmh"]]
-    axes.plot(times_s, limits, color=RED, linewidth=1.0, drawstyle="steps-post", alpha=0.8)
-    axes.plot(times_s[: len(nobodys)], nobodys, color=GREY, linewidth=1.0, linestyle=(0, (3, 2)))
-    axes.plot(times_s, speeds, color=BLUE, linewidth=1.3)
-    for from_s, to_s in timeline.get("advice", ()):
-        axes.axvspan(from_s, to_s, color=GREEN, alpha=0.15, linewidth=0)
+    axes.plot(times_s, limits, color=RED, linewidth=1.0, drawstyle="steps-post", alpha=0.8, label="limit")
+    alone_s = times_s[: len(nobodys)]
+    axes.plot(alone_s, nobodys, color=GREY, linewidth=1.0, linestyle=(0, (3, 2)), label="without the agent")
+    axes.plot(times_s, speeds, color=BLUE, linewidth=1.3, label="speed")
+    for number, (from_s, to_s) in enumerate(timeline.get("advice", ())):
+        words = "" if number else "advice in force"
+        axes.axvspan(from_s, to_s, color=GREEN, alpha=0.15, linewidth=0, label=words)
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=4, frameon=False, fontsize=7.5, borderpad=0)
     known = [limit for limit in timeline["limit_kmh"] if limit is not None]
     axes.set_ylim(0, 1.08 * max([1.0, *speeds, *nobodys, *known]))
     axes.set_ylabel("km/h")

@@ -119,7 +119,12 @@ FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("Median delay s", lambda rows: whole(rows).median_delay_s, ".1f"),
     ("Watched %", _watched_share, ".0f"),
     ("Overspeed saved %", _saved(lambda harm: float(harm.over_limit_m)), ".0f"),
-    ("Short TTC saved %", _saved(lambda harm: float(harm.short_ttc_s)), ".0f"),
+    ("Near collision s/h", _per_hour(lambda row: row.harm.short_ttc_s if row.harm else 0.0), ".1f"),
+    (
+        "the same without it",
+        _per_hour(lambda row: row.baseline_harm.short_ttc_s if row.baseline_harm else 0.0),
+        ".1f",
+    ),
     ("Distraction s/h", _per_hour(lambda row: row.distraction_s), ".0f"),
     ("Steps/h", _per_hour(lambda row: row.steps), ".0f"),
     ("Model calls/h", _per_hour(lambda row: row.calls), ".0f"),
@@ -178,6 +183,7 @@ def tables(rows: Sequence[DriveTrialRow]) -> list[Table]:
             _families(groups),
             _measures(groups),
             _exposed(groups),
+            _unwatched(rows),
             house_rules(groups, "policy_of_drives"),
             _errors(rows),
         )
@@ -205,7 +211,8 @@ def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         lines,
         "Score: 0 is doing nothing, 100 is the rule-perfect watcher; a nuisance costs as much as "
         "a miss. In brackets: 95 % intervals from resampling whole drives. Saved: compared with the "
-        "do-nothing run of the same drive.",
+        "do-nothing run of the same drive. Near collision: below 3 s to the vehicle ahead while only hard braking "
+        "avoids it, and the same without the agent.",
     )
 
 
@@ -289,6 +296,21 @@ def _exposed(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
 
 
 LEAST_HOURS = 0.005
+
+
+def _unwatched(rows: Sequence[DriveTrialRow]) -> Table:
+    """Drives that were not watched to their end, and from when."""
+    lines = tuple(
+        (row.id, f"{int(row.unwatched_from_s) // 60}:{int(row.unwatched_from_s) % 60:02d}", _why_unwatched(row))
+        for row in rows
+        if row.unwatched_from_s is not None
+    )
+    heads = "Drive", "Nobody watched from, min:s", "Why"
+    return Table("unwatched", "Drives that nobody watched to their end", heads, lines)
+
+
+def _why_unwatched(row: DriveTrialRow) -> str:
+    return row.agent_error or str(row.end).replace("_", " ")
 
 
 def _errors(rows: Sequence[DriveTrialRow]) -> Table:

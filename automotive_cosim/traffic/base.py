@@ -86,6 +86,8 @@ class EgoPlan:
     brakes_early: bool = False
     """Whether the driver brakes early and gently for what stands ahead, as attentive people do. SUMO's model brakes
     as late as it can: from 50 km/h at 21 m."""
+    settles_s: float = 0.0
+    """Over how many seconds the road takes on the grip of other weather; by default at once."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -96,6 +98,7 @@ class Event:
     |---|---|
     | ``driver_...`` | the driver's reaction to a request: slows, holds, ignores, opens_gap, gives_way, ... |
     | ``driver_parks``, ``driver_sets_off`` | the ego is parked as planned, and drives on |
+    | ``driver_goes_on`` | the driver has entered the next destination of the round |
     | ``driver_drives_on`` | a stop that was asked for is over |
     | ``driver_released`` | what was asked or advised has ended; the driver drives as before |
     | ``incident`` | an incident of the scenario begins or ends |

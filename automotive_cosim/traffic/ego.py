@@ -273,7 +273,7 @@ class Driver:
             return Answer(False, say("the drive has ended: {end}", end=_ENDS[state.end]))
         match request:
             case Alert():
-                return self._hear(request, state, say("the driver hears it"))
+                return self._hear(request, state, say("announced to the driver"))
             case SlowDown(speed_kmh):
                 why_not = _too_slow(speed_kmh, state)
                 if why_not:
@@ -299,7 +299,7 @@ class Driver:
         """Does what is due and controls the speed; it takes effect from the next step."""
         events: tuple[Event, ...] = ()
         if self._forecast is None:
-            self._forecast = Forecast(self.plan.weather, now.time_s)
+            self._forecast = Forecast(self.plan.weather, now.time_s, self.plan.settles_s)
             self._departed_s = now.time_s
         if self._moods < len(self.plan.moods):
             self._change_mood(now.time_s - self._departed_s)
@@ -332,7 +332,7 @@ class Driver:
     def _cruise(self, speed_kmh: float | None, state: DrivingState) -> Answer:
         if speed_kmh is None:
             self._bounds.cruise = math.inf
-            return Answer(True, say("no speed is set any more"))
+            return Answer(True, say("the speed setting is cleared"))
         why_not = _too_slow(speed_kmh, state)
         if why_not:
             return Answer(False, why_not)
@@ -349,7 +349,7 @@ class Driver:
                 return tuple(self._heed(request, state, f"{after} the alert"))
             case SlowDown(speed_kmh):
                 limit_mps = state.road.limit.mps
-                if self.plan.advice_s < math.inf and speed_kmh / KMH_PER_MPS >= (limit_mps or FASTEST_MPS) - 0.1:
+                if self.plan.advice_s < math.inf and takes_back(speed_kmh, state):
                     return (self._release(state.time_s, f"advice taken back, {after} the request"),)
                 self._bounds.asked, self._bounds.asked_under = speed_kmh / KMH_PER_MPS, limit_mps
                 self._advised_until_s = state.time_s + self.plan.advice_s
@@ -578,6 +578,13 @@ class Driver:
         if top_mps != self._top_mps:
             self._top_mps = top_mps
             self.pedals.set_top_speed(top_mps)
+
+
+def takes_back(speed_kmh: float, state: DrivingState) -> bool:
+    """Whether a request for a speed asks for nothing but to drive as before: for the limit's or more, and no slower
+    than the car."""
+    mps = speed_kmh / KMH_PER_MPS
+    return mps >= (state.road.limit.mps or FASTEST_MPS) - 0.1 and mps >= state.speed_mps - 0.3
 
 
 def _too_slow(speed_kmh: float, state: DrivingState) -> str:

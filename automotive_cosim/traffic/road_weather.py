@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.scenarios import WeatherAt, weather_at
@@ -28,6 +28,9 @@ LOSS_PER_KELVIN = 0.0023
 
 WARM_FROM_C = 20.0
 """Reference temperature of friction tests."""
+
+GRIP_STEP_S = 5.0
+"""How often a road that takes on another grip changes."""
 
 REACTION_S = 2.5
 COMFORTABLE_MPS2 = 3.4
@@ -106,10 +109,17 @@ def sight_speed_mps(visibility_m: float, friction: float) -> float:
 class Forecast:
     """A timeline of weather as conditions of the road."""
 
-    def __init__(self, timeline: tuple[WeatherAt, ...], departure_s: float) -> None:
-        """Takes a timeline in seconds after ``departure_s``; an empty one is always dry."""
+    def __init__(self, timeline: tuple[WeatherAt, ...], departure_s: float, settles_s: float = 0.0) -> None:
+        """Takes a timeline in seconds after ``departure_s``; an empty one is always dry.
+
+        Args:
+            timeline: the weather.
+            departure_s: simulation time of its beginning.
+            settles_s: over how long the road takes on the grip of other weather.
+        """
         self._timeline = timeline
         self._departure_s = departure_s
+        self._settles_s = settles_s
         self.until_s = -math.inf
         """Simulation time up to which the last condition holds."""
 
@@ -123,7 +133,24 @@ class Forecast:
         self.until_s = (
             math.inf if following == len(self._timeline) else self._departure_s + self._timeline[following].at_s
         )
-        return condition_of(weather_at(self._timeline, since_s))
+        weather = weather_at(self._timeline, since_s)
+        condition = condition_of(weather)
+        friction = self._friction(since_s) if self._settles_s else condition.friction
+        if friction == condition.friction:
+            return condition
+        self.until_s = min(self.until_s, time_s + GRIP_STEP_S)
+        return replace(condition, friction=friction, sight_mps=sight_speed_mps(weather.visibility, friction))
+
+    def _friction(self, since_s: float) -> float:
+        """It goes from what it was when a weather set in to that of the weather, at a steady pace."""
+        friction = condition_of(self._timeline[0].weather).friction
+        ends_s = [*(entry.at_s for entry in self._timeline[1:]), math.inf]
+        for entry, end_s in zip(self._timeline, ends_s, strict=True):
+            if entry.at_s > since_s:
+                break
+            share = min(1.0, (min(since_s, end_s) - entry.at_s) / self._settles_s)
+            friction += share * (condition_of(entry.weather).friction - friction)
+        return round(friction, 3)
 
 
 @dataclass(slots=True)

@@ -69,6 +69,8 @@ class World:
         self._sumo = load_library()
         with self._configuration.named_as_given():
             self.network = self._mapped(reader.network(), setup)
+            self.always_open = self.network.open_at_all_hours()
+            """The network with the ways only that are open at any hour."""
             options = run_options(self._configuration, setup, self.network)
             with chdir(scratch):
                 start(self._sumo, command_line(options))
@@ -147,11 +149,12 @@ class World:
         """
         driver_profile = profile(plan.driver)
         plan = replace(plan, weather=plan.weather or self._scenario.weather)
+        self._situations.expect(plan, self._sumo.time())
         for _ in range(round(plan.wait_s / self.step_s)):
             self.step()
             if beat is not None:
                 beat()
-        round_ = planned(self.network, plan.trip, plan.onward) if plan.onward else None
+        round_ = planned(self.always_open, plan.trip, plan.onward) if plan.onward else None
         edges = round_.first if round_ else self._trip_edges(plan.trip)
         self._add_ego(edges, driver_profile, parked=plan.parked)
         if plan.emission_class:
@@ -169,7 +172,7 @@ class World:
             raise NoRoomError(
                 f"the ego found no gap on {plan.trip.from_edge!r} in {INSERTION_LIMIT_S:.0f} s of simulated time"
             )
-        self._forecast = Forecast(plan.weather, self._sumo.time())
+        self._forecast = Forecast(plan.weather, self._sumo.time(), plan.settles_s)
         self._surface.put(self._forecast.read(self._sumo.time()))  # its first look is on the road of its weather
         self._sumo.set_parameter(EGO, "laneChangeModel.lcSpeedGain", f"{driver_profile.overtaking:g}")
         sensor = Sensor(
@@ -344,7 +347,9 @@ class EgoRoad:
         if end is None:
             try:
                 if self._round is not None and self._steps % self._look_steps == 0:
-                    sampled = self._go_on(self._round) or sampled
+                    goes_on = self._go_on(self._round)
+                    events += goes_on
+                    sampled = bool(goes_on) or sampled
                 if sampled:
                     self._sensor.refresh()
                 now = self._sensor.read(hazard_lights=hazard_lights, vehicle_count=self._world.vehicle_count)
@@ -370,18 +375,20 @@ class EgoRoad:
         """See ``drive.Stepper``."""
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
 
-    def _go_on(self, round_: Round) -> bool:
-        """Sets the next destination near the present one; true if it did."""
+    def _go_on(self, round_: Round) -> tuple[Event, ...]:
+        """Sets the next destination near the present one, if there is a way to it, and says so."""
         sumo, route = self._sumo, self._sensor.route
         here = sumo.edge_of(EGO)
         if route.length_m - self._sensor.position_m > ONWARD_M or here.startswith(":"):
-            return False
+            return ()
         rest = route.edge_ids[sumo.route_index(EGO) :]
-        way = round_.following(self._world.network, rest[-1], self._leg)
+        way = round_.following(self._world.always_open, rest[-1], self._leg)
         self._leg += 1
-        if way:
-            sumo.set_route(EGO, (*rest, *way[1:]))
-        return bool(way)
+        if not way:
+            return ()
+        sumo.set_route(EGO, (*rest, *way[1:]))
+        goal = self._world.network.edges[way[-1]].name or "the next destination"
+        return (Event(sumo.time(), "driver_goes_on", f"driver goes on to {goal}"),)
 
     def _mishaps(self) -> tuple[EgoEnd | None, tuple[Event, ...]]:
         """Why the ego's drive ended in this step, if it did, and events of other vehicles."""

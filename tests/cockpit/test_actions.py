@@ -19,6 +19,7 @@ from automotive_cosim.contracts import (
     Severity,
 )
 from automotive_cosim.errors import ActionError
+from tests.cockpit.conftest import NAMES
 
 SAMPLES = {
     "index": 3,
@@ -164,6 +165,14 @@ def test_anything_is_an_action_or_an_action_error(value: object):
         assert str(error)
     else:
         assert check(action) is action
+
+
+def test_a_route_to_a_street_that_is_not_there_is_refused_at_once(cockpit: Cockpit):
+    asked = perform(Action(ActionType.REQUEST_REROUTE, destination="Nowhere Lane"), cockpit, ())
+    assert (asked.code, asked.text) == (FeedbackCode.REFUSED, "No street or place with this name")
+    assert not cockpit.given
+    known = perform(Action(ActionType.REQUEST_REROUTE, destination=NAMES[0].lower()), cockpit, ())
+    assert known.code is FeedbackCode.OK
 
 
 @pytest.mark.parametrize("destination", ["nan,nan", "inf,0", "181,0", "0,-90.5", "1e300,1e300"])

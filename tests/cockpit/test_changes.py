@@ -55,6 +55,15 @@ def test_what_is_locked_while_driving_can_still_spring_open(make: Make, around: 
     assert cockpit.signals[CABIN.TRUNK]
 
 
+def test_what_somebody_has_to_get_out_for_waits_until_the_car_stands(make: Make, around: Surroundings) -> None:
+    shut = CarChange(3.0, CABIN.TRUNK.path, False, once_standing=True)
+    cockpit = make(changes=[CarChange(1.0, CABIN.TRUNK.path, True), shut])
+    drive(cockpit, around, 0, 10)
+    assert cockpit.signals[CABIN.TRUNK]
+    drive(cockpit, replace(around, driving=replace(around.driving, speed_mps=0.0)), 10, 11)
+    assert not cockpit.signals[CABIN.TRUNK]
+
+
 def test_in_a_parked_car_times_count_from_when_it_was_parked(make: Make, around: Surroundings) -> None:
     gone = CarChange(3.0, OCCUPANT.DRIVER.occupied.path, False, once_parked=True)
     cockpit = make(changes=[gone], lookout=True)

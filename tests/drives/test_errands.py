@@ -42,7 +42,7 @@ def test_errands_come_just_after_something_staged_and_one_is_declined(family: st
     script = FAMILIES[family].draw(seed)
     made = with_errands(script)
     assert made == DriveSettings(errands=True).applied(script) == read_script(script_json(made))
-    assert replace(made, errands=(), arrivals=script.arrivals) == script
+    assert replace(made, errands=(), arrivals=script.arrivals, signals=script.signals) == script
     staged_s = [staged.at_s for staged in script.staged]
     for errand in made.errands:
         assert any(AFTER_S[0] <= errand.at_s - at_s <= AFTER_S[1] for at_s in staged_s)

@@ -68,6 +68,8 @@ def behind(kind: str) -> dict[str, Any]:
     return {OCCUPANT.REAR_LEFT.occupied.path: True, OCCUPANT.REAR_LEFT.kind.path: kind}
 
 
+AUTOBAHN = {"position": (8.6, 49.95), "road_class": "motorway", "lane_count": 3, "limit": limit(130)}
+
 LEFT = {MOTION.GEAR.path: "P", OCCUPANT.DRIVER.occupied.path: False}
 SCENES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
     "over_limit": ({"kmh": 60}, {"kmh": 52}),
@@ -105,7 +107,8 @@ SCENES: Mapping[str, tuple[dict[str, Any], dict[str, Any]]] = {
         {"temperature_2m": 2.0},
     ),
     "tunnel": ({"tunnel_distance_m": 110.0, "signals": UNLIT}, {"tunnel_distance_m": 900.0, "signals": UNLIT}),
-    "rear_end": (sight(SightKind.VEHICLE_BEHIND, 40.0, 13.0), sight(SightKind.VEHICLE_BEHIND, 40.0, 5.0)),
+    "rear_end": (sight(SightKind.VEHICLE_BEHIND, 40.0, 13.0), sight(SightKind.VEHICLE_BEHIND, 40.0, 3.0)),
+    "corridor": (AUTOBAHN | {"kmh": 8}, AUTOBAHN | {"kmh": 100}),
     "jam_tail": ({"kmh": 90, **sight(SightKind.JAM, 300.0)}, {"kmh": 50, "relative_speed": 0.4}),
     "breakdown": (
         {"kmh": 80, **sight(SightKind.BREAKDOWN, 250.0)},

@@ -16,7 +16,7 @@ import pytest
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated, take_seats
 from automotive_cosim.cockpit.signals import ENERGY, Signals, named
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.family import FEWEST, MOST, Season
+from automotive_cosim.drives.family import FEWEST, MOST, PAUSE_S, Season
 from automotive_cosim.drives.script import (
     APART_S,
     LONGEST_S,
@@ -125,6 +125,20 @@ def test_a_plan_asks_only_for_what_there_is(family: Any) -> None:
 
 
 @pytest.mark.slow
+@pytest.mark.parametrize("family", EVERY)
+def test_weather_comes_on_as_it_does(family: Any) -> None:
+    """Sight falls by less than two thirds in one step, and it does not stop raining for less than a minute."""
+    for script in scripts(family):
+        for here, there in pairwise(script.weather):
+            assert there.weather.visibility > 0.35 * here.weather.visibility, (script.seed, there)
+        dry = [
+            there.at_s - here.at_s
+            for before, here, there in zip(script.weather, script.weather[1:], script.weather[2:], strict=False)
+            if not here.weather.precipitation and before.weather.precipitation and there.weather.precipitation
+        ]
+        assert not dry or min(dry) >= PAUSE_S
+
+
 @pytest.mark.parametrize("family", EVERY)
 def test_the_weather_is_of_its_place_and_season(family: Any) -> None:
     scenario = open_scenario(family.scenario, origin=family.origin)

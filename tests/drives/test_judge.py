@@ -4,11 +4,15 @@ from dataclasses import replace
 
 import pytest
 
+from automotive_cosim.cockpit.road import Ask
 from automotive_cosim.cockpit.signals import CABIN, LIGHTS
-from automotive_cosim.contracts import AlertKind, PullOver, Severity, SlowDown
+from automotive_cosim.cockpit.state import CommandRecord
+from automotive_cosim.contracts import AlertKind, Answer, PullOver, Severity, SlowDown
+from automotive_cosim.drives.acts import acts_of, refusal
 from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
 from automotive_cosim.drives.judge import NOT_DUE, NUISANCE, ORDER, EventOutcome, Judgement, Worth, judge
 from automotive_cosim.drives.score import score, together
+from tests.drives.scenes import moment
 
 SPEEDING = DriveEvent(
     kind="over_limit",
@@ -261,6 +265,21 @@ def test_hazard_lights_for_who_comes_fast_from_behind_are_neutral() -> None:
     lit = WatchAct(300.0, writes=((LIGHTS.HAZARD.path, True),))
     assert judged(lit, true=("rear_end",)).acts[0].worth is Worth.NEUTRAL
     assert judged(lit).acts[0].worth is Worth.FALSE
+
+
+def test_to_take_advice_back_is_no_act_and_what_the_road_refuses_is_none() -> None:
+    driving = moment(kmh=30.0).driving
+    back, slower = (CommandRecord(300.0, Ask(SlowDown(kmh)), frozenset({"requests"})) for kmh in (50.0, 30.0))
+    taken, asked = (
+        next(acts_of([replace(record, answers=((record.command.request, Answer(True, "")),))], driving))
+        for record in (back, slower)
+    )
+    assert (taken.releases, taken.holds_back, asked.releases) == (True, False, False)
+    assert judged(taken).acts[0].worth is Worth.NEUTRAL
+    assert judged(asked).acts[0].worth.is_false
+    refused = replace(slower, answers=((SlowDown(30.0), Answer(False, "too slow for this road")),))
+    assert not list(acts_of([refused], driving))
+    assert refusal(refused) == "too slow for this road"
 
 
 def test_a_repeat_holds_nobody_back() -> None:

@@ -6,17 +6,18 @@ On the record nobody acts, so what an agent would have changed on the road is le
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import pytest
 
-from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
+from automotive_cosim.contracts import AlertKind, Cruise, PullOver, Reroute, RoadRequest, Severity, SlowDown
 from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.judge import Judgement, judge, most_frequent
+from automotive_cosim.drives.judge import NOT_DUE, ORDER, Judgement, Worth, judge, most_frequent
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.script import APART_S
+from automotive_cosim.drives.wakes import WAKES
 from tests.drives.record import SEED, Recorded, outdated, recorded
 
 EVERY = [pytest.param(family) for family in FAMILIES]
@@ -110,21 +111,55 @@ def test_who_alerts_by_rote_does_worse_than_nobody(drive: Recorded) -> None:
     assert scored(drive, (WatchAct(at_s, likeliest) for at_s in every(drive, 30.0))).value < 0.0
 
 
+REQUESTS: tuple[RoadRequest, ...] = (PullOver(), SlowDown(20.0), SlowDown(45.0), Cruise(45.0), Reroute())
+VALUES = (True, False, "OFF", "UP", "AUTO", "SNOW", "MILES", 20.0, 60.0)
+WORDS = ("a child is alone in the car", "signs are in mph here", "another law on lamps and horn", "look out")
+
+
+def acts_at(time_s: float) -> Iterator[WatchAct]:
+    """Every alert, with and without a speed, every request, every switch that a kind is about, and words."""
+    for alert in AlertKind:
+        yield WatchAct(time_s, alert)
+        yield WatchAct(time_s, alert, Severity.CRITICAL, 30.0)
+    yield from (WatchAct(time_s, requests=(request,)) for request in REQUESTS)
+    for path in sorted({path for kind in KINDS.values() for path in kind.writes}):
+        yield from (WatchAct(time_s, writes=((path, value),)) for value in VALUES)
+    yield from (WatchAct(time_s, said=words) for words in WORDS)
+
+
 @pytest.mark.parametrize("family", EVERY)
-def test_against_each_act_that_is_charged_a_fact_speaks(drive: Recorded) -> None:
-    """Every kind of alert, stops and slow driving asked for, whenever facts are on record: each by itself."""
-    requests = [(PullOver(),), (SlowDown(20.0),)]
-    for at_s in drive.facts_s:
-        for act in (
-            *(WatchAct(at_s, alert) for alert in AlertKind),
-            *(WatchAct(at_s, requests=r) for r in requests),
-        ):
-            (found,) = judged(drive, (act,)).acts
-            meant = [kind for kind in KINDS.values() if kind.settles(act, None)]
-            facts = [drive.against(kind, at_s) for kind in meant]
-            assert bool(found.reason) is found.worth.is_nuisance
-            if act.alert is not None:  # a stop must be due, and not only true
-                assert not (found.worth.is_nuisance and None in facts), (found, facts)
+def test_against_each_act_that_is_charged_a_fact_speaks_that_the_agent_can_know(drive: Recorded) -> None:
+    """Each act by itself, whenever facts are on record, incidents on the road among them."""
+    for at_s in drive.facts_s[len(drive.events) % 8 :: 8]:
+        against = {name: drive.against(kind, at_s) for name, kind in KINDS.items()}
+        near = [event for event in drive.events if event.observable_s - 10 <= at_s <= event.last_s + 60]
+        for act in acts_at(at_s):
+            (found,) = judged(drive, (act,), near).acts
+            assert bool(found.reason) is found.worth.is_nuisance, (act, found)
+            if not found.worth.is_nuisance:
+                continue
+            meant = [name for name, kind in KINDS.items() if kind.settles(act, None) or kind.concerns(act)]
+            facts = [against[name] for name in meant]
+            assert found.reason == ("; ".join(filter(None, facts)) or (NOT_DUE if meant else ORDER)), (act, found)
+            if not act.holds_back or act.alert is not None:  # a stop must be due, and not only true
+                assert None not in facts, (act, found, facts)
+
+
+@pytest.mark.parametrize("family", EVERY)
+def test_a_look_alike_is_only_taken_where_a_fact_tells_it_from_an_event(drive: Recorded) -> None:
+    """No kind that is supported for all that is known is charged as a look-alike."""
+    for event in drive.events:
+        for alert in KINDS[event.kind].alerts if event.lookalike else ():
+            (found,) = judged(drive, [WatchAct(event.observable_s, alert)], [event]).acts
+            if found.worth is Worth.LOOKALIKE:
+                assert drive.against(KINDS[event.kind], event.observable_s), (event, found)
+                assert found.reason
+
+
+@pytest.mark.parametrize("kind", [pytest.param(name) for name in KINDS])
+def test_what_speaks_for_and_against_a_warning_stands_among_the_readings(kind: str) -> None:
+    assert KINDS[kind].told_by
+    assert {*KINDS[kind].told_by} <= {wake.name for wake in WAKES}
 
 
 @pytest.mark.parametrize("family", EVERY)

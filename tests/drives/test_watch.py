@@ -128,7 +128,34 @@ def test_a_look_alike_wakes_as_well() -> None:
 def test_what_has_ended_wakes_nobody_and_is_read_with_the_next_look() -> None:
     near, gone = {"leader": vehicle(15.0)}, dict[str, Any]()
     assert woken([near, near, gone, gone]) == {1: ["vehicle ahead"], 3: []}
-    assert "vehicle ahead (changed): ended" in noticed([moment()], ["vehicle ahead"]).splitlines()
+    read = noticed([moment()], ["vehicle ahead", "school zone"]).splitlines()
+    assert "vehicle ahead (changed): ended, nobody within 150 m" in read
+    assert "school zone (changed): ended, no longer ahead" in read
+
+
+def test_a_gap_that_becomes_shorter_than_a_second_wakes_again_and_one_that_opens_does_not() -> None:
+    gaps_s = [1.9] * 3 + [0.8] * 3 + [1.5] * 3 + [0.8] * 3 + [1.5] * 13 + [0.8] * 3
+    told = woken([{"leader": vehicle(gap_s * 50 / 3.6)} for gap_s in gaps_s])
+    assert {second: names for second, names in told.items() if names} == {
+        1: ["vehicle ahead"],
+        4: ["vehicle ahead"],
+        26: ["vehicle ahead"],
+    }
+
+
+def test_the_grip_is_read_before_it_matters_and_wakes_as_it_falls() -> None:
+    grips = (1.0, 0.95, 0.85, 0.72, 0.65, 0.5, 0.45, 0.45, 0.55, 0.45)
+    told = woken([{"friction": grip} for grip in grips])
+    assert told == {second: ["grip"] for second in (2, 4, 6)}
+    drive = [moment(float(second), friction=grip) for second, grip in enumerate(grips[:7])]
+    assert "grip: 0.45 of 1, falling" in noticed(drive).splitlines()
+
+
+def test_the_road_of_departure_is_no_change_a_second_later() -> None:
+    alarm, drive = Alarm(), [moment(float(second)) for second in range(4)]
+    told = [tuple(change.name for change in alarm.see(drive[:count])) for count in range(1, 5)]
+    assert "road" in told[0]
+    assert "road" not in {name for names in told[1:] for name in names}
 
 
 def test_three_seconds_above_the_limit_wake_also_a_car_that_gets_faster() -> None:
@@ -175,10 +202,8 @@ def test_a_reading_states_quantity_limit_and_trend() -> None:
     drive = [moment(float(second), kmh=50.0 + second, signals=leak(second)) for second in range(15)]
     lines = noticed(drive).splitlines()
     assert "speed: 64 km/h, limit 50, rising" in lines
-    assert (
-        "tyres: front left 250, front right 250, rear left 240 falling, rear right 250 kPa, recommended 250"
-        in lines
-    )
+    pressures = "front left 250, front right 250, rear left 240 falling, rear right 250 kPa"
+    assert f"tyres: {pressures}, recommended 250, too low below 200" in lines
     ahead = noticed([moment(leader=vehicle(25.0, 36.0, time_to_collision_s=6.4))]).splitlines()
     assert "vehicle ahead: 25 m at 36 km/h, time gap 1.8 s, time to collision 6.4 s" in ahead
 

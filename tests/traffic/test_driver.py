@@ -211,6 +211,17 @@ def test_a_request_for_the_limit_takes_advice_back() -> None:
     assert drive.states[-1].speed_mps * KMH_PER_MPS > 40.0
 
 
+def test_a_request_for_the_limit_slows_a_driver_who_is_faster() -> None:
+    speeding = Scripted([Stretch("street", 8000.0, 50.0)], start_speed_kmh=70.0).depart(
+        replace(WATCHED, driver="hurried", seed=2)
+    )
+    before = speeding.advance(20.0).states[-1].speed_mps * KMH_PER_MPS
+    speeding.request(SlowDown(50.0))
+    drive = speeding.advance(20.0)
+    assert before > 55.0 > 51.0 > drive.states[-1].speed_mps * KMH_PER_MPS
+    assert RELEASED not in kinds(drive)
+
+
 @pytest.mark.parametrize(
     "request_", [PullOver(), Alert(AlertKind.VEHICLE, Severity.CRITICAL)], ids=["asked", "red"]
 )

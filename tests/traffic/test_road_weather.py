@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import closing
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,14 @@ from automotive_cosim.scenarios import Scenario, Trip, WeatherAt, load
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
-from automotive_cosim.traffic.road_weather import G_MPS2, RoadCondition, condition_of, sight_speed_mps
+from automotive_cosim.traffic.road_weather import (
+    G_MPS2,
+    GRIP_STEP_S,
+    Forecast,
+    RoadCondition,
+    condition_of,
+    sight_speed_mps,
+)
 from automotive_cosim.traffic.scripted import Scripted, Stretch
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
@@ -213,3 +221,24 @@ def test_a_scenario_brings_its_weather(variant: Variant, hurried: EgoPlan) -> No
             with closing(simulation.depart(replace(hurried, weather=weather))) as traffic:
                 frictions.append(traffic.advance(1.0).states[-1].road.friction)
     assert frictions == [condition_of(SNOW).friction, condition_of(ICE).friction]
+
+
+def test_a_road_that_settles_takes_on_the_grip_of_other_weather_by_and_by() -> None:
+    forecast = Forecast(under(CLEAR, (100.0, SNOW), (300.0, CLEAR)), 0.0, settles_s=60.0)
+    grips, at_s = {}, 0.0
+    while at_s < 400.0:
+        grips[at_s] = forecast.read(at_s).friction
+        at_s = min(forecast.until_s, 1e9)
+    told = list(grips.values())
+    assert max(abs(here - there) for here, there in pairwise(told)) < 0.06
+    assert grips[0.0] == grips[100.0] == 1.0
+    assert grips[130.0] == pytest.approx(1.0 - 0.65 / 2, abs=0.01)
+    assert grips[160.0] == condition_of(SNOW).friction == min(told)
+    assert told[-1] == 1.0
+    assert min(there - here for here, there in pairwise(grips)) == GRIP_STEP_S
+
+
+def test_a_road_that_does_not_settle_changes_with_its_weather() -> None:
+    forecast = Forecast(under(CLEAR, (100.0, SNOW)), 0.0)
+    assert (forecast.read(99.0), forecast.until_s) == (condition_of(CLEAR), 100.0)
+    assert forecast.read(100.0) == condition_of(SNOW)

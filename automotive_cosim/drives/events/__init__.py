@@ -33,6 +33,7 @@ KINDS: Mapping[str, EventKind] = {
         road.BreakdownAhead(),
         road.RoadworksAhead(),
         road.BlueLight(),
+        road.Corridor(),
         road.LeaderClose(),
         road.LeaderBrakes(),
         road.TractorAhead(),

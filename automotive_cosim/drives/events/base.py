@@ -18,6 +18,8 @@ from typing import Any, ClassVar
 from automotive_cosim.contracts import AlertKind, Cruise, PullOver, RoadRequest, Severity, SlowDown
 from automotive_cosim.cosim.moment import Moment
 
+MOST_QUOTED = 60
+"""Characters of what an act says that reports show."""
 Wanted = Callable[[Any], bool]
 """Whether a value written to a signal settles an event."""
 
@@ -62,10 +64,16 @@ class WatchAct:
     """Signals and app data that it commanded, with their values; None for app data."""
     said: str = ""
     """Words spoken to the driver."""
+    text: str = ""
+    """Words that stand with the alert."""
+    releases: bool = False
+    """Whether it only takes back what the driver was asked or advised."""
 
     @property
     def holds_back(self) -> bool:
         """Whether it makes the car stop or drive slowly, or tells the driver to."""
+        if self.releases:
+            return False
         slows = any(isinstance(request, SlowDown | PullOver | Cruise) for request in self.requests)
         return slows or (self.alert is not None and self.speed_kmh is not None) or self.stops
 
@@ -80,12 +88,13 @@ class WatchAct:
         """In words, for reports."""
         if self.alert is not None:
             speed = "" if self.speed_kmh is None else f", {self.speed_kmh:.0f} km/h"
-            return f"alert {self.alert}{speed}{'' if self.severity is Severity.WARNING else f', {self.severity}'}"
+            severity = "" if self.severity is Severity.WARNING else f", {self.severity}"
+            return f"alert {self.alert}{speed}{severity}{_quoted(': ', self.text)}"
         if self.requests:
             return ", ".join(type(request).__name__ for request in self.requests)
         if self.writes:
             return ", ".join(_written(path, value) for path, value in self.writes)
-        return "said something"
+        return "said" + (_quoted(" ", self.said) or " nothing")
 
 
 class EventKind(ABC):
@@ -117,6 +126,9 @@ class EventKind(ABC):
     """Whether the state that the car reaches settles it, and not an act by itself."""
     eases: ClassVar[bool] = False
     """Whether it has passed by itself if in the end it only looks like one."""
+    told_by: ClassVar[tuple[str, ...]]
+    """Names of the readings (``wakes.WAKES``) that tell of it, and of what speaks against a warning of it; the
+    context states the rules."""
     neutral: ClassVar[str]
     """What makes a warning true although nothing is due, so that it costs nothing."""
 
@@ -165,6 +177,13 @@ class EventKind(ABC):
     def concerns(self, act: WatchAct) -> bool:
         """Whether an act touches what the kind is about, rightly or not."""
         return any(path in self.writes for path, _ in act.writes)
+
+
+def _quoted(before: str, words: str) -> str:
+    """Words in quotation marks, as far as a line has room."""
+    line = " ".join(words.split())
+    short = line if len(line) <= MOST_QUOTED else f"{line[: MOST_QUOTED - 1]}…"
+    return f'{before}"{short}"' if short else ""
 
 
 def _written(path: str, value: Any) -> str:

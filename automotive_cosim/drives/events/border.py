@@ -45,6 +45,7 @@ def crossing(drive: Sequence[Moment]) -> BorderCrossing | None:
 class LimitUnits(EventKind):
     """Signs in miles per hour, a display in kilometres, or the other way round."""
 
+    told_by = ("place",)
     name = "limit_units"
     about = "beyond a border the signs have another unit of speed than the car shows"
     lookalike = "a border beyond which the car already shows the unit of the signs"
@@ -85,6 +86,7 @@ class LimitUnits(EventKind):
 class RuleChange(EventKind):
     """A country with another law on lamps, horn or phone, for the first time on this drive."""
 
+    told_by = ("place",)
     name = "rule_change"
     about = "beyond a border the law on lamps, horn or phone is another"
     lookalike = "back in a country in which the car has been on this drive"

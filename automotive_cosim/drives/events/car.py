@@ -41,6 +41,7 @@ RESERVE_M = 2000.0
 class Belt(EventKind):
     """Somebody is not belted."""
 
+    told_by = ("belt", "speed", "parked")
     name = "belt"
     about = "somebody rides without a belt"
     lookalike = "an open belt while the car stands, or around a thing"
@@ -80,6 +81,7 @@ class Belt(EventKind):
 class FlapOpen(EventKind):
     """Trunk or charging flap open while the car moves."""
 
+    told_by = ("open", "parked")
     name = "door"
     about = "the trunk or the charging flap is open while the car moves"
     lookalike = "a window or the sunroof open while the car moves"
@@ -115,6 +117,7 @@ class FlapOpen(EventKind):
 class Tyre(EventKind):
     """A tyre loses its air."""
 
+    told_by = ("tyres",)
     name = "tyre"
     about = "a tyre has lost a fifth of its pressure"
     lookalike = "a tyre that is a little low and keeps its air"
@@ -148,6 +151,7 @@ class Tyre(EventKind):
 class RangeShort(EventKind):
     """The battery ends before the destination."""
 
+    told_by = ("range",)
     name = "range"
     about = "the battery's range ends before the destination"
     lookalike = "a low battery that still reaches the destination"

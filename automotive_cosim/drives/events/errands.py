@@ -29,6 +29,7 @@ class ErrandEvent(EventKind):
     errand: ClassVar[ErrandKind]
     keys: ClassVar[frozenset[str]]
     """Keys of ``Moment.commands`` that carrying it out changes."""
+    told_by = ("asked",)
     by_state = True
     source = "30 s, in which it may wait for whatever safety asks, then 60 s; our choice"
     neutral = "every step towards it, and setting it right"

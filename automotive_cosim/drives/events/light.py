@@ -28,6 +28,7 @@ CLEAR_M = 150.0
 class LampsMissing(EventKind):
     """No dipped beam where law or darkness requires it."""
 
+    told_by = ("lamps", "light", "weather")
     name = "lamps"
     about = "the dipped beam is off in the dark, in a tunnel, or where the law requires it"
     lookalike = "a low sun, in which the law requires no lamps"
@@ -75,6 +76,7 @@ class LampsMissing(EventKind):
 class HighBeam(EventKind):
     """High beam at somebody ahead, or where the law forbids it."""
 
+    told_by = ("lamps", "vehicle ahead")
     name = "high_beam"
     about = "the high beam dazzles a driver ahead, or is on where the law forbids it"
     lookalike = "high beam on an empty road where it is allowed"
@@ -121,6 +123,7 @@ def _with_nobody_coming(context: GeoContext) -> GeoContext:
 class FogLamps(EventKind):
     """Fog lamps where the law forbids them."""
 
+    told_by = ("lamps", "weather")
     name = "fog_lamps"
     about = "a fog lamp is on where the law forbids it, so that it dazzles"
     lookalike = "fog lamps in fog"

@@ -26,6 +26,7 @@ BREAK_AFTER_H = 2.0
 class Fatigue(EventKind):
     """Two hours at the wheel without a break."""
 
+    told_by = ("driving time",)
     name = "fatigue"
     about = "the driver has been driving for two hours without a break"
     lookalike = "more than one hour, but ten minutes or more short of two"
@@ -57,6 +58,7 @@ class Fatigue(EventKind):
 class PhoneUse(EventKind):
     """The driver takes the phone in the hand, by the driver's own wish."""
 
+    told_by = ("phone", "parked")
     name = "phone"
     about = "the driver holds the phone and looks at it while the car moves"
     lookalike = "a call by the phone in its cradle"
@@ -95,6 +97,7 @@ class PhoneUse(EventKind):
 class LeftBehind(EventKind):
     """A child or a pet stays in the parked car without anybody who could help it."""
 
+    told_by = ("parked",)
     name = "left_behind"
     about = "the driver has left the parked car, and a child or a pet is alone in it"
     lookalike = "a car that is left empty, or with a thing or an adult in it"

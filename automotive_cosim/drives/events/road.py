@@ -19,7 +19,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
-from automotive_cosim.drives.events.law import REACTION_S, certain, seen, speed_kmh, time_left_s
+from automotive_cosim.drives.events.law import REACTION_S, certain, may_say, seen, speed_kmh, time_left_s
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 
 NEAR_M = 500.0
@@ -60,12 +60,15 @@ TRACTOR_KMH = (8.0, 40.0)
 FAST_ROAD_KMH = 65.0
 TRACTOR_DUE_S = 8.0
 SOON_S = 15.0
-REAR_END_S = 5.0
+REAR_END_S = 10.0
+CORRIDOR_KMH = 30.0
+"""Slower than this where the law asks for a corridor, traffic may come to a halt; our choice."""
 
 
 class TunnelAhead(EventKind):
     """A tunnel ahead, with the lamps off."""
 
+    told_by = ("tunnel", "light", "lamps")
     name = "tunnel"
     about = "a tunnel comes and the lamps would stay off in it"
     lookalike = "a tunnel that is still a minute away"
@@ -107,6 +110,7 @@ class TunnelAhead(EventKind):
 class JamTail(EventKind):
     """The tail of a queue ahead, at speed."""
 
+    told_by = ("jam", "closure")
     name = "jam_tail"
     about = "the car approaches the tail of a jam at speed"
     lookalike = "traffic that flows slowly, but flows"
@@ -139,18 +143,18 @@ class JamTail(EventKind):
         now = drive[-1]
         if seen(now, SightKind.JAM) is not None or seen(now, SightKind.CLOSURE) is not None:
             return None
-        flows = now.driving.around.relative_speed
-        return f"no jam within 2 km; traffic flows at {flows:.0%} of its usual speed"
+        return "no jam is reported within 2 km"
 
 
 class RearEnd(EventKind):
     """A vehicle that comes fast from behind: hazard lights warn its driver. Nothing is ever due."""
 
+    told_by = ("behind",)
     name = "rear_end"
     about = "hazard lights warn a vehicle behind that would soon run into the car"
     lookalike = "a vehicle behind that comes no closer, or slowly"
-    source = "UN R48, 6.25: the rear-end collision alert signal; 5 s, our choice, leave its driver time to brake"
-    neutral = "a vehicle behind less than 5 s away at the speed at which it closes; never due"
+    source = "UN R48, 6.25: the rear-end collision alert signal; 10 s, our choice, leave its driver time to brake"
+    neutral = "a vehicle behind less than 10 s away at the speed at which it closes; never due"
     is_due_ever = False
     alerts = frozenset[AlertKind]()
     writes: ClassVar[Mapping[str, Wanted]] = {LIGHTS.HAZARD.path: on}
@@ -209,6 +213,7 @@ class StandsAhead(EventKind):
 class BreakdownAhead(StandsAhead):
     """A broken-down vehicle ahead."""
 
+    told_by = ("breakdown",)
     name = "breakdown"
     about = "a broken-down vehicle stands ahead on the route"
     lookalike = "one that is reported on another road or the other carriageway"
@@ -219,6 +224,7 @@ class BreakdownAhead(StandsAhead):
 class RoadworksAhead(StandsAhead):
     """Roadworks ahead."""
 
+    told_by = ("roadworks",)
     name = "roadworks"
     about = "roadworks narrow the road ahead on the route"
     lookalike = "roadworks that are reported on another road or the other carriageway"
@@ -230,6 +236,7 @@ class RoadworksAhead(StandsAhead):
 class BlueLight(EventKind):
     """An emergency vehicle behind, with its blue light on."""
 
+    told_by = ("behind",)
     name = "blue_light"
     about = "an emergency vehicle with blue light comes from behind and wants to pass"
     lookalike = "a plain van close behind"
@@ -258,9 +265,36 @@ class BlueLight(EventKind):
         return f"no blue light within {BLUE_LIGHT_M:.0f} m"
 
 
+class Corridor(EventKind):
+    """A jam in which the law asks for a corridor before anybody needs it. Nothing is ever due."""
+
+    told_by = ("speed", "jam")
+    name = "corridor"
+    about = "in a jam the law asks for a corridor, also before an emergency vehicle comes"
+    lookalike = "a jam where no rule asks for one, or traffic that flows"
+    source = "the law of the place, such as StVO 11(2); 30 km/h, our choice"
+    neutral = "slower than 30 km/h, or a jam ahead, where a rule asks for a corridor; never due"
+    is_due_ever = False
+    alerts = frozenset({AlertKind.CORRIDOR})
+
+    def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
+        """Nothing that would have to be met."""
+        return iter(())
+
+    def against(self, drive: Sequence[Moment]) -> str | None:
+        """No rule that asks for a corridor, or no jam."""
+        now = drive[-1]
+        if not may_say(now.context, "emergency_corridor", "required"):
+            return "no rule here asks for a corridor"
+        if speed_kmh(now) < CORRIDOR_KMH or seen(now, SightKind.JAM) is not None:
+            return None
+        return f"no jam, at {speed_kmh(now):.0f} km/h"
+
+
 class LeaderClose(EventKind):
     """Too close behind the vehicle ahead."""
 
+    told_by = ("vehicle ahead",)
     name = "leader_close"
     about = "the gap to the vehicle ahead is shorter than the law asks, or than a driver needs to react"
     lookalike = "a gap a little longer than that"
@@ -312,6 +346,7 @@ def _lawful_s(now: Moment, *, verified: bool = True) -> Iterator[float]:
 class LeaderBrakes(EventKind):
     """The vehicle ahead brakes so hard that only hard braking helps."""
 
+    told_by = ("vehicle ahead",)
     name = "leader_brakes"
     about = "only hard braking avoids the vehicle ahead"
     lookalike = "a vehicle ahead that is slower, with room to brake gently"
@@ -351,6 +386,7 @@ class LeaderBrakes(EventKind):
 class TractorAhead(EventKind):
     """A slow vehicle ahead on a fast road."""
 
+    told_by = ("vehicle ahead",)
     name = "tractor"
     about = "the car comes up fast behind a slow vehicle on a fast road"
     lookalike = "a slow vehicle ahead in a town"

@@ -60,6 +60,7 @@ class SpeedKind(EventKind):
 class OverLimit(SpeedKind):
     """Faster than the sign or the law of the road allows."""
 
+    told_by = ("speed", "limit")
     name = "over_limit"
     about = "the car is faster than the sign or the law of the road allows"
     lookalike = "a little above the limit, within the error limit of speed meters: 52 in a 50"
@@ -107,6 +108,7 @@ def _over(kmh: float, limit_kmh: float, words: str) -> Iterator[Sighting]:
 class LimitFalls(SpeedKind):
     """A lower limit ahead that the car approaches too fast to coast down to."""
 
+    told_by = ("limit ahead", "speed")
     name = "limit_falls"
     about = "the limit falls ahead, and the car no longer gets down to it by coasting"
     lookalike = "a lower limit ahead that the car already keeps"
@@ -174,6 +176,7 @@ def is_school_time(moment: Moment) -> bool:
 class SchoolHours(SpeedKind):
     """Too fast in a school zone at its hours."""
 
+    told_by = ("road", "school zone", "speed")
     name = "school_zone"
     about = "the car is in a school zone at its hours, faster than its sign"
     lookalike = "a school zone outside its hours, or a little above its sign"
@@ -224,6 +227,7 @@ class SchoolHours(SpeedKind):
 class WeatherSpeed(SpeedKind):
     """Faster than weather or sight allows."""
 
+    told_by = ("weather", "grip", "speed")
     name = "weather_speed"
     about = "rain, fog or snow lowers the limit by law, or the car cannot stop within what its driver sees"
     lookalike = "a road whose limit is lower in rain or fog, in dry clear weather"
@@ -248,7 +252,7 @@ class WeatherSpeed(SpeedKind):
         stopping_m = _stopping_m(now)
         if not now.driving.road.in_tunnel and stopping_m > now.weather.visibility:
             words = f"needs {stopping_m:.0f} m to stop and sees {now.weather.visibility:.0f} m"
-            yield Sighting(words, "sight", due=True, hold_s=3.0, severity=stopping_m / now.weather.visibility)
+            yield Sighting(words, "sight", due=True, hold_s=3.0, severity=FOG_M / now.weather.visibility)
             return
         for reduced in context.reduced_limits:
             value = reduced.rule.cases[0].value

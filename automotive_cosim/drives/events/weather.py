@@ -27,6 +27,7 @@ COLD_C = 4.0
 class GlassFogs(EventKind):
     """The windshield fogs."""
 
+    told_by = ("glass",)
     name = "glass_fog"
     about = "the windshield fogs inside while the car moves"
     lookalike = "a breath of mist on the glass, that no screen speaks of"
@@ -66,6 +67,7 @@ class GlassFogs(EventKind):
 class Wipers(EventKind):
     """Rain on the windshield that nobody wipes."""
 
+    told_by = ("rain",)
     name = "wipers"
     about = "rain covers the windshield and the wipers are off"
     lookalike = "a few drops that cover less than a fifth of the glass"
@@ -100,6 +102,7 @@ class Wipers(EventKind):
 class Slippery(EventKind):
     """Snow or ice on the road, at speed."""
 
+    told_by = ("grip", "weather", "speed")
     name = "slippery"
     about = "the road has the grip of snow or ice and the car is fast"
     lookalike = "cold, but a dry road"
