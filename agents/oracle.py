@@ -38,8 +38,6 @@ from automotive_cosim.tasking.moves import (
     Warn,
 )
 
-SLIDER_MARGIN_PX = 20
-"""How far inside its element a slider's range begins."""
 LIST = "ListView"
 _DOCK = frozenset(resource_id(f"dock.{app.name}") for app in apps_in(Where.DOCK))
 """What scrolls row by row, by class name."""
@@ -225,5 +223,5 @@ def _click(index: int) -> Action:
 
 def _slide(element: Element, share: float) -> Action:
     box = element.bbox_pixels
-    x = box.x_min + SLIDER_MARGIN_PX + share * (box.x_max - box.x_min - 2 * SLIDER_MARGIN_PX)
+    x = box.x_min + share * (box.x_max - box.x_min)
     return Action(ActionType.CLICK, x=round(x), y=(box.y_min + box.y_max) // 2)

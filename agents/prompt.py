@@ -73,8 +73,9 @@ def turn(
     given = profile.channels
     is_listed, is_told = Channel.ELEMENTS in given, Channel.CONTEXT in given
     return fill(
-        WATCH if observation.on_watch else profile.name if profile.length is PromptLength.LONG else profile.length,
+        _file(profile, observation),
         {
+            "instructions": profile.instructions,
             "hands": _HANDS[profile.interface, profile.length is PromptLength.LONG],
             "grammar": _grammar(profile, by_point=not is_listed, on_watch=observation.on_watch),
             "policy": observation.policy,
@@ -93,6 +94,14 @@ def turn(
             "memory": "\n".join(map(one_line, recalled)) or None,
         },
     )
+
+
+def _file(profile: AgentProfile, observation: Observation) -> str:
+    if profile.instructions:
+        return OWN
+    if observation.on_watch:
+        return WATCH
+    return profile.name if profile.length is PromptLength.LONG else profile.length
 
 
 def situation(profile: AgentProfile, observation: Observation, *, pictures: bool, is_spoken: bool = True) -> str:
@@ -127,6 +136,8 @@ PLACE_COUNTS = (
 )
 WATCH = "drive"
 """The prompt of a watch over a drive, the same for every agent."""
+OWN = "own"
+"""The prompt with instructions from a file, of tasks and of drives."""
 UNASKED = frozenset({ActionType.STATUS})
 """Actions that a watch has no use for."""
 WATCHED = {

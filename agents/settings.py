@@ -58,6 +58,9 @@ class AgentSettings:
     drive of thirty minutes."""
     answer_s: float = 120.0
     """Wall seconds in which an agent behind an address has to answer."""
+    instructions: str = ""
+    """Text of the file that the condition ``prompt`` names (``episode.own_prompt``), read by who starts the agent:
+    its own process has another working folder."""
 
     def __post_init__(self) -> None:
         if self.most_tokens <= 0 or self.most_seconds <= 0:
@@ -81,6 +84,8 @@ class AgentProfile:
     reflects: bool = True
     length: PromptLength = PromptLength.STANDARD
     """How much its prompt spells out."""
+    instructions: str = ""
+    """What stands in place of the standard prompt's, if anything does."""
     remembers: bool = False
     """Whether it can remember what worked from one episode to the next."""
     interface: Interface = Interface.TOUCH
@@ -113,7 +118,8 @@ class AgentProfile:
             self,
             channels=channels,
             actions=frozenset(actions),
-            length=settings.conditions.prompt,
+            length=settings.conditions.prompt.length,
+            instructions=settings.instructions,
             reflects=self.reflects and AgentPart.REFLECTION not in without,
             remembers=self.remembers and AgentPart.MEMORY not in without and settings.memory is not None,
             interface=interface,

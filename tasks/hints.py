@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.signals import MEDIA, SEAT, VOICE
-from automotive_cosim.tasking.checks import AnyOf, SignalIs, SignalLowered, SignalRaised
+from automotive_cosim.cockpit.signals import CABIN, HMI, MEDIA, SEAT, VOICE
+from automotive_cosim.tasking.checks import AnyOf, SignalIs, SignalLowered, SignalRaised, SignalWithin
 from automotive_cosim.tasking.moves import Open, Slide, Tap
 from automotive_cosim.tasking.task import Module, Start
-from automotive_cosim.tasks.aboard import SEATS
+from automotive_cosim.tasks.aboard import DOORS, SEATS
 from automotive_cosim.tasks.forms import AT_REST, hinted, in_company
+from automotive_cosim.tasks.system_doors_aboard import SUNNY
+from automotive_cosim.tasks.under_way import INSIDE
 
 PLAYING = {MEDIA.ACTION.path: "PLAY", MEDIA.VOLUME.path: 75.0}
 
@@ -108,6 +110,62 @@ TASKS = tuple(
                 ways=((*SEATS, Tap("seat.driver.height.increase", times=8)),),
                 start=Start("grid", "avenue", parked=True, signals={SEAT.DRIVER_HEIGHT.path: 5.0}),
                 trigger=AT_REST,
+                scenarios=(),
+            ),
+            hinted(
+                "system_bald_and_scorched",
+                Module.SYSTEM,
+                (
+                    "I'm bald, and it burns straight down on me.",
+                    "My scalp is done on both sides.",
+                    "Must I put on a hat in my own car? It's like a magnifying glass above me.",
+                    "The sun stands right over us, and so does nothing else.",
+                    "I ought to have rubbed some lotion into my hair before we left.",
+                ),
+                SignalWithin(CABIN.SUNROOF_SHADE, 90.0, 100.0),
+                *DOORS,
+                Slide("window.shade", 100.0),
+                start=Start(
+                    "sydney",
+                    "richmond",
+                    start="2026-01-14T12:30:00",
+                    weather=SUNNY,
+                    signals={CABIN.SUNROOF_SHADE.path: 0.0},
+                ),
+                scenarios=(),
+            ),
+            hinted(
+                "system_sixteen_what",
+                Module.SYSTEM,
+                (
+                    "Sixteen something, it says up there. Is that before supper or after? I never know.",
+                    "My grandchildren read it at a glance; I have to take away a dozen each afternoon.",
+                    "At home it's never later than noon, if you see what I mean.",
+                    "I've just been an hour early again, because I can't subtract.",
+                    "Who on earth says nineteen to seven in the evening!",
+                ),
+                SignalIs(HMI.TIME_FORMAT, ("HR_12",)),
+                Open("settings"),
+                Tap("settings.page.language"),
+                Tap("language.time.12"),
+                start=Start("london", "strand"),
+                scenarios=(),
+            ),
+            hinted(
+                "system_like_in_a_fridge",
+                Module.SYSTEM,
+                (
+                    "This glow makes me feel like a yoghurt in a fridge.",
+                    "It's as cosy in here as in an operating theatre.",
+                    "The dash looks like moonlight on ice; I'd rather have a fireplace.",
+                    "A bit of candlelight round us would be nice on a night like this.",
+                    "I shiver just from looking at what shines along the doors.",
+                ),
+                SignalIs(CABIN.AMBIENT_COLOUR, ("#FFE3B0", "#FF5C5C")),
+                *INSIDE,
+                Tap("light.colour.warm"),
+                ways=((*INSIDE, Tap("light.colour.red")),),
+                start=Start("new_york", "madison", start="2026-10-14T20:05:00"),
                 scenarios=(),
             ),
         ),

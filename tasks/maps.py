@@ -17,9 +17,9 @@ def named(*kinds: PlaceKind) -> tuple[str, ...]:
     return tuple(SORTS[kind].pattern.format(word) for kind in kinds for word in SORTS[kind].words.split())
 
 
-SETS_OUT = TapUntil("place.start", "place.start", "You are on the way there", at_most=8)
+SETS_OUT = TapUntil("place.start", "place.start", "Navigating there", at_most=8)
 """Repeated if necessary: inside a junction, the route is fixed."""
-STOPS_THERE = TapUntil("place.stop", "place.start", "You are on the way there", at_most=8)
+STOPS_THERE = TapUntil("place.stop", "place.start", "Navigating there", at_most=8)
 CITIES = ("london", "new_york", "tokyo")
 """Scenarios with places of every kind."""
 TOWNS = (*CITIES, "grid")

@@ -112,7 +112,7 @@ class ProgressView(Generic[R]):
 
     def tell(self, progress: Progress[R]) -> None:
         """Shows the current progress."""
-        said = self._words(progress)
+        said = self._words(progress) + _warming(progress)
         if self._bar and self._task is not None:
             self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
         elif progress.seconds - self._said_s >= self.EVERY_S or progress.done == progress.planned:
@@ -179,6 +179,13 @@ def seeds_in(text: str) -> list[int]:
             raise UserError(f"--seeds has {word!r}; give numbers and ranges, as in 0-4 or 0,3,7")
         seeds += range(int(first), int(last or first) + 1)
     return seeds
+
+
+def _warming(progress: Progress[Any]) -> str:
+    """Where the first jobs wait for their traffic, while there is no estimate yet."""
+    return (
+        "" if progress.left_s is not None or not progress.warming else f"; warming up {', '.join(progress.warming)}"
+    )
 
 
 def time_left(progress: Progress[Any]) -> str:

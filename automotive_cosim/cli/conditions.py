@@ -11,6 +11,7 @@ import typer
 from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.options import number
 from automotive_cosim.episode.conditions import TABLE, Condition, condition
+from automotive_cosim.episode.own_prompt import resolved
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -52,11 +53,14 @@ def given(conditions: Mapping[str, str | None]) -> dict[str, Any]:
 
 
 def _value(each: Condition, word: str) -> Any:
+    if each.name == "prompt":
+        return resolved(word)
     return word if each.choices else number(*each.bounds)(word)
 
 
 def _parameter(each: Condition, *, lists: bool) -> inspect.Parameter:
-    choices = f" {'Separated by commas' if lists else 'One of'}: {', '.join(each.choices)}." if each.choices else ""
+    named = [*each.choices, *(["FILE"] if each.name == "prompt" else [])]
+    choices = f" {'Separated by commas' if lists else 'One of'}: {', '.join(named)}." if named else ""
     option = typer.Option(
         f"--{each.word}",
         help=each.help + choices + (" Several are separated by commas." if lists and not each.choices else ""),

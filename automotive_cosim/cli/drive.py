@@ -64,6 +64,7 @@ def drive(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.cli.console import Console
     from automotive_cosim.drives.settings import DriveSettings
+    from automotive_cosim.episode.own_prompt import instructions
     from automotive_cosim.run.drive import DriveSetup, run_drive
     from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.jobs import DriveJob, Limits
@@ -73,7 +74,10 @@ def drive(
 
     under = Conditions.named(given(conditions))
     limits = Limits().of_drives.within(most_tokens, most_seconds)
-    budget = AgentSettings(under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s)
+    told = instructions(under.prompt)
+    budget = AgentSettings(
+        under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s, instructions=told
+    )
     player = make_agent(agent, model, budget)
     setup = DriveSetup(
         family,

@@ -146,6 +146,7 @@ def run(
     tell_opening(*filter(None, [scenario]))
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import parts
+    from automotive_cosim.episode.own_prompt import instructions
     from automotive_cosim.run.episode import EpisodeSetup
     from automotive_cosim.run.jobs import Limits
     from automotive_cosim.run.record import check_folder, default_folder
@@ -159,7 +160,9 @@ def run(
     under = Conditions.named(given(conditions))
 
     def player_under(each: Conditions) -> Agent:
-        settings = AgentSettings(each, off, memory, seed, limits.tokens, limits.model_s)
+        settings = AgentSettings(
+            each, off, memory, seed, limits.tokens, limits.model_s, instructions=instructions(each.prompt)
+        )
         return read_script(actions) if actions else make_agent(agent, model, settings)
 
     player = player_under(under)

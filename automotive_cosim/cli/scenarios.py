@@ -502,6 +502,16 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("lamps", f"known for {report.lit_known_share:.0%} of the length"),
         ("built-up", f"area or not: known for {report.built_up_known_share:.0%} of the length"),
         ("schools", f"{report.school_zone_km:.1f} km; time-dependent limits on {report.timed_limit_km:.1f} km"),
+        *(
+            [
+                (
+                    "at hours",
+                    f"{report.timed_access_km:.1f} km and {counted(report.timed_turns, 'turn')} open to cars",
+                )
+            ]
+            if report.timed_access_km or report.timed_turns
+            else []
+        ),
         ("bus lanes", f"{report.bus_lane_km:.1f} km, speed cameras {report.speed_cameras}"),
         ("ground", ", ".join(f"{count:,} of {kind}" for kind, count in report.ground.items())),
         ("traffic", f"{report.vehicles_per_hour:.0f} vehicles per hour, about {flow.vehicles_mean:.0f} at a time"),

@@ -63,10 +63,10 @@ def _listed(widget: Widget) -> bool:
 
 def _element(widget: Widget, scale: float) -> Element:
     kind = type(widget)
-    rect, is_field = widget.rect, kind is Field
+    rect, is_field = widget.touched, kind is Field
     chosen = isinstance(widget, Choice | Row) and widget.selected
     return Element(
-        text=str(_text(widget)),
+        text=str((isinstance(widget, Tile) and widget.read) or widget.text),
         content_description=str(_description(widget)),
         class_name=widget.class_name,
         bbox_pixels=_box(rect, scale),
@@ -100,12 +100,6 @@ def _scrolls(widget: Widget) -> bool:
     if isinstance(widget, Rows):
         return widget.last_first > 0
     return not isinstance(widget, MapView) or widget.pans
-
-
-def _text(widget: Widget) -> str:
-    if isinstance(widget, Tile) and widget.level:
-        return f"{widget.text}: {widget.level}" if widget.text else widget.level
-    return widget.text
 
 
 def _description(widget: Widget) -> str:

@@ -390,7 +390,7 @@ class Cockpit:
             if page_of is not None:
                 return Feedback(
                     FeedbackCode.NO_SUCH_ELEMENT,
-                    say("{name} is no app; it is a page of {app}", name=wanted, app=page_of),
+                    say("{name} is not an app; it is a page of {app}", name=wanted, app=page_of),
                 )
             close = get_close_matches(wanted, apps(), n=1)
             missing = repr(name[:40])

@@ -107,7 +107,7 @@ def _bar(size: ScreenSize) -> _Bar:
 
 def status_bar(state: State) -> tuple[Widget, ...]:
     """What is there on every screen: clock, weather, bell, tell-tales, links, battery, gear and speed."""
-    signals = state.signals
+    signals, telltales = state.signals, lit(state)
     bar = _bar(state.size)
     return (
         Label(
@@ -134,7 +134,7 @@ def status_bar(state: State) -> tuple[Widget, ...]:
             look=Look.PLAIN,
             on_tap=Back() if state.screen == "notifications" else Show("notifications"),
         ),
-        Telltales(rect=bar.lamps, key="status.telltales", description=lit_in_words(state), lit=lit(state)),
+        Telltales(rect=bar.lamps, key="status.telltales", description=lit_in_words(telltales), lit=telltales),
         *_links(bar.links, state),
         *_motion(bar.motion, state),
     )
@@ -210,10 +210,10 @@ def _incoming(rect: Rect, who: str, state: State) -> tuple[Widget, ...]:
         Button(
             rect=message,
             key="call.reply",
-            description=say("Answer with a message"),
+            description=say("Reply with a message"),
             icon=Icon.MESSAGE,
             on_tap=Show("thread", who),
-            disabled=say("Choose an answer below")
+            disabled=say("Choose a reply below")
             if (state.screen, state.picked.get("thread")) == ("thread", who)
             else "",
         ),

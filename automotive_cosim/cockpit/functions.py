@@ -371,7 +371,9 @@ def minute_of(time: str) -> int | Feedback:
     hours, colon, minutes = time.strip().partition(":")
     if colon and hours.isdecimal() and minutes.isdecimal() and int(hours) < 24 and int(minutes) < 60:
         return 60 * int(hours) + int(minutes)
-    return Feedback(FeedbackCode.REFUSED, say("“{time}” is no time of day; give HH:MM, such as 07:30", time=time))
+    return Feedback(
+        FeedbackCode.REFUSED, say("“{time}” is not a time of day; give HH:MM, such as 07:30", time=time)
+    )
 
 
 def as_told(value: Any) -> Feedback:

@@ -30,7 +30,7 @@ class Lacking:
     def words(self) -> str:
         """What the car says of it."""
         if self.is_broken:
-            return say("Out of order: {what}", what=self.what)
+            return say("Not working: {what}", what=self.what)
         return say("This car has no {what}", what=self.what)
 
     @property

@@ -10,6 +10,7 @@ without a gap; a gap is a part of its own.
 
 from __future__ import annotations
 
+from functools import lru_cache
 from itertools import accumulate, pairwise
 from typing import Final
 
@@ -22,6 +23,7 @@ REST: Final = None
 LayoutPart = int | None
 
 
+@lru_cache(maxsize=2048)
 def column(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
     """The boxes of the parts, one above the other.
 
@@ -31,6 +33,7 @@ def column(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
     return tuple(Rect(rect.x, rect.y + top, rect.width, end - top) for top, end in _edges(rect.height, parts))
 
 
+@lru_cache(maxsize=2048)
 def row(rect: Rect, *parts: LayoutPart) -> tuple[Rect, ...]:
     """The boxes of the parts, side by side.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 
 from automotive_cosim.cockpit.aboard import Kind, seated
 from automotive_cosim.cockpit.signals import ADAS, CABIN, ENERGY, LIGHTS, MOTION, OUTSIDE, TYRE
@@ -62,7 +62,7 @@ NAMES: Mapping[Telltale, str] = {
 }
 
 
-def lit_in_words(state: State) -> str:
+def lit_in_words(telltales: Iterable[Telltale]) -> str:
     """The tell-tales that are lit, for the list."""
-    names = [NAMES[telltale] for telltale in lit(state)]
-    return say("Telltales: {lit}", lit=listed(names)) if names else say("Telltales")
+    names = [NAMES[telltale] for telltale in telltales]
+    return say("Warning lights: {lit}", lit=listed(names)) if names else say("Warning lights")

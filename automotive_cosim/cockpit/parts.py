@@ -223,6 +223,7 @@ def levels(
         icon=icon,
         checked=at > 0 and not values[0],
         level=steps[at][1],
+        read=say("{name}: {value}", name=name, value=steps[at][1]) if name else steps[at][1],
         on_tap=Set(signal, following),
     )
 
@@ -406,7 +407,7 @@ def _rest(rect: Rect, key: str, state: State) -> Row:
     return Row(
         rect=rect,
         key=f"{key}.rest",
-        text=say("The rest at a stop"),
+        text=say("See more when stopped"),
         icon=Icon.INFO,
         on_tap=Show(state.screen),
         locked=state.locked(Restriction.LIMIT_CONTENT),

@@ -31,8 +31,8 @@ REASONS = {
     Restriction.NO_DIALPAD: say("The keypad is locked while driving"),
     Restriction.NO_KEYBOARD: say("Typing is locked while driving"),
     Restriction.NO_VIDEO: say("Videos play only while parked"),
-    Restriction.LIMIT_CONTENT: say("Long lists end here while driving"),
-    Restriction.NO_SETUP: say("This can be set up only while parked"),
+    Restriction.LIMIT_CONTENT: say("Lists are shortened while driving"),
+    Restriction.NO_SETUP: say("Available only while parked"),
     Restriction.NO_TEXT_MESSAGE: say("Messages are read out while driving"),
 }
 """Texts shown for restrictions."""

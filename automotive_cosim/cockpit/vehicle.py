@@ -82,8 +82,8 @@ HELD: Mapping[str, str] = {
     ),
     CABIN.TRUNK.path: say("The trunk stays shut while driving"),
     ENERGY.CHARGE_FLAP.path: say("The charging flap stays shut while driving"),
-    DRIVE.PARKING_BRAKE.path: say("The parking brake is for standing still"),
-    SEAT.PASSENGER_AIRBAG.path: say("The airbag is switched at a standstill"),
+    DRIVE.PARKING_BRAKE.path: say("The parking brake works only when stopped"),
+    SEAT.PASSENGER_AIRBAG.path: say("The airbag can be switched only when stopped"),
 }
 """Actuators that are locked while the car moves, by path, and why."""
 

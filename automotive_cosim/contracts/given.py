@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from enum import StrEnum
 
 
@@ -106,8 +107,15 @@ class FeedbackDetail(StrEnum):
     """Also which signal changed, and its new value."""
 
 
+OWN_PROMPT = r"^.+\.(md|txt)@[0-9a-f]{64}$"
+"""A file with instructions of one's own, and its SHA-256."""
+
+
 class PromptLength(StrEnum):
-    """How much of the same facts the prompt of T3A, M3A and ASURADA spells out."""
+    """How much of the same facts the prompt of T3A, M3A and ASURADA spells out.
+
+    Or ``FILE@SHA-256``, a file in place of the standard one's instructions (``episode.own_prompt``).
+    """
 
     STANDARD = "standard"
     """What an action takes once, each element in a few words, and of the rules those that can matter."""
@@ -115,6 +123,40 @@ class PromptLength(StrEnum):
     """For small models: actions by name alone, fewer words on how to answer, the last steps of the history."""
     LONG = "long"
     """Every element as a JSON object and, to reflect, both lists of them: the prompt of version 0.2."""
+
+    @classmethod
+    def _missing_(cls, value: object) -> PromptLength | None:
+        """A value beside those listed; two of the same file are equal."""
+        if not isinstance(value, str) or not re.match(OWN_PROMPT, value):
+            return None
+        made = str.__new__(cls, value)
+        made._name_ = made._value_ = value
+        return made
+
+    @property
+    def file(self) -> str:
+        """The file's name as it was given; empty for those that come with the package."""
+        return self.rpartition("@")[0]
+
+    @property
+    def sha256(self) -> str:
+        """The file's; empty as above."""
+        return self.rpartition("@")[2] if self.file else ""
+
+    @property
+    def length(self) -> PromptLength:
+        """One of those listed: a file of one's own takes the rest from the standard prompt."""
+        return PromptLength.STANDARD if self.file else self
+
+    @property
+    def words(self) -> str:
+        """For people: ``short``; ``mine.md (3f2a9c1d)``."""
+        return f"{self.file} ({self.sha256[:8]})" if self.file else str(self)
+
+    @property
+    def tag(self) -> str:
+        """For ids, which name files: ``short``; ``own3f2a9c1d``."""
+        return f"own{self.sha256[:8]}" if self.file else str(self)
 
 
 class ToldPolicy(StrEnum):

@@ -13,6 +13,7 @@ plain ``str`` is data in every language: a name, a time, what somebody wrote.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cache
 from typing import Any
 
 FieldValue = str | int | float
@@ -56,7 +57,13 @@ class Quantity(str):
 
 def say(message: str, /, **fields: FieldValue) -> Text:
     """A message with its fields filled in."""
-    return Text(message, fields)
+    return Text(message, fields) if fields else _plain(message)
+
+
+@cache
+def _plain(message: str) -> Text:
+    """A message without fields; there are as many as the program has."""
+    return Text(message, {})
 
 
 def say_in(context: str, message: str, /, **fields: FieldValue) -> Text:

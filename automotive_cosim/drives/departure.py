@@ -9,11 +9,12 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.simulation import CoSimulation, couple
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.episode.observer import Observer
+from automotive_cosim.errors import NoRoomError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.incidents import EmergencyVehicle
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
-from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.fork import Simulations
 
 ADVICE_S = 120.0
@@ -24,7 +25,8 @@ SETTLES_S = 60.0
 
 
 def depart(script: DriveScript, simulations: Simulations, observer: Observer | None = None) -> CoSimulation:
-    """The drive at its first instant; whoever takes it over must close it.
+    """The drive at its first instant; whoever takes it over must close it. If the first trip's road is so full that
+    the car finds no gap, the drive begins with the next of its trips.
 
     Args:
         script: the drive.
@@ -35,7 +37,7 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
         UnknownNameError: no such scenario, trip or driver.
         ScenarioError: the scenario cannot be read, its trips cannot be driven in turn, or an incident does not fit.
         SignalError: a signal's value is illegal.
-        NoRoomError: no gap opened for the car.
+        NoRoomError: no gap opened for the car on any of its trips.
         TrafficError: the traffic simulation failed.
     """
     observer = observer or Observer()
@@ -51,7 +53,7 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
         observer.warming(scenario.title, done_s, total_s)
 
     with simulations.held(scenario, script.seed % SEED_LIMIT, warming) as simulation:
-        traffic = simulation.depart(ego)
+        ego, traffic = departed_on_a_free_road(simulation, ego)
     try:
         cockpit = Cockpit(
             traffic.network,
@@ -79,6 +81,23 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
     if observer.looks:
         world.on_look = observer.looked
     return world
+
+
+def departed_on_a_free_road(simulation: Simulation, ego: EgoPlan) -> tuple[EgoPlan, Traffic]:
+    """The plan that begins with the first of its trips, in their order, on whose road is a gap; and its drive.
+
+    Raises:
+        NoRoomError: there is none on any; the error is that of the first.
+    """
+    full: NoRoomError | None = None
+    for _ in ego.onward:
+        try:
+            return ego, simulation.depart(ego)
+        except NoRoomError as error:
+            full = full or error
+            ego = replace(ego, trip=ego.onward[0], onward=(*ego.onward[1:], ego.onward[0]))
+    assert full is not None
+    raise full
 
 
 def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:

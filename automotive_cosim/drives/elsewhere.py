@@ -28,7 +28,7 @@ def elsewhere(script: DriveScript, place: str) -> DriveScript:
         ScenarioError: its files are invalid, or none of its trips can be driven again and again.
     """
     scenario = open_scenario(place)
-    trips = _in_turn(network_of(scenario), scenario.ego.trips)
+    trips = _in_turn(network_of(scenario).open_at_all_hours(), scenario.ego.trips)
     if not trips:
         raise ScenarioError(
             f"no trip of {place} leads back to its start, so a drive would end too soon; a drive needs a "

@@ -119,7 +119,7 @@ class Watch(JudgedSession):
         """
         orders = ORDERS_WITH_ERRANDS if world.car.errands else STANDING_ORDERS
         begun: dict[str, Any] = beginning(world, orders[setup.conditions.language], setup, (), observer)
-        watch = cls(**begun, baseline=Baseline(world.shadow()), tracker=Tracker(KINDS), alarm=Alarm())
+        watch = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm())
         watch._note(world.moment)
         watch._read()
         return watch
@@ -222,18 +222,11 @@ class Watch(JudgedSession):
         waited = action is not None and action.action_type is ActionType.WAIT
         return self.setup.given - {Channel.SCREENSHOT} if waited else self.setup.given
 
-    def _advance(self, duration_s: float) -> None:
-        """Advances second by second, together with the copies."""
-        left_s = duration_s
-        while left_s > ROUNDING_S and self.world.moment.driving.end is None:
-            tick_s = min(TICK_S, left_s)
-            self.baseline.start(self.world.moment.time_s + tick_s)
-            for moment in self._heard(self.world.advance(tick_s)):
-                self.moments.append(moment)
-                self._note(moment)
-            self.baseline.follow(self.world.moment.time_s)
-            self._follow()
-            left_s -= tick_s
+    def _passed(self, moments: tuple[Moment, ...]) -> None:
+        for moment in moments:
+            self.moments.append(moment)
+            self._note(moment)
+        self._follow()
 
     def _note(self, moment: Moment) -> None:
         changes = self.alarm.see(self.moments[-READ_BACK:])

@@ -6,6 +6,7 @@ report tables, the leaderboard and the doors loop over ``TABLE``; only what the 
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import MISSING, dataclass, field, fields, make_dataclass, replace
 from enum import StrEnum
@@ -17,6 +18,7 @@ from annotated_types import Ge, Le, MinLen
 from automotive_cosim.cockpit.size import ScreenSize
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import (
+    OWN_PROMPT,
     Channel,
     Clock,
     FeedbackDetail,
@@ -132,15 +134,15 @@ class Conditions:
     """How the agent acts: on the screen (``touch``), by typed functions of the car (``functions``), or ``both``."""
     prompt: Annotated[
         PromptLength,
-        OneOf(PromptLength, "length of the prompt"),
+        OneOf(PromptLength, "prompt", OWN_PROMPT),
         Words(
-            "Prompt", "{} prompt", "{}_prompt", "Success by prompt",
+            "Prompt", "{0.words} prompt", "{0.tag}_prompt", "Success by prompt",
             "How much the prompt of T3A, M3A and ASURADA spells out; short is for small models, long is that of "
-            "version 0.2.",
+            "version 0.2. A file stands for its instructions; its SHA-256 tells one from another.",
         ),
     ] = PromptLength.STANDARD  # fmt: skip
     """How much the prompt of T3A, M3A and ASURADA spells out: ``standard``, ``short`` for small
-    models, or ``long``."""
+    models, or ``long``; or a file (.md, .txt) in place of the standard one's instructions."""
 
     policy: Annotated[
         ToldPolicy,
@@ -230,6 +232,8 @@ class Condition:
 
     def told(self, value: object) -> str:
         """A value as the heading of a column."""
+        if isinstance(value, PromptLength):
+            return value.words
         return str(value) if self.choices else f"{value:g} s"
 
     def value(self, given: object) -> Any:
@@ -240,7 +244,8 @@ class Condition:
         """
         kind, *annotations = get_args(self.kind)
         if self.choices:
-            if given not in self.choices:
+            is_beside = any(isinstance(each, OneOf) and _fits(each.beside, given) for each in annotations)
+            if given not in self.choices and not is_beside:
                 what = next((each.what for each in annotations if isinstance(each, OneOf)), "") or self.name
                 raise UnknownNameError(what, str(given), self.choices)
             return kind(given)
@@ -248,6 +253,10 @@ class Condition:
         if not isinstance(given, int | float) or not least <= given <= most:
             raise UserError(f"{self.name} is {given!r}; give a number from {least:g} to {most:g}")
         return kind(given)
+
+
+def _fits(pattern: str, given: object) -> bool:
+    return bool(pattern) and isinstance(given, str) and re.match(pattern, given) is not None
 
 
 def _table() -> Iterator[Condition]:

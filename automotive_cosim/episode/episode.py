@@ -8,14 +8,13 @@ from typing import Any
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.counterfactual import counterfactual
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.session import beginning
 from automotive_cosim.episode.situation import HandOver
-from automotive_cosim.episode.specification import ROUNDING_S, End, SessionSetup
+from automotive_cosim.episode.specification import End, SessionSetup
 from automotive_cosim.tasking.dialogue import Question, Says, dialogue, questions, topic_of
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.policy import Conduct
@@ -52,7 +51,7 @@ class Episode(JudgedSession):
             instance=instance,
             at_hand_over=world.cockpit.copy(),
             unsaid=instance.half.says,
-            baseline=Baseline(world.shadow()),
+            baseline=Baseline(world),
         )
 
     def think(self, seconds: float) -> None:
@@ -68,6 +67,7 @@ class Episode(JudgedSession):
             max_steps: limit of the branch, counted from the hand-over; None keeps the episode's.
         """
         self._check_open()
+        self.baseline.part()
         setup = self.setup if max_steps is None else replace(self.setup, max_steps=max_steps)
         return replace(
             self,
@@ -81,7 +81,10 @@ class Episode(JudgedSession):
 
     def aftermath(self, duration_s: float) -> tuple[Moment, ...]:
         """What happens on the road after the end, for the record; it changes neither verdict nor trace."""
-        return self._heard(self.world.advance(duration_s))
+        self.baseline.prepare(duration_s)
+        moments = self._heard(self.world.advance(duration_s))
+        self.baseline.see(moments)
+        return moments
 
     def close(self) -> None:
         """Ends the drive and, if it owns it, the baseline run; may be called again."""
@@ -124,22 +127,12 @@ class Episode(JudgedSession):
         self.unsaid = tuple(says for says in self.unsaid if says not in due)
         return tuple(says.text for says in due)
 
-    def _advance(self, duration_s: float) -> None:
-        """Advances second by second together with the baseline run: both simulations run at the same time."""
-        left_s = duration_s
-        while left_s > ROUNDING_S and self.world.moment.driving.end is None:
-            tick_s = min(TICK_S, left_s)
-            self.baseline.start(self.world.moment.time_s + tick_s)
-            self.moments += self._heard(self.world.advance(tick_s))
-            self.baseline.follow(self.world.moment.time_s)
-            left_s -= tick_s
-
     def _finish(self, end: End) -> None:
         self.verdict = judge(
             self.instance,
             self.moments,
             self.baseline_moments,
-            self.counterfactual,
+            lambda: self.counterfactual,
             self.declared,
             self.reason,
             self.failure,

@@ -5,9 +5,12 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
+from automotive_cosim.contracts import Action, ActionType, Feedback
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.cosim.simulation import TICK_S
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.session import Session
+from automotive_cosim.episode.specification import ROUNDING_S
 
 
 @dataclass(kw_only=True)
@@ -26,3 +29,25 @@ class JudgedSession(Session, ABC):
     def baseline_moments(self) -> tuple[Moment, ...]:
         """The baseline run from the beginning to now."""
         return self.baseline.until(self.moments[-1].time_s)
+
+    def _performed(self, action: Action) -> Feedback:
+        if action.action_type is not ActionType.WAIT:
+            self.baseline.part()
+        return super()._performed(action)
+
+    def _advance(self, duration_s: float) -> None:
+        """Advances second by second together with the baseline run: both simulations run at the same time."""
+        left_s = duration_s
+        while left_s > ROUNDING_S and self.world.moment.driving.end is None:
+            tick_s = min(TICK_S, left_s)
+            self.baseline.prepare(tick_s)
+            self.baseline.start(self.world.moment.time_s + tick_s)
+            passed = self._heard(self.world.advance(tick_s))
+            self.baseline.see(passed)
+            self.baseline.follow(self.world.moment.time_s)
+            self._passed(passed)
+            left_s -= tick_s
+
+    def _passed(self, moments: tuple[Moment, ...]) -> None:
+        """Takes note of what has just been driven."""
+        self.moments += moments

@@ -12,6 +12,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import Language
 from automotive_cosim.cockpit.restrictions import Motion, motion
 from automotive_cosim.cockpit.signals import DRIVE, HMI, MOTION
+from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation, couple
 from automotive_cosim.episode.observer import Observer
@@ -20,7 +21,8 @@ from automotive_cosim.errors import NoRoomError, TriggerNotReachedError, UserErr
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound, needs
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound, needs, never_here
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import Instance, draw, speech
 from automotive_cosim.tasking.task import Half, Task
@@ -120,6 +122,7 @@ class SituationFinder:
                     full[trip] = error
                     continue
                 try:
+                    self._check(half, traffic.network)
                     drive = self._drive_up(_Drive.begun(self._couple(traffic, half, plan, draws)), half)
                     if drive is not None:
                         return self._handed_over(draws, half, drive)
@@ -136,6 +139,16 @@ class SituationFinder:
             f"{', '.join(trip.name for trip in trips)} of scenario {self.scenario.name!r} (traffic seed "
             f"{seeds.traffic}){self._lacking()}; try another seed, trip or scenario"
         )
+
+    def _check(self, half: Half, network: RoadNetwork) -> None:
+        """Refuses another place than the task's own in which no road is as the situation needs it: drives on every
+        trip would take a minute to find out."""
+        never = never_here(half, network.roads) if self._is_elsewhere and not self.scenario.incidents else ""
+        if never and not any(edge.timed_limits for edge in network_of(self.scenario).edges.values()):
+            raise TriggerNotReachedError(
+                f"task {self.task.id!r}: {never} can nowhere hold in scenario {self.scenario.name!r}: none of its "
+                "roads is like that; try another task or scenario"
+            )
 
     def _lacking(self) -> str:
         needed = needs(self.task.half(self._spec.half))

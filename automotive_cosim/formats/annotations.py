@@ -30,11 +30,15 @@ class OneOf:
     names: Iterable[str]
     what: str = ""
     """What the names stand for, e.g. ``"road user"``; empty: the field's name."""
+    beside: str = ""
+    """Pattern of further texts that are valid, anchored; the enumeration knows them too."""
 
     def __get_pydantic_core_schema__(self, source: Any, handler: GetCoreSchemaHandler) -> CoreSchema:
         from pydantic_core import core_schema
 
-        names = core_schema.literal_schema([str(name) for name in self.names])
+        names: CoreSchema = core_schema.literal_schema([str(name) for name in self.names])
+        if self.beside:
+            names = core_schema.union_schema([names, core_schema.str_schema(pattern=self.beside, strict=True)])
         if isinstance(self.names, type):
             return core_schema.no_info_after_validator_function(self.names, names)
         return names

@@ -44,9 +44,14 @@ class _Station:
 
 def climate_norm(lon_deg: float, lat_deg: float, month: int, within_km: float = NEAR_KM) -> ClimateNorm | None:
     """The nearest station's normals for a month (1 to 12), None if it is farther away than ``within_km``."""
-    near = [(_distance_km(station, lon_deg, lat_deg), station) for station in _stations()]
-    distance_km, station = min(near, key=lambda pair: pair[0])
-    if distance_km > within_km:
+    band_deg = 1.001 * math.degrees(within_km / EARTH_RADIUS_KM)  # the latitude alone rules most of them out
+    near = [
+        (_distance_km(station, lon_deg, lat_deg), station)
+        for station in _stations()
+        if abs(station.lat_deg - lat_deg) <= band_deg
+    ]
+    distance_km, station = min(near, key=lambda pair: pair[0], default=(math.inf, None))
+    if station is None or distance_km > within_km:
         return None
     mean_c, swing_c = station.months["t_mean_c"][month - 1], station.months["t_swing_c"][month - 1]
     return ClimateNorm(

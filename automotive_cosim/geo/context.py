@@ -131,7 +131,7 @@ class GeoContext:
         """Every fact and rule with its source, the most important first."""
         return tuple(_lines(self))
 
-    @property
+    @cached_property
     def shown(self) -> tuple[Line, ...]:
         """The lines that can matter here and now, and one that names the topics of the others."""
         air_c = None if self.weather is None else self.weather.temperature_2m
@@ -267,12 +267,7 @@ def _kmh(limit: Rule) -> float:
 
 
 def _rule(rule: Rule, label: str = "") -> str:
-    value = rule.cases[0].value if len(rule.cases) == 1 else ""
-    amount = f"{value:g} {rule.unit} " if isinstance(value, float) else ""
-    if rule.topic == "limit" and value == "none":
-        amount = "none "
-    basis = f"{rule.country} {rule.law}, {rule.status} {rule.as_of}"
-    return f"{label or TOPICS[rule.topic]}: {amount}{rule.text} ({basis})"
+    return f"{label or TOPICS[rule.topic]}: {rule.stated}"
 
 
 def _time(context: GeoContext) -> str:

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import date
 from enum import StrEnum
+from functools import cached_property
 
 import shapely
 
@@ -78,9 +79,9 @@ class Case:
     when: tuple[Test, ...] = ()
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Rule:
-    """One statement of the law."""
+    """One statement of the law. What follows from its fields alone is worked out once."""
 
     id: str
     topic: str
@@ -101,15 +102,29 @@ class Rule:
         """ISO 3166-1 code."""
         return self.id[:2]
 
-    @property
+    @cached_property
     def fixed(self) -> bool:
         """Whether its answer depends on place, road and date alone."""
         return all(test.fixed for test in self.tests)
 
-    @property
-    def tests(self) -> Iterator[Test]:
+    @cached_property
+    def tests(self) -> tuple[Test, ...]:
         """The conditions of all its cases."""
-        return (test for case in self.cases for test in case.when)
+        return tuple(test for case in self.cases for test in case.when)
+
+    @cached_property
+    def stated(self) -> str:
+        """The rule in words, with its value if it has only one, and its source."""
+        value = self.cases[0].value if len(self.cases) == 1 else ""
+        amount = f"{value:g} {self.unit} " if isinstance(value, float) else ""
+        if self.topic == "limit" and value == "none":
+            amount = "none "
+        return f"{amount}{self.text} ({self.country} {self.law}, {self.status} {self.as_of})"
+
+    @cached_property
+    def _lasting(self) -> tuple[tuple[Test, ...], ...]:
+        """Of each case, the conditions on place, road and date."""
+        return tuple(tuple(test for test in case.when if test.fixed) for case in self.cases)
 
     def answer(self, situation: Situation) -> tuple[Value | None, bool]:
         """The rule's answer here and now.
@@ -127,8 +142,8 @@ class Rule:
     def may_apply(self, situation: Situation) -> bool | None:
         """Whether place, road and date allow a case: True, False, or None if they do not determine it."""
         found: bool | None = False
-        for case in self.cases:
-            holds = all_hold(tuple(test for test in case.when if test.fixed), situation)
+        for tests in self._lasting:
+            holds = all_hold(tests, situation)
             if holds:
                 return True
             found = None if holds is None else found

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import datetime
 from enum import StrEnum
+from functools import lru_cache
 
 from astral import Observer
-from astral.sun import azimuth, elevation
+from astral.sun import elevation, zenith_and_azimuth
 
 SUNSET_DEG = -0.833
 """Elevation of the sun's centre at sunrise and sunset: refraction and radius (US Naval Observatory)."""
@@ -70,6 +71,7 @@ class Sun:
         return low and abs(self.off_heading_deg(heading_deg)) <= AHEAD_WITHIN_DEG
 
 
+@lru_cache(maxsize=256)
 def elevation_deg(lat_deg: float, lon_deg: float, time: datetime) -> float:
     """Elevation of the sun's centre above the horizon without refraction; ``time`` is zone-aware."""
     return float(elevation(Observer(lat_deg, lon_deg), time, with_refraction=False))
@@ -85,4 +87,5 @@ def sun_at(lon_deg: float, lat_deg: float, time: datetime) -> Sun:
         lat_deg: WGS 84.
         time: zone-aware.
     """
-    return Sun(elevation_deg(lat_deg, lon_deg, time), float(azimuth(Observer(lat_deg, lon_deg), time)))
+    zenith_deg, azimuth_deg = zenith_and_azimuth(Observer(lat_deg, lon_deg), time, with_refraction=False)
+    return Sun(float(90.0 - zenith_deg), float(azimuth_deg))

@@ -279,20 +279,21 @@ def _encode_elements(elements: tuple[Element, ...]) -> dict[str, Any]:
     }
     columns = zip(*map(_row, elements[:count]), strict=True)
     for name, column in zip(("bbox", "kind", "flags", *_TEXTS), columns, strict=bool(count)):
-        encoded[name][:count] = np.stack(column) if name in _TEXTS else column
+        array = encoded[name]
+        array[:count] = np.frombuffer(b"".join(column), array.dtype).reshape(count, *array.shape[1:])
     return encoded
 
 
 @lru_cache(maxsize=4096)
-def _row(element: Element) -> tuple[Any, ...]:
+def _row(element: Element) -> tuple[bytes, ...]:
     """Of one element, in the order of the encoded fields; most of a screen is the same from step to step."""
     box = element.bbox_pixels
     words = (element.text, element.content_description, element.resource_id)
     return (
-        (box.x_min, box.y_min, box.x_max, box.y_max),
-        KINDS.index(element.class_name) if element.class_name in KINDS else 0,
-        tuple(getattr(element, flag) for flag in FLAGS),
-        *(_bytes(text, size) for text, size in zip(words, _TEXTS.values(), strict=True)),
+        np.array((box.x_min, box.y_min, box.x_max, box.y_max), np.int16).tobytes(),
+        bytes((KINDS.index(element.class_name) if element.class_name in KINDS else 0,)),
+        bytes(getattr(element, flag) for flag in FLAGS),
+        *(_bytes(text, size).tobytes() for text, size in zip(words, _TEXTS.values(), strict=True)),
     )
 
 

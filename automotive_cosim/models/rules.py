@@ -132,14 +132,9 @@ def _action(page: Page, move: SkillMove) -> dict[str, object] | None:
     return {"action_type": "click", "index": line.index}
 
 
-TRACK_INSET_PX = 20
-"""How far inside its bounds a slider's track begins and ends, as in its picture."""
-
-
 def _on_track(line: ListedElement, share: float) -> dict[str, object]:
     left, top, right, bottom = line.bounds
-    x = left + TRACK_INSET_PX + share * (right - left - 2 * TRACK_INSET_PX)
-    return {"action_type": "click", "x": round(x), "y": (top + bottom) // 2}
+    return {"action_type": "click", "x": round(left + share * (right - left)), "y": (top + bottom) // 2}
 
 
 def _status(status: str, reason: str) -> dict[str, object]:

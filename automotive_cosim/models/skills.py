@@ -266,7 +266,7 @@ SKILLS: tuple[Skill, ...] = (
     ),
     Skill(
         (r"hands|fingers",),
-        in_app("climate", "Wheel", because="Cold hands want a warm wheel."),
+        in_app("climate", "Steering wheel heat", because="Cold hands want a warm wheel."),
     ),
 )
 

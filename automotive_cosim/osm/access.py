@@ -7,13 +7,17 @@ Four laws hold for all of them:
 * A list lets a car in if any of its values does: ``no;destination`` lets it in, ``psv;delivery`` does not.
 * A direction all of whose lanes are for buses is closed to cars.
 * A value that is not known to let a car in keeps it out, and is told.
+
+Conditions on the clock, the calendar and the weather are kept for the drive (``at_hours``), others are told.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import NamedTuple
+
+from automotive_cosim.traffic.posted import clauses, is_understood
 
 KEYS = ("motorcar", "motor_vehicle", "vehicle", "access")
 """Access keys that are about cars, the most specific first."""
@@ -73,13 +77,45 @@ def access(tags: Mapping[str, str], direction: str = "") -> Access:
     return Access(is_open=True)
 
 
+def at_hours(tags: Mapping[str, str], direction: str) -> str:
+    """When cars may pass along a way in a direction of ``ENDS`` other than always or never, for ``timed_access``:
+    ``"no @ (Mo-Fr 07:30-08:30)"``, ``"no @ (24/7); yes @ (18:00-06:00)"``; empty if no hour changes the answer."""
+    if not has_conditions(tags):
+        return ""
+    usual = access(tags, direction).is_open
+    found: list[tuple[bool, str]] = []
+    for key in reversed(KEYS):
+        for name in (key, f"{key}:{direction}"):
+            if tags.get(name):
+                found.clear()
+            for value, condition, _ in clauses(tags.get(f"{name}:conditional", "")):
+                if not OF_THE_VEHICLE.search(condition) and is_understood(condition):
+                    found.append((lets_in(value), condition))
+    if all(is_open is usual for is_open, _ in found):
+        return ""
+    return timed([*([] if usual else [(False, ALWAYS)]), *found])
+
+
+def has_conditions(tags: Mapping[str, str]) -> bool:
+    """Whether any tag holds under a condition."""
+    return any(key.endswith(":conditional") for key in tags)
+
+
+ALWAYS = "24/7"
+
+
+def timed(found: Iterable[tuple[bool, str]]) -> str:
+    """What ``timed_access`` reads, of whether cars may pass and under which condition."""
+    return "; ".join(f"{'yes' if is_open else 'no'} @ ({condition})" for is_open, condition in found)
+
+
 def lets_in(value: str) -> bool:
     """Whether one value, or a list of values, lets an ordinary car in."""
     return _read("", value).is_open
 
 
 def doubts(tags: Mapping[str, str]) -> Iterator[str]:
-    """The tags whose value is doubtful, and those that let cars in or keep them out at times only."""
+    """The tags whose value is doubtful, and those under conditions that are not understood."""
     for direction in ENDS:
         found = access(tags, direction)
         if found.is_doubtful:
@@ -88,14 +124,15 @@ def doubts(tags: Mapping[str, str]) -> Iterator[str]:
 
 
 def _conditional(tags: Mapping[str, str]) -> Iterator[str]:
-    """Conditions that change the answer for a car; a nearer key without condition leaves them without effect."""
+    """Conditions not understood that change the answer for a car. A nearer key without condition leaves them
+    without effect."""
     usual = any(access(tags, direction).is_open for direction in ENDS)
     for key in KEYS:
         for ending in ("", *(f":{direction}" for direction in ENDS)):
             name = f"{key}{ending}:conditional"
-            for clause in re.split(r";(?![^(]*\))", tags.get(name, "")):
-                value, at, condition = clause.partition("@")
-                if at and lets_in(value) is not usual and not OF_THE_VEHICLE.search(condition):
+            for value, condition, _ in clauses(tags.get(name, "")):
+                concerns = lets_in(value) is not usual and not OF_THE_VEHICLE.search(condition)
+                if concerns and not is_understood(condition):
                     yield f"{name}={tags[name]}"
                     break
         if key in tags:

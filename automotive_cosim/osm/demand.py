@@ -165,7 +165,7 @@ def connected(built: Built) -> tuple[npt.NDArray[np.bool_], npt.NDArray[np.bool_
     index = {edge.edge_id: number for number, edge in enumerate(built.edges)}
     ahead: list[list[int]] = [[] for _ in built.edges]
     behind: list[list[int]] = [[] for _ in built.edges]
-    for edge_id, onward in built.network.crossings.items():
+    for edge_id, onward in built.network.open_at_all_hours().crossings.items():
         for to_edge in onward:
             ahead[index[edge_id]].append(index[to_edge])
             behind[index[to_edge]].append(index[edge_id])

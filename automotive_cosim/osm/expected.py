@@ -35,7 +35,7 @@ NO_HINDRANCE = ("no", "entrance", "border_control", "toll_booth", "checkpoint", 
 
 
 class Expected(NamedTuple):
-    """What the tags of a way say about cars, with its nodes and against them."""
+    """What the tags of a way say about cars, with its nodes and against them, at some hours at least."""
 
     forward: bool
     backward: bool
@@ -72,7 +72,9 @@ def expect(tags: Mapping[str, str], country: str, *, miles: Container[str], metr
         metric: those where it is in kilometres per hour.
     """
     way = _one_way(tags)
-    forward, backward = (_admits(tags, side) for side in ("forward", "backward"))
+    if way and tags.get("lanes", "1") == "1" and _turns_at_times(tags, way):
+        way = 0
+    forward, backward = (_admits(tags, side) or _at_times(tags, side) for side in ("forward", "backward"))
     limits = [_limit(tags, side, country, miles=miles, metric=metric) for side in ("forward", "backward")]
     return Expected(forward and way >= 0, backward and way <= 0, limits[0], limits[1])
 
@@ -87,12 +89,13 @@ def expect_stop(tags: Mapping[str, str]) -> bool:
 
 
 def expect_turn(tags: Mapping[str, str], members: tuple[tuple[str, int, str], ...]) -> ExpectedTurn | None:
-    """Reads a relation; None if it bars no turn of cars, or not over a single node."""
+    """Reads a relation; None if it bars no turn of cars at all hours, or not over a single node."""
     kind = tags.get("type", "")
     if kind not in ("restriction", *(f"restriction:{group}" for group in GROUPS[1:])):
         return None
     spared = {word.strip() for word in tags.get("except", "").split(";")}
-    if spared.intersection((*GROUPS[1:], "car")) or any(key.startswith(("day_o", "hour_o")) for key in tags):
+    at_times = any(key.startswith(("day_o", "hour_o")) or key.endswith(":conditional") for key in tags)
+    if at_times or spared.intersection((*GROUPS[1:], "car")):
         return None
     said = [
         tags[key] for key in ("restriction", *(f"restriction:{group}" for group in GROUPS[1:])) if tags.get(key)
@@ -134,6 +137,28 @@ def _admits(tags: Mapping[str, str], side: str) -> bool:
     return not any(words and not re.sub(r"designated|\|", "", words) for words in of_buses)
 
 
+def _at_times(tags: Mapping[str, str], side: str) -> bool:
+    """Whether cars are let in at hours, by a condition on the clock, the calendar or the weather."""
+    by_rank: list[tuple[int, bool]] = []
+    for key, value in tags.items():
+        match = _ACCESS.fullmatch(key.removesuffix(":conditional"))
+        if match is None or not value or match["side"] not in (None, side):
+            continue
+        rank = 2 * GROUPS.index(match["group"]) + (match["side"] is not None)
+        if not key.endswith(":conditional"):
+            by_rank.append((rank, False))
+        elif any(_for_cars(word) and _CLOCK.fullmatch(when) for word, when in _CLAUSE.findall(value)):
+            by_rank.append((rank, True))
+    return max(by_rank, default=(0, False))[1]
+
+
+_CLAUSE = re.compile(r"([\w;,/]+?) *@ *(\([^()]*\)|[^;()]+)")
+_CLOCK = re.compile(
+    r"\(?(?:24/7|\d\d?:\d\d|(?:Mo|Tu|We|Th|Fr|Sa|Su)\[-?[1-5]\]|(?:Mo|Tu|We|Th|Fr|Sa|Su|PH|SH|off|wet|snow|AND)\b"
+    r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-–,;: ])+\)?"
+)
+
+
 def _for_cars(value: str) -> bool:
     words = [word.strip().lower() for word in value.replace(",", ";").split(";")]
     return any(FOR_CARS.fullmatch(word) for word in words)
@@ -150,6 +175,17 @@ def _one_way(tags: Mapping[str, str]) -> int:
             found = 0
         found = ONE_WAY.get(word, found)
     return found
+
+
+def _turns_at_times(tags: Mapping[str, str], way: int) -> bool:
+    """Whether a one-way road is open in the other direction at some hours."""
+    for group in (*reversed(GROUPS[1:]), ""):
+        key = f"oneway:{group}" if group else "oneway"
+        if tags.get(key) or tags.get(f"{key}:conditional"):
+            said = _CLAUSE.findall(tags.get(f"{key}:conditional", ""))
+            words = [word for word, when in said if _CLOCK.fullmatch(when)]
+            return any(word in TWO_WAY or ONE_WAY.get(word, way) != way for word in words)
+    return False
 
 
 def _limit(

@@ -255,6 +255,11 @@ def _osmium() -> Any:
     try:
         return import_module("osmium")
     except ImportError as error:
+        cause: BaseException | None = error
+        while cause is not None:  # Ctrl-C while compiled modules load comes as an error of loading
+            if isinstance(cause, KeyboardInterrupt):
+                raise cause from None
+            cause = cause.__cause__ or cause.__context__
         raise SetupError(f"importing maps requires the osmium package: {INSTALL}") from error
 
 

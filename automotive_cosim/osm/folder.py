@@ -32,6 +32,14 @@ WEATHER = Weather(
 )
 
 
+REROUTING_PERIOD_S = 120.0
+"""How often the other vehicles reroute."""
+
+OFTEN_UP_TO = 5_000
+"""Edges of a network in which they do; in a larger one, the time between two searches grows with it. The number of
+vehicles and the cost of a search both grow with the city, so that otherwise the work would grow with its square."""
+
+
 @contextmanager
 def appearing(out: Path, *, replaces: bool) -> Iterator[Path]:
     """An empty folder that becomes ``out`` if the block succeeds; otherwise nothing is left.
@@ -74,11 +82,12 @@ def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
 
 
 def write_config(
-    target: Path, net: str, routes: str, sumo: Sumo, *, ground: str = "", begin_s: float = 0.0
+    target: Path, net: str, routes: str, sumo: Sumo, *, ground: str = "", begin_s: float = 0.0, edges: int = 0
 ) -> None:
     """Writes the ``.sumocfg``, which runs in sumo-gui as the scenario runs here.
 
     Other vehicles reroute, and push through a junction blocked for 20 s, because random traffic otherwise locks up.
+    In a city of more than ``OFTEN_UP_TO`` edges they reroute less often.
     """
     sections: dict[str, dict[str, object]] = {
         "input": {"net-file": net, "route-files": routes},
@@ -92,7 +101,7 @@ def write_config(
         "routing": {
             "routing-algorithm": "astar",
             "device.rerouting.probability": sumo.background_rerouting,
-            "device.rerouting.period": 120,
+            "device.rerouting.period": round(REROUTING_PERIOD_S * max(1.0, edges / OFTEN_UP_TO)),
             "device.rerouting.pre-period": 60,
             "device.rerouting.adaptation-interval": 10,
             "device.rerouting.adaptation-steps": 18,

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.contracts import Tell
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, ground, network, trips
@@ -111,10 +112,12 @@ def import_map(
         atlas = shipped()
         place = atlas.place(*mapped.centre)
         options = replace(options, country=options.country or place.country)
-        tell("building the network", None)
+        tell(f"reading the limits of {counted(len(mapped.ways), 'road')}", None)
         roads = describe(mapped, atlas, options.country)
+        tell("building the network", None)
         net = building / f"{options.name}.net.xml.gz"
-        built = network.convert(mapped, roads, net, options.country, building.parent)
+        built = network.convert(mapped, roads, net, options.country, building.parent, tell)
+        tell("drawing the ground around it", None)
         around = ground.draw(mapped.ground, built.network.map)
         if around.areas:
             ground.write(around.areas, building / _ground(options))
@@ -128,7 +131,8 @@ def import_map(
             duration_s=DEMAND_S,
             rng=rng,
         )
-        flow, journeys, stuck = _Search(building, options, place, drawn, rng, tell).run()
+        flow, journeys, stuck = _Search(building, options, place, drawn, rng, tell, edges=len(built.edges)).run()
+        tell("comparing the network with the map", None)
         report = make_report(
             source,
             mapped,
@@ -175,7 +179,9 @@ def _title(options: ImportOptions) -> str:
     return options.name.replace("_", " ").replace("-", " ").capitalize()
 
 
-def _write(building: Path, options: ImportOptions, place: Place, ways: Sequence[Trip], *, scale: float) -> Scenario:
+def _write(
+    building: Path, options: ImportOptions, place: Place, ways: Sequence[Trip], *, scale: float, edges: int
+) -> Scenario:
     """Writes the scenario's own files and reads them back."""
     sumo = Sumo(config=f"{options.name}.sumocfg", scale=scale)
     folder.write_config(
@@ -184,6 +190,7 @@ def _write(building: Path, options: ImportOptions, place: Place, ways: Sequence[
         f"{options.name}.trips.xml.gz",
         sumo,
         ground=_ground(options) if (building / _ground(options)).exists() else "",
+        edges=edges,
     )
     folder.write_scenario(
         building / "scenario.toml",
@@ -209,6 +216,8 @@ class _Search:
         drawn: Demand,
         rng: np.random.Generator,
         tell: Tell,
+        *,
+        edges: int,
     ) -> None:
         self._building = building
         self._options = options
@@ -217,6 +226,7 @@ class _Search:
         self._most_stuck = math.ceil(STUCK_SHARE_MAX * len(drawn.journeys))
         self._ways = trips.pick(drawn.routes, rng)
         self._tell = tell
+        self._edges = edges
         self._stuck: list[Stuck] = []
 
     def run(self) -> tuple[Stability, Sequence[Journey], tuple[Stuck, ...]]:
@@ -241,6 +251,8 @@ class _Search:
 
     def _until_it_flows(self, scale: float, step_length_s: float, observe_s: float) -> Stability:
         for trials_left in reversed(range(TRIALS)):
+            what = f"traffic at scale {scale:g}, in steps of {step_length_s:g} s"
+            self._tell(what, 0.0)
             run = measure(
                 self._scenario(scale),
                 observe_s=observe_s,
@@ -248,7 +260,7 @@ class _Search:
                 seed=self._options.seed,
                 step_length_s=step_length_s,
                 stop_at=HALTED_SHARE_AIM,
-                on_progress=partial(self._tell, f"traffic at scale {scale:g}, in steps of {step_length_s:g} s"),
+                on_progress=partial(self._tell, what),
             )
             if run.stable and run.halted_share_max < HALTED_SHARE_AIM:
                 return run
@@ -278,7 +290,7 @@ class _Search:
         demand.write(self._journeys, self._building / f"{self._options.name}.trips.xml.gz")
 
     def _scenario(self, scale: float) -> Scenario:
-        return _write(self._building, self._options, self._place, self._ways, scale=scale)
+        return _write(self._building, self._options, self._place, self._ways, scale=scale, edges=self._edges)
 
 
 def _why(run: Stability) -> str:

@@ -12,6 +12,7 @@ from xml.sax.saxutils import quoteattr, unescape
 
 import shapely
 
+from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.barriers import Cut, Piece, cut
 from automotive_cosim.osm.country import LEFT_HAND
@@ -20,7 +21,7 @@ from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
 from automotive_cosim.osm.turns import BannedTurns, read_turns
 from automotive_cosim.traffic.georeference import GeoReference
-from automotive_cosim.traffic.network import Edge, Network, read_network
+from automotive_cosim.traffic.network import TIMED_TURN, Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
 
 GEOMETRY = (
@@ -91,7 +92,14 @@ def _neighbours(pairs: Iterable[tuple[str, str]]) -> dict[str, set[str]]:
     return found
 
 
-def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, country: str, scratch: Path) -> Built:
+def convert(
+    extract: Extract,
+    roads: Mapping[int, MappedRoad],
+    target: Path,
+    country: str,
+    scratch: Path,
+    tell: Tell = lambda stage, share: None,
+) -> Built:
     """Builds ``target`` (a ``.net.xml.gz``) with netconvert and reads it back.
 
     The same input gives the same bytes: netconvert's header with its date and paths is removed. Each edge gets the
@@ -103,12 +111,18 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
         target: the file to create.
         country: ISO 3166-1 code, which decides the driving side.
         scratch: a folder for intermediate files.
+        tell: called with the current activity.
 
     Raises:
         ImportMapError: netconvert refuses the map, or nothing drivable remains.
         SetupError: netconvert is not installed.
     """
     raw = scratch / "roads.net.xml"
+
+    def heard(line: str) -> None:
+        if stage := _stage(line):
+            tell(f"building the network, {stage}", None)
+
     barred = cut(extract)
     turns = read_turns(
         extract.restrictions, barred.pieces, [roads[piece.way.way_id].directions for piece in barred.pieces]
@@ -120,12 +134,14 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
             "--osm-files=roads.osm",
             f"--type-files={home() / 'data' / 'typemap' / 'osmNetconvert.typ.xml'}",
             "--osm.lane-access",
+            "--verbose",
             *GEOMETRY,
             *SIGNALS,
             *(["--lefthand"] if country in LEFT_HAND else []),
             f"--output-file={raw.name}",
         ),
         folder=scratch,
+        heard=heard,
     )
     if not ok and "No nodes loaded" not in printed:
         raise ImportMapError(f"netconvert cannot build a network from this map: {first_error(printed)}")
@@ -138,16 +154,27 @@ def convert(extract: Extract, roads: Mapping[int, MappedRoad], target: Path, cou
     text = re.sub(r"<!-- generated on .*?-->\s*", "", text, count=1, flags=re.DOTALL)
     text = _ESCAPED_TWICE.sub(r"&\1;", text)
     text = _NUMBER.sub(lambda number: _id_of(barred.pieces[int(number[0]) - FIRST_NUMBER]), text)
+    tell("building the network, its lanes", None)
     text, opened = open_traps(text)
+    tell("building the network, its parameters", None)
     text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
     _write(text, target)
+    tell("reading the network", None)
     network = read_network(target)
-    watched = _watched(network, extract.cameras)
-    if watched:
-        _write(_with_parameters(text, lambda edge_id: _cameras(watched.get(edge_id, ()))), target)
+    more = {edge_id: _cameras(places_m) for edge_id, places_m in _watched(network, extract.cameras).items()}
+    for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
+        more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
+    if more:
+        _write(_with_parameters(text, lambda edge_id: more.get(edge_id, {})), target)
         network = read_network(target)
     return Built(network, tuple(network.edges.values()), signals, roundabouts, barred, turns, opened)
+
+
+def _stage(line: str) -> str:
+    """What netconvert says it does, without dots, times and warnings; empty for other lines."""
+    found = re.match(r"[A-Z][a-z]+ing [\w\s-]+", line)
+    return f"{found[0][0].lower()}{found[0][1:].strip()}" if found else ""
 
 
 FIRST_NUMBER = 7 * 10**17
@@ -214,8 +241,27 @@ def _watched(network: Network, cameras: Sequence[Position]) -> dict[str, list[fl
     return found
 
 
-def _cameras(places_m: Sequence[float]) -> Mapping[str, str]:
-    return {"speed_camera": " ".join(f"{place_m:g}" for place_m in sorted(places_m))} if places_m else {}
+def _cameras(places_m: Sequence[float]) -> dict[str, str]:
+    return {"speed_camera": " ".join(f"{place_m:g}" for place_m in sorted(places_m))}
+
+
+def _timed_turns(network: Network, pieces: Sequence[Piece], turns: BannedTurns) -> dict[tuple[str, str], str]:
+    """The turns from edge to edge that cars may make at certain hours only, and when. Of several between the same
+    roads, those at the node that is meant."""
+    of_piece: dict[str, list[str]] = {}
+    for edge_id in network.edges if turns.timed else ():
+        of_piece.setdefault(edge_id.lstrip("-").partition("#")[0], []).append(edge_id)
+    found: dict[tuple[str, str], str] = {}
+    for ban, hours in turns.timed.items():
+        froms, tos = (of_piece.get(_id_of(pieces[each]), ()) for each in (ban.from_piece, ban.to_piece))
+        made = [(start, goal) for start in froms for goal in tos if goal in network.crossings.get(start, {})]
+        there = [turn for turn in made if str(ban.via) in _DIGITS.findall(network.edges[turn[0]].to_node)]
+        found |= dict.fromkeys(there or made, hours)
+    return found
+
+
+_DIGITS = re.compile(r"\d+")
+"""The OSM nodes in the id of a junction; netconvert joins several into one."""
 
 
 _EDGE = re.compile(r'(<edge id=("[^":][^"]*")(?: [^>]*)?[^/]>.*?)(\s*</edge>)', re.DOTALL)

@@ -11,6 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 from automotive_cosim.osm import access
+from automotive_cosim.traffic.posted import clauses, is_understood
 
 KEYS = ("oneway:motorcar", "oneway:motor_vehicle", "oneway:vehicle", "oneway")
 
@@ -28,6 +29,10 @@ class Directions(NamedTuple):
     def is_two_way(self) -> bool:
         """Whether both are open."""
         return self.forward and self.backward
+
+    def open(self, end: str) -> bool:
+        """The one of ``access.ENDS``."""
+        return self.backward if end == "backward" else self.forward
 
 
 WITH, AGAINST, BOTH = Directions(True, False), Directions(False, True), Directions(True, True)
@@ -49,20 +54,45 @@ DOUBTED = frozenset(("alternating", "reversible"))
 
 
 def directions(tags: Mapping[str, str]) -> Directions:
-    """The directions open to cars; neither where they may not drive at all."""
-    may = _signed(tags)
-    return Directions(
-        *(is_open and access.access(tags, end).is_open for is_open, end in zip(may, access.ENDS, strict=True))
-    )
+    """The directions open to cars, at some hours at least; neither where they may not drive at all."""
+    return Directions(*(_is_open(tags, end) or bool(at_hours(tags, end)) for end in access.ENDS))
+
+
+def at_hours(tags: Mapping[str, str], end: str) -> str:
+    """When cars may drive in a direction of ``access.ENDS`` other than always or never, for ``timed_access``; empty
+    if no hour changes the answer. Where both access and direction depend on hours, only access does here; and a
+    one-way road of several lanes keeps them all, since a network cannot turn lanes round."""
+    if not access.has_conditions(tags):
+        return ""
+    found = access.at_hours(tags, end) if _signed(tags).open(end) else ""
+    if found or not access.access(tags, end).is_open or any(access.at_hours(tags, each) for each in access.ENDS):
+        return found
+    said = [(VALUES[value].open(end), condition) for value, condition in _conditional(tags) if value in VALUES]
+    usual = _signed(tags).open(end)
+    if all(is_open is usual for is_open, _ in said) or not (usual or tags.get("lanes", "1") == "1"):
+        return ""
+    return access.timed([*([] if usual else [(False, access.ALWAYS)]), *said])
+
+
+def _is_open(tags: Mapping[str, str], end: str) -> bool:
+    return _signed(tags).open(end) and access.access(tags, end).is_open
+
+
+def _conditional(tags: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    """The values of the nearest key under conditions that can be read, with these."""
+    key = next((key for key in KEYS if tags.get(key) or tags.get(f"{key}:conditional")), "")
+    for value, condition, _ in clauses(tags.get(f"{key}:conditional", "")):
+        if not access.OF_THE_VEHICLE.search(condition) and is_understood(condition):
+            yield value, condition
 
 
 def doubts(tags: Mapping[str, str]) -> Iterator[str]:
-    """Tags that are not understood, or only true at times."""
+    """Tags that are not understood, or hold under conditions that are not."""
     for key in KEYS:
         value = tags.get(key, "")
         if value and (value.strip() not in VALUES or value in DOUBTED):
             yield f"{key}={value}"
-        if tags.get(f"{key}:conditional"):
+        if tags.get(f"{key}:conditional") and not any(at_hours(tags, end) for end in access.ENDS):
             yield f"{key}:conditional={tags[f'{key}:conditional']}"
 
 

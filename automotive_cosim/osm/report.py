@@ -59,6 +59,10 @@ class ImportReport:
     school_zone_km: float
     timed_limit_km: float
     """Length of road with other limits at certain hours."""
+    timed_access_km: float
+    """Length of road that cars may use at certain hours only."""
+    timed_turns: int
+    """Turns that they may make at certain hours only."""
     bus_lane_km: float
     speed_cameras: int
     """Speed cameras at imported roads; one for both directions counts once."""
@@ -127,6 +131,8 @@ def make_report(
         built_up_known_share=_share(length_m, (edge for edge in edges if edge.built_up is not None)),
         school_zone_km=_km(edge for edge in edges if edge.school_zone),
         timed_limit_km=_km(edge for edge in edges if edge.timed_limits),
+        timed_access_km=_km(edge for edge in edges if edge.timed_access),
+        timed_turns=sum(len(edge.timed_turns) for edge in edges),
         bus_lane_km=_km(edge for edge in edges if edge.bus_lane),
         speed_cameras=_cameras(built),
         density_per_km=density_per_km,

@@ -13,12 +13,14 @@ from dataclasses import dataclass
 
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.osm import lanes
+from automotive_cosim.osm.access import ENDS
 from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, OsmWay
 from automotive_cosim.osm.limits import Stated, built_up_of, conditional_of, stated_limits
-from automotive_cosim.osm.oneway import Directions, directions
+from automotive_cosim.osm.oneway import Directions, at_hours, directions
 from automotive_cosim.osm.towns import is_dense, town_cells
+from automotive_cosim.traffic.network import TIMED_ACCESS
 
 KEPT_TAGS = (
     "bicycle_road",
@@ -135,6 +137,9 @@ class MappedRoad:
         conditional = conditional_of(self.tags, "backward" if edge_id.startswith("-") else "forward")
         if conditional:
             kept["maxspeed:conditional"] = conditional
+        hours = at_hours(self.tags, ENDS[edge_id.startswith("-")])
+        if hours:
+            kept[TIMED_ACCESS] = hours
         posted = self.stated.of(edge_id)
         if posted is not None:
             kept["maxspeed"] = posted

@@ -11,9 +11,11 @@ from dataclasses import dataclass, field
 from itertools import product
 from typing import NamedTuple
 
+from automotive_cosim.osm.access import ALWAYS, OF_THE_VEHICLE, timed
 from automotive_cosim.osm.barriers import Piece
 from automotive_cosim.osm.extract import TurnRestriction
 from automotive_cosim.osm.oneway import Directions
+from automotive_cosim.traffic.posted import clauses, is_understood
 
 CARS = ("motorcar", "motor_vehicle", "vehicle")
 """Kinds of vehicles that a car is one of, the most specific first."""
@@ -46,8 +48,10 @@ class BannedTurns:
     """Each with the first relation that states it."""
     only: dict[Ban, int] = field(default_factory=dict)
     """The same, of turns beside which every other turn from that road is barred."""
+    timed: dict[Ban, str] = field(default_factory=dict)
+    """Turns that cars may make at certain hours only, and when (``timed_access``)."""
     at_times: list[int] = field(default_factory=list)
-    """Relations that hold under a condition only, left out."""
+    """Relations under conditions that are not understood, left out."""
     unread: list[int] = field(default_factory=list)
     """Relations whose value, or whose roads, are not understood, left out."""
     over_ways: list[int] = field(default_factory=list)
@@ -56,20 +60,22 @@ class BannedTurns:
 
 def value_for_cars(tags: Mapping[str, str]) -> str:
     """What a relation says to cars: a value of ``restriction``, empty if it is not about them."""
+    return _said(tags, "")
+
+
+def conditional_for_cars(tags: Mapping[str, str]) -> str:
+    """What it says to them under conditions: a value of ``restriction:conditional``."""
+    return _said(tags, ":conditional")
+
+
+def _said(tags: Mapping[str, str], ending: str) -> str:
     kind, _, whom = tags.get("type", "").partition(":")
     if kind != "restriction" or (whom and whom not in CARS):
         return ""
     if {part.strip() for part in tags.get("except", "").split(";")} & {*CARS, "car"}:
         return ""
-    keys = (*(f"restriction:{car}" for car in CARS), "restriction")
+    keys = (*(f"restriction:{car}{ending}" for car in CARS), f"restriction{ending}")
     return next((tags[key] for key in keys if tags.get(key)), "")
-
-
-def is_at_times(tags: Mapping[str, str]) -> bool:
-    """Whether a relation says something else to cars at times."""
-    kind, _, whom = tags.get("type", "").partition(":")
-    keys = (*(f"restriction:{car}:conditional" for car in CARS), "restriction:conditional", *AT_HOURS)
-    return kind == "restriction" and (not whom or whom in CARS) and any(key in tags for key in keys)
 
 
 class RoadGraph:
@@ -127,24 +133,64 @@ def read_turns(
     """
     network, turns = RoadGraph(pieces, may), BannedTurns()
     for relation in restrictions:
-        if is_at_times(relation.tags):
+        if any(key in relation.tags for key in AT_HOURS):
             turns.at_times.append(relation.relation_id)
-            if any(key in relation.tags for key in AT_HOURS):
-                continue
-        value = value_for_cars(relation.tags)
-        values = [part.strip().lower() for part in value.split(";") if part.strip()]
-        kinds = [part for part in values if part not in NO_BAN]
-        if not kinds:
             continue
+        kinds = _kinds(value_for_cars(relation.tags))
         if not set(kinds) <= KINDS:
             turns.unread.append(relation.relation_id)
             continue
-        _add(relation, kinds[0].startswith("only_"), network, turns)
+        conditional = conditional_for_cars(relation.tags)
+        at_hours = _at_hours(kinds, conditional) if conditional else {}
+        if at_hours is None:
+            turns.at_times.append(relation.relation_id)
+        elif at_hours:
+            for is_only, hours in at_hours.items():
+                for ban, alone in _bans(relation, is_only, network, turns):
+                    for each in _others([ban], network) if alone else (ban,):
+                        turns.timed.setdefault(each, hours)
+            continue
+        if kinds:
+            for ban, alone in _bans(relation, _is_only(kinds), network, turns):
+                (turns.only if alone else turns.bans).setdefault(ban, relation.relation_id)
     return turns
 
 
-def _add(relation: TurnRestriction, is_only: bool, network: RoadGraph, turns: BannedTurns) -> None:
-    """Adds the bans of one relation; one with a member that is no road for cars bars nothing more."""
+def _kinds(value: str) -> list[str]:
+    """The kinds of turns that a value of ``restriction`` bars, or allows alone."""
+    values = (part.strip().lower() for part in value.split(";"))
+    return [part for part in values if part and part not in NO_BAN]
+
+
+def _is_only(kinds: Sequence[str]) -> bool:
+    return bool(kinds) and kinds[0].startswith("only_")
+
+
+def _at_hours(usual: Sequence[str], conditional: str) -> dict[bool, str] | None:
+    """When turns of a relation may be made, those that it bars (False) and those beside its only ones (True); empty
+    if it says nothing to ordinary cars, None if that is not understood."""
+    said: list[tuple[list[str], str]] = []
+    for value, condition, _ in clauses(conditional):
+        kinds = _kinds(value)
+        if value and OF_THE_VEHICLE.search(condition):
+            continue
+        if not value or not set(kinds) <= KINDS or not is_understood(condition):
+            return None
+        said.append((kinds, condition))
+    if not said:
+        return {}
+    every = [(list(usual), ALWAYS)] * bool(usual) + said
+    return {
+        is_only: timed((not kinds or _is_only(kinds) is not is_only, condition) for kinds, condition in every)
+        for is_only in {_is_only(kinds) for kinds, _ in every if kinds}
+    }
+
+
+def _bans(
+    relation: TurnRestriction, is_only: bool, network: RoadGraph, turns: BannedTurns
+) -> Iterator[tuple[Ban, bool]]:
+    """The bans of one relation, and whether each is of a turn beside which every other one is barred; a relation
+    with a member that is no road for cars bars nothing more."""
     froms, tos = (
         [ref for kind, ref, role in relation.members if (kind, role) == ("w", end)] for end in ("from", "to")
     )
@@ -173,8 +219,7 @@ def _add(relation: TurnRestriction, is_only: bool, network: RoadGraph, turns: Ba
         turns.unread.append(relation.relation_id)
     for bans_others, bans in found:
         alone = bans_others and len({ban.to_piece for ban in bans}) == 1
-        for ban in _others(bans, network) if bans_others and not alone else bans:
-            (turns.only if alone else turns.bans).setdefault(ban, relation.relation_id)
+        yield from ((ban, alone) for ban in (_others(bans, network) if bans_others and not alone else bans))
 
 
 def _at_node(froms: Sequence[int], via: int, tos: Sequence[int], network: RoadGraph) -> list[Ban]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -36,8 +36,8 @@ class Played:
     verdict: Verdict
     moments: tuple[Moment, ...]
     baseline: tuple[Moment, ...]
-    counterfactual: Mapping[str, Any]
-    """What would be commanded at the end, had only the commands that belong to the goal been given."""
+    counterfactual: Callable[[], Mapping[str, Any]]
+    """Gives what would be commanded at the end, had only the commands that belong to the goal been given."""
     given: tuple[CommandRecord, ...]
     """What was commanded, in order."""
     steps: tuple[Step, ...]
@@ -226,7 +226,7 @@ def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> P
         episode.verdict,
         tuple(episode.moments),
         episode.baseline_moments,
-        episode.counterfactual,
+        lambda: episode.counterfactual,
         episode.world.cockpit.given,
         tuple(episode.steps),
         stopping.stuck,

@@ -123,7 +123,7 @@ def by_condition(results: Results) -> list[Table]:
 def _side_by_side(results: Results, condition: Condition) -> Table:
     shown = sorted(
         {condition.of(each.conditions) for each in results.contestants},
-        key=lambda value: condition.choices.index(value) if condition.choices else value,
+        key=lambda value: (*condition.choices, value).index(value) if condition.choices else value,
     )
     groups = list(dict.fromkeys(each.under(condition.name, condition.default) for each in results.contestants))
     rows: list[TableRow] = [

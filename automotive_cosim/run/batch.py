@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import time
 from collections import Counter, defaultdict
-from collections.abc import Callable, Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -37,6 +37,8 @@ PATIENCE_S = 600.0
 """Wall time that a batch waits for its first worker, or for another one when all have died."""
 SPENT = "spent.json"
 """File of an evaluation with a budget that says how much of it is spent."""
+TELL_S = 10.0
+"""Wall time after which progress is told again, though no job has ended: the first ones wait for their traffic."""
 STILLBORN = 3
 """How many times in a row all workers may die before they are ready."""
 
@@ -58,7 +60,9 @@ class Progress(Generic[R]):
     left_s: float | None
     """Wall time to the end, as estimated by ``Pace``; None while there is no basis for an estimate."""
     ended: R | None
-    """The row of the job that has just ended; None at the start."""
+    """The row of the job that has just ended; None at the start, and while all are running."""
+    warming: tuple[str, ...] = ()
+    """Scenarios whose traffic is warmed up for a job that is running, or whose first job in it runs."""
     stopped: str = ""
     """Why the rest is not run; empty if it is run or nothing is left."""
 
@@ -82,7 +86,7 @@ def run_plan(
         retries: how many times a trial is retried after an infrastructure error before the error is recorded.
         pictures: which screenshots to keep.
         budget: what it may spend on its models, with all earlier starts. Once it is spent, the rest is not run.
-        tell: called at the start and after every trial.
+        tell: called at the start, after every trial, and in between if that takes long.
 
     Raises:
         UserError: the plan names something that does not exist, or the folder cannot take its results.
@@ -121,7 +125,7 @@ def run_jobs(
         executor: where to run them.
         retries: how many times a job is retried after an error before its row is written.
         limit: the meter of its budget, if it has one. Once it is spent, the rest is not run.
-        tell: called at the start and after every job.
+        tell: called at the start, after every job, and in between if that takes long.
 
     Raises:
         as ``run_plan``.
@@ -249,7 +253,11 @@ class _Batch(Generic[J, R]):
             left_s=self._expected_s(),
             ended=self._newest,
             stopped=self._stopped,
+            warming=tuple(dict.fromkeys(self._warming())),
         )
+
+    def _warming(self) -> Iterator[str]:
+        return (place.job.simulation[0] for place in self._places if place.job and place.is_cold)
 
     def _expected_s(self) -> float | None:
         running = [place.turn(place.job) for place in self._places if place.job]
@@ -266,12 +274,15 @@ class _Batch(Generic[J, R]):
                     place.give(job)
 
     def _wait(self) -> None:
-        """Waits until a worker answers, dies, becomes ready or exceeds its time limit."""
+        """Waits until a worker answers, dies, becomes ready or exceeds its time limit; tells of it meanwhile."""
         awaited = [place for place in self._places if place.job or not place.worker.is_ready]
         handles = {handle: place for place in awaited for handle in place.worker.handles}
         now_s = time.monotonic()
         ends_s = [place.since_s + place.job.wall_s for place in awaited if place.job]
-        ready = self._executor.wait(list(handles), max(0.0, min(ends_s, default=now_s + PATIENCE_S) - now_s))
+        left_s = max(0.0, min(ends_s, default=now_s + PATIENCE_S) - now_s)
+        ready = self._executor.wait(list(handles), min(left_s, TELL_S) if ends_s else left_s)
+        if ends_s and not ready:
+            self._tell(replace(self.progress, ended=None))
         if not ends_s and not ready:
             raise InfrastructureError(f"no worker became ready in {PATIENCE_S:g} s; rerun the command to resume")
         for place in {handles[handle]: None for handle in ready}:

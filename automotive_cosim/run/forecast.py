@@ -12,6 +12,8 @@ from dataclasses import asdict, dataclass
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import PromptLength, See
+from automotive_cosim.episode.own_prompt import instructions
+from automotive_cosim.models.base import CHARACTERS_PER_TOKEN
 from automotive_cosim.models.remote import Settings
 from automotive_cosim.run.jobs import DriveJob, TrialJob
 from automotive_cosim.run.meter import Budget
@@ -191,8 +193,10 @@ def longest_question(job: TrialJob) -> int:
 
 def _sent(job: TrialJob) -> float:
     """Tokens of text that a step of a task sends."""
-    agent = job.setup.agent
-    return A_STEP[agent].sent * BY_PROMPT[job.setup.conditions.prompt] if agent in A_STEP else OTHER_STEP.sent
+    agent, prompt = job.setup.agent, job.setup.conditions.prompt
+    if agent not in A_STEP:
+        return OTHER_STEP.sent
+    return A_STEP[agent].sent * BY_PROMPT[prompt.length] + len(instructions(prompt)) / CHARACTERS_PER_TOKEN
 
 
 def _usd(model: str, sent: Range, received: Range) -> Range:

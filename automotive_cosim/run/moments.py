@@ -193,17 +193,18 @@ class _Writer:
         self.pool: list[Any] = []
         self._numbers: dict[type, int] = {}
         self._places: dict[str, int] = {}
+        self._known: dict[int, tuple[object, Any]] = {}
+        """Of tuples and dataclasses, by identity: two drives share most of their states, and all states a route."""
 
     def value(self, value: Any) -> Any:
         kind = type(value)
         if kind in PLAIN:
             return value
-        if kind is tuple:
-            made = ["t", *map(self.value, value)]
-            return self._once(made) if len(value) > LONG else made
-        if is_dataclass(kind):
-            names = self.classes[self._class(kind)][1]
-            return self._once([self._numbers[kind], *(self.value(getattr(value, name)) for name in names)])
+        if kind is tuple or is_dataclass(kind):
+            known = self._known.get(id(value))
+            if known is None:
+                known = self._known[id(value)] = value, self._made(value)
+            return known[1]
         match value:
             case Enum():
                 return ["e", self._class(kind), value.value]
@@ -223,6 +224,14 @@ class _Writer:
             case bool() | int() | float():
                 return value
         raise TypeError(f"cannot store a {kind.__name__}")
+
+    def _made(self, value: Any) -> Any:
+        kind = type(value)
+        if kind is tuple:
+            made = ["t", *map(self.value, value)]
+            return self._once(made) if len(value) > LONG else made
+        names = self.classes[self._class(kind)][1]
+        return self._once([self._numbers[kind], *(self.value(getattr(value, name)) for name in names)])
 
     def _class(self, kind: type) -> int:
         if kind not in self._numbers:

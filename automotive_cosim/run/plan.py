@@ -21,6 +21,7 @@ from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.episode.conditions import ConditionLists, Conditions, combined, lists_of
+from automotive_cosim.episode.own_prompt import resolved
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
@@ -396,9 +397,20 @@ def read_plan(path: Path) -> dict[str, Any]:
         UserError: it cannot be read, is not TOML, or has a wrong or surplus field.
     """
     document = read_toml(path)
-    document = replace(document, table=plan_values(document.table, str(path)))
+    document = replace(document, table=with_files(plan_values(document.table, str(path))))
     document.read(Plan)
     return document.table
+
+
+def with_files(values: dict[str, Any]) -> dict[str, Any]:
+    """The values with each file of instructions named by its SHA-256 too; its path is from the working folder.
+
+    Raises:
+        UserError: such a file cannot be used.
+    """
+    if not isinstance(given := values.get("prompt"), list):
+        return values
+    return values | {"prompt": [resolved(each) if isinstance(each, str) else each for each in given]}
 
 
 def with_preset(values: Mapping[str, Any], name: str) -> dict[str, Any]:

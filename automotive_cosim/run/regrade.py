@@ -74,7 +74,8 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
         UserError: the task no longer exists, the commands that it allows have changed, or the place where it was
             handed over has no sign or law on which it rests.
     """
-    assert stored.counterfactual is not None
+    counterfactual = stored.counterfactual
+    assert counterfactual is not None
     spoken = row.conditions.language
     task = CATALOGUE[row.task]
     rule = _rule_elsewhere(row, task.half(row.half), stored)
@@ -85,7 +86,7 @@ def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
         instance,
         stored.trace,
         stored.baseline,
-        stored.counterfactual,
+        lambda: counterfactual,
         stored.declared,
         stored.reason,
         row.agent_error,

@@ -11,6 +11,7 @@ from pathlib import Path
 from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.judged import JudgedSession
+from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.collect import Collector, Pictures
 from automotive_cosim.run.drive import DriveRecord, JudgedDrive, run_drive
@@ -161,7 +162,7 @@ def agent_of(
 ) -> AbstractContextManager[Agent]:
     """The agent of a job; see ``agent_for``."""
     setup = job.setup
-    settings = AgentSettings(setup.conditions, seed=setup.seed)
+    settings = AgentSettings(setup.conditions, seed=setup.seed, instructions=instructions(setup.conditions.prompt))
     return agent_for(setup.agent, job.model, settings, job.limits, fork_server, meter)
 
 

@@ -7,9 +7,9 @@ assumes is no sign, and the article of another country no law.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
-from automotive_cosim.contracts import KMH_PER_MPS
+from automotive_cosim.contracts import KMH_PER_MPS, LimitSource, Road
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.context import GeoContext, answer
 from automotive_cosim.geo.place import Atlas, shipped
@@ -19,11 +19,17 @@ from automotive_cosim.tasking.task import Basis, Half
 from automotive_cosim.tasking.triggers import (
     All,
     InSchoolZone,
+    InTunnel,
+    Lanes,
     LowerLimitWithin,
     Not,
+    OnRoadClass,
+    OnStreet,
     OverPosted,
     SpeedAbove,
     TriggerCondition,
+    TunnelOnRoute,
+    TunnelWithin,
 )
 
 ABOUT_SIGNS = (SpeedAbove, OverPosted, LowerLimitWithin, InSchoolZone)
@@ -81,6 +87,40 @@ def _parts(condition: TriggerCondition) -> Iterator[TriggerCondition]:
             yield from _parts(inner)
         case _:
             yield condition
+
+
+def never_here(half: Half, roads: Sequence[Road]) -> str:
+    """The condition of the trigger that no road of a network meets, without incidents and limits by the clock, so
+    that the half comes about nowhere in it; empty if there is none, or only driving can tell."""
+    together = [half.trigger.condition]
+    while together:
+        condition = together.pop()
+        if isinstance(condition, All):
+            together += condition.conditions
+        elif not any(_may_hold(condition, road) for road in roads):
+            return str(condition)
+    return ""
+
+
+def _may_hold(condition: TriggerCondition, road: Road) -> bool:
+    limit_mps = road.limit_mps if road.limit_source is LimitSource.POSTED else None
+    match condition:
+        case InTunnel() | TunnelWithin() | TunnelOnRoute():
+            return road.in_tunnel
+        case OnRoadClass(classes):
+            return road.road_class in classes
+        case OnStreet(name):
+            return road.name == name
+        case Lanes(count):
+            return road.lane_count >= count
+        case InSchoolZone():
+            return road.school_zone
+        case OverPosted():
+            return limit_mps is not None
+        case SpeedAbove(_, from_kmh, to_kmh):
+            return limit_mps is not None and from_kmh <= round(limit_mps * KMH_PER_MPS, 1) <= to_kmh
+        case _:
+            return True
 
 
 def _sign_here(context: GeoContext) -> str:

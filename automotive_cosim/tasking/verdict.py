@@ -133,7 +133,7 @@ def judge(
     instance: Instance,
     trace: Sequence[Moment],
     baseline: Sequence[Moment],
-    counterfactual: Mapping[str, Any],
+    counterfactual: Callable[[], Mapping[str, Any]],
     declared: GoalStatus | None,
     reason: Reason | None,
     failure: str | None = None,
@@ -145,8 +145,9 @@ def judge(
         instance: the instance of the task.
         trace: moments from the hand-over (trigger) to the end, one per tick.
         baseline: moments of the baseline run over the same time.
-        counterfactual: what would be commanded at the end, had the agent given only the commands that the half
-            allows (``Half.allowed_writes``).
+        counterfactual: gives what would be commanded at the end, had the agent given only the commands that the
+            half allows (``Half.allowed_writes``). To find out, the cockpit goes through the drive again, so it is
+            only asked where the agent has left something that the half does not allow.
         declared: the agent's last declaration, if any.
         reason: the reason code that it gave.
         failure: why the agent could act no more, if it could not. No success then, even where silence is right.
@@ -169,7 +170,7 @@ def _judge_asked(
     instance: Instance,
     trace: Sequence[Moment],
     baseline: Sequence[Moment],
-    counterfactual: Mapping[str, Any],
+    counterfactual: Callable[[], Mapping[str, Any]],
     declared: GoalStatus | None,
     reason: Reason | None,
 ) -> Verdict:
@@ -217,12 +218,14 @@ SPOKEN = frozenset({"questions"})
 that says so forbids it."""
 
 
-def _clean(instance: Instance, end: Moment, untouched: Moment, counterfactual: Mapping[str, Any]) -> Part:
+def _clean(
+    instance: Instance, end: Moment, untouched: Moment, counterfactual: Callable[[], Mapping[str, Any]]
+) -> Part:
     """What differs from the counterfactual was not asked for, unless it is as it would be had nobody acted: then
     a coupling of the goal's was undone, which spoils nothing."""
     half, commands = instance.half, end.commands
-    left = _changed(commands, untouched.commands)
-    surplus = _changed(commands, counterfactual) & left - half.allowed_writes - SPOKEN - parted(half, commands)
+    left = _changed(commands, untouched.commands) - half.allowed_writes - SPOKEN - parted(half, commands)
+    surplus = left and left & _changed(commands, counterfactual())
     if not surplus:
         return Part(True, "nothing else changed")
     return Part(False, "also changed: " + ", ".join(_change(key, untouched, end) for key in sorted(surplus)))

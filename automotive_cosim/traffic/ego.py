@@ -273,7 +273,7 @@ class Driver:
             return Answer(False, say("the drive has ended: {end}", end=_ENDS[state.end]))
         match request:
             case Alert():
-                return self._hear(request, state, say("the driver hears it"))
+                return self._hear(request, state, say("announced to the driver"))
             case SlowDown(speed_kmh):
                 why_not = _too_slow(speed_kmh, state)
                 if why_not:
@@ -332,7 +332,7 @@ class Driver:
     def _cruise(self, speed_kmh: float | None, state: DrivingState) -> Answer:
         if speed_kmh is None:
             self._bounds.cruise = math.inf
-            return Answer(True, say("no speed is set any more"))
+            return Answer(True, say("the speed setting is cleared"))
         why_not = _too_slow(speed_kmh, state)
         if why_not:
             return Answer(False, why_not)

@@ -13,6 +13,8 @@ SUMO knows lanes, speeds and shapes. Everything else from the map is in the edge
 | ``zone:traffic:assumed`` | the same, assumed from the density of the streets |
 | ``lane_markings`` | ``no``: no centre line |
 | ``maxspeed:conditional`` | limits at certain hours (``posted``) |
+| ``access:conditional`` | ``yes`` and ``no``: open to cars at certain hours |
+| ``restriction:conditional:EDGE`` | the same of the turn into an edge |
 | ``hazard`` | ``school_zone``: beside a school |
 | ``bicycle_road``, ``cyclestreet`` | ``yes``: a cycle street |
 | ``speed_camera`` | positions of cameras, in metres from the start of the edge |
@@ -37,7 +39,7 @@ from automotive_cosim.formats.files import opened
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic import georeference
 from automotive_cosim.traffic.naming import local_names
-from automotive_cosim.traffic.posted import TimedLimit, timed_limits
+from automotive_cosim.traffic.posted import TimedAccess, TimedLimit, timed_access, timed_limits
 
 NO_LIMIT_FROM_MPS = 39.0
 """A lane at least this fast whose edge says that there is none has no limit: SUMO's OSM import writes 142 km/h."""
@@ -53,6 +55,10 @@ CYCLE_STREET_KEYS = ("bicycle_road", "cyclestreet")
 
 FORM = "a complete SUMO network (build it again with netconvert)"
 """What the file should be, for errors."""
+
+TIMED_ACCESS = "access:conditional"
+TIMED_TURN = "restriction:conditional:"
+"""Before the id of the edge that the turn leads into."""
 
 EDGE_DEPTH, LANE_DEPTH = 2, 3
 """How deep edges and their lanes stand in the file."""
@@ -113,6 +119,10 @@ class Edge:
     """Limits that are posted for certain hours."""
     timed_limit: TimedLimit | None = None
     """The one of them that is in force; ``limit_mps`` is the present limit."""
+    timed_access: tuple[TimedAccess, ...] = ()
+    """When it is open to cars, if not always (``posted.is_open``)."""
+    timed_turns: tuple[tuple[str, tuple[TimedAccess, ...]], ...] = ()
+    """The edges into which cars may not always turn, and when they may."""
     built_up_assumed: bool | None = None
     """What the import assumed where the map does not say: for reports, no verdict rests on it."""
 
@@ -155,6 +165,24 @@ class Network:
     """Why it has no position on earth, e.g. "has no projection"; empty if it has one."""
     moved: bool = False
     """Whether it was moved from the position in its file."""
+
+    @property
+    def has_hours(self) -> bool:
+        """Whether any of its roads or turns is open to cars at certain hours only."""
+        return any(edge.timed_access or edge.timed_turns for edge in self.edges.values())
+
+    def open_at_all_hours(self) -> Network:
+        """The same network with the ways only that are open at any hour: planned there, no route is ever barred."""
+        shut = {edge.edge_id for edge in self.edges.values() if edge.timed_access}
+        barred = {(edge.edge_id, to_edge) for edge in self.edges.values() for to_edge, _ in edge.timed_turns}
+        if not shut and not barred:
+            return self
+        crossings = {
+            here: {there: way for there, way in ways.items() if there not in shut and (here, there) not in barred}
+            for here, ways in self.crossings.items()
+            if here not in shut
+        }
+        return replace(self, crossings=crossings)
 
     def at(self, origin: tuple[float, float], language: str = "") -> Network:
         """The same network with its middle at another place: (longitude, latitude).
@@ -336,6 +364,12 @@ def _edge(edge: Attributes, lanes: list[Attributes], all_lanes: list[Attributes]
         cameras_m=tuple(quantity(place_m) for place_m in params.get("speed_camera", "").split()),
         school_zone=params.get("hazard") == "school_zone",
         timed_limits=timed_limits(params.get("maxspeed:conditional", ""))[0],
+        timed_access=timed_access(params.get(TIMED_ACCESS, "")),
+        timed_turns=tuple(
+            (intern(key.removeprefix(TIMED_TURN)), timed_access(value))
+            for key, value in params.items()
+            if key.startswith(TIMED_TURN)
+        ),
     )
 
 

@@ -293,6 +293,8 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
         "scale": f"{sumo.scale:g}",
         "device.rerouting.probability": f"{sumo.background_rerouting:g}",
     }
+    if network is not None and network.has_hours:
+        options["ignore-route-errors"] = "true"  # a fixed route may lead over a road that is closed at the hour
     if sumo.lateral_resolution_m is not None:
         options["lateral-resolution"] = f"{sumo.lateral_resolution_m:g}"
     if setup.outputs is not None and setup.flow_s is not None:

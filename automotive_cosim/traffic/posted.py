@@ -1,21 +1,22 @@
-"""Limits on signs: a number with its unit, and limits at certain hours.
+"""Limits on signs: a number with its unit, and what holds at certain hours, limits, access and turns.
 
 The words are OpenStreetMap's (wiki pages "Key:maxspeed" and "Conditional restrictions"):
 
     maxspeed              50        30 mph        none
     maxspeed:conditional  40 @ (Mo-Fr 08:00-09:30,14:30-16:00; SH off; PH off)
+    access:conditional    no @ (Mo-Fr 07:30-08:30)
 
 Conditions on weekdays, times of day, dates and months are understood, and ``wet`` and ``snow``, which the weather
 of the drive decides. ``SH off`` and ``PH off`` are accepted but ignored: there is no calendar of holidays, so every
-Monday is a school day. A limit under any other condition (axle load, daylight, ...) is omitted and reported.
+Monday is a school day. What holds under any other condition (axle load, daylight, ...) is omitted and reported.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from datetime import datetime
+from datetime import date, datetime, timedelta
 
 from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS
 
@@ -40,6 +41,11 @@ _DAYS_OFF = re.compile(rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)\s+off")
 _MONTH = f"(?:{'|'.join(_MONTHS)})"
 _DATES = rf"{_MONTH}(?: \d\d?)?(?:-(?:{_MONTH}(?: \d\d?)?|\d\d?))?"
 _RULE = re.compile(rf"(?P<dates>{_DATES})?:?\s*(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?")
+_DAYS_ONE = re.compile(_DAY)
+_DASH = re.compile(r"\s*[-–]\s*")
+_NTH = re.compile(r"(?<=[a-z])\[(-1|[1-5])\]")
+"""Which of a weekday in a month: ``Su[1]`` is the first Sunday."""
+_SEASONS = re.compile(rf"(?P<seasons>{_DATES}(?:\s*,\s*{_DATES})+):?\s+(?P<rest>.+)")
 _NEXT_RULE = re.compile(rf"(?<=\d)\s*,\s*(?={_DAY}\b)")
 """Where a comma parts two rules: after a time, before a day (``Mo-Fr 07:00-17:00, Sa 08:00-12:00``)."""
 _SPAN = re.compile(r"(\d\d?):(\d\d)-(\d\d?):(\d\d)")
@@ -49,22 +55,22 @@ Day = tuple[int, int]
 
 
 @dataclass(frozen=True, slots=True)
-class TimedLimit:
-    """A limit at certain hours."""
+class Hours:
+    """When something on a sign holds."""
 
-    limit_mps: float | None
-    """The limit; None for no limit."""
     days: frozenset[int]
     """ISO weekdays: 1 is Monday."""
     spans: tuple[tuple[int, int], ...]
     """Minutes of the day, the last excluded. A span that ends no later than it begins runs past midnight and
     belongs to the day on which it begins."""
     text: str
-    """In words: ``40 km/h Mo-Fr 08:00-09:30, 14:30-16:00``."""
+    """In words: ``Mo-Fr 08:00-09:30, 14:30-16:00``."""
     dates: tuple[Day, Day] = ((1, 1), (12, 31))
     """The first and the last day of the year on which it holds; the last may be in the next year."""
     weather: str = ""
     """A key of ``WEATHERS`` if it holds in that weather only."""
+    weeks: frozenset[int] = frozenset()
+    """Which of these weekdays of a month, if not all: 1 is the first, -1 the last."""
 
     def holds(self, local_time: datetime, weather: str = "") -> bool:
         """Whether it is in force at the local time, in a weather of ``WEATHERS`` or none of them."""
@@ -76,8 +82,8 @@ class TimedLimit:
         return in_season and self.weather in ("", weather) and self._holds_at(local_time)
 
     def _holds_at(self, local_time: datetime) -> bool:
-        minute, day = local_time.hour * 60 + local_time.minute, local_time.isoweekday()
-        today, yesterday = day in self.days, (day + 5) % 7 + 1 in self.days
+        minute, date = local_time.hour * 60 + local_time.minute, local_time.date()
+        today, yesterday = self._has(date), self._has(date - timedelta(days=1))
         for first, last in self.spans:
             if first < last:
                 if today and first <= minute < last:
@@ -85,6 +91,35 @@ class TimedLimit:
             elif (today and minute >= first) or (yesterday and minute < last):
                 return True
         return False
+
+    def _has(self, day: date) -> bool:
+        if day.isoweekday() not in self.days:
+            return False
+        is_last = (day + timedelta(days=7)).month != day.month
+        return not self.weeks or (day.day - 1) // 7 + 1 in self.weeks or (is_last and -1 in self.weeks)
+
+
+@dataclass(frozen=True, slots=True)
+class TimedLimit:
+    """A limit at certain hours."""
+
+    limit_mps: float | None
+    """The limit; None for no limit."""
+    hours: Hours
+    text: str
+    """In words: ``40 km/h Mo-Fr 08:00-09:30, 14:30-16:00``."""
+
+    def holds(self, local_time: datetime, weather: str = "") -> bool:
+        """Whether it is in force (``Hours.holds``)."""
+        return self.hours.holds(local_time, weather)
+
+
+@dataclass(frozen=True, slots=True)
+class TimedAccess:
+    """Whether cars may pass at certain hours."""
+
+    is_open: bool
+    hours: Hours
 
 
 def in_force(limits: Sequence[TimedLimit], local_time: datetime, weather: str = "") -> TimedLimit | None:
@@ -114,23 +149,59 @@ def timed_limits(conditional: str) -> tuple[tuple[TimedLimit, ...], tuple[str, .
     """
     found: list[TimedLimit] = []
     unread: list[str] = []
-    end = 0
-    for clause in _CLAUSE.finditer(conditional):
-        if conditional[end : clause.start()].strip(" ;"):
-            unread.append(conditional[end : clause.start()].strip(" ;"))
-        end = clause.end()
+    for sign, condition, text in clauses(conditional):
         try:
-            found += _limits(clause[1].strip(), clause[2].strip(" ()"))
+            limit_mps, shown = _read_sign(sign)
+            found += (
+                TimedLimit(limit_mps, hours, f"{shown} {hours.text}".strip()) for hours in read_hours(condition)
+            )
         except ValueError:
-            unread.append(clause[0].strip(" ;"))
-    if conditional[end:].strip(" ;"):
-        unread.append(conditional[end:].strip(" ;"))
+            unread.append(text)
     return tuple(found), tuple(unread)
 
 
-def _limits(sign: str, condition: str) -> list[TimedLimit]:
-    limit_mps, shown = _read_sign(sign)
-    condition, weather = _weather(condition)
+def timed_access(conditional: str) -> tuple[TimedAccess, ...]:
+    """Reads ``yes`` and ``no`` at certain hours, as an import writes them; anything else counts for nothing."""
+    found: list[TimedAccess] = []
+    for value, condition, _ in clauses(conditional):
+        if value in ("yes", "no") and is_understood(condition):
+            found += (TimedAccess(value == "yes", hours) for hours in read_hours(condition))
+    return tuple(found)
+
+
+def is_open(access: Sequence[TimedAccess], local_time: datetime, weather: str = "") -> bool:
+    """Whether cars may pass now: the last that holds decides, as in OpenStreetMap; without any they may."""
+    return next((each.is_open for each in reversed(access) if each.hours.holds(local_time, weather)), True)
+
+
+def clauses(conditional: str) -> Iterator[tuple[str, str, str]]:
+    """The value, the condition and the text of each ``value @ condition``; without both for what is none."""
+    end = 0
+    for clause in _CLAUSE.finditer(conditional):
+        if between := conditional[end : clause.start()].strip(" ;"):
+            yield "", "", between
+        end = clause.end()
+        yield clause[1].strip(), clause[2].strip(" ()"), clause[0].strip(" ;")
+    if rest := conditional[end:].strip(" ;"):
+        yield "", "", rest
+
+
+def is_understood(condition: str) -> bool:
+    """Whether a condition can be read (``read_hours``)."""
+    try:
+        read_hours(condition)
+    except ValueError:
+        return False
+    return True
+
+
+def read_hours(condition: str) -> list[Hours]:
+    """When a condition holds: at any of these.
+
+    Raises:
+        ValueError: it is none on the clock, the calendar or the weather.
+    """
+    condition, weather = _weather(_DASH.sub("-", condition))
     rules = [
         part
         for rule in map(str.strip, condition.split(";"))
@@ -142,7 +213,8 @@ def _limits(sign: str, condition: str) -> list[TimedLimit]:
     if not rules and not weather:
         raise ValueError(condition)
     free = frozenset[int]().union(*map(_weekdays, off))
-    return [_limit(limit_mps, shown, rule, free, off, weather) for rule in rules or ["24/7"]]
+    rules = [each for rule in rules for each in _by_season(rule)]
+    return [_hours(rule, free, off, weather) for rule in rules or ["24/7"]]
 
 
 def _read_sign(sign: str) -> tuple[float | None, str]:
@@ -168,23 +240,31 @@ def _weather(condition: str) -> tuple[str, str]:
     return "".join(rest), "".join(found)
 
 
-def _limit(
-    limit_mps: float | None, sign: str, rule: str, free: frozenset[int], off: Sequence[str], weather: str
-) -> TimedLimit:
+def _by_season(rule: str) -> Iterator[str]:
+    """A rule for each of its parts of the year (``Jan-Mar,Oct-Dec Su 10:00-17:00``)."""
+    match = _SEASONS.fullmatch(rule)
+    if match is None:
+        yield rule
+    else:
+        yield from (f"{season.strip()} {match['rest']}" for season in match["seasons"].split(","))
+
+
+def _hours(rule: str, free: frozenset[int], off: Sequence[str], weather: str) -> Hours:
     """One rule such as ``Mo-Fr 08:00-09:30,14:30-16:00``."""
-    match = _RULE.fullmatch(rule)
-    if match is None or not rule:
+    nth = _NTH.search(rule)
+    match = _RULE.fullmatch(rule[: nth.start()] + rule[nth.end() :] if nth else rule)
+    if match is None or not rule or (nth is not None and not _DAYS_ONE.fullmatch(match["days"] or "")):
         raise ValueError(rule)
     dates, days = match["dates"] or "", re.sub(r"\s", "", match["days"] or "")
     times = (match["times"] or "").strip().removeprefix("24/7")
     spans = tuple(_span(span.strip()) for span in times.split(",")) if times else ((0, _DAY_MINUTES),)
-    hours = re.sub(r"\s*,\s*", ", ", times)
+    times_said = re.sub(r"\s*,\s*", ", ", times)
     but = f"but {', '.join(off)}" if off else ""
-    words = " ".join(
-        part for part in (dates, days.replace(",", ", "), hours, but, WEATHERS.get(weather, "")) if part
-    )
+    said = days.replace(",", ", ") + (nth[0] if nth else "")
+    words = " ".join(part for part in (dates, said, times_said, but, WEATHERS.get(weather, "")) if part)
     weekdays = _weekdays(days) - free
-    return TimedLimit(limit_mps, weekdays, spans, f"{sign} {words}".strip(), _dates(dates), weather)
+    weeks = frozenset((int(nth[1]),)) if nth else frozenset[int]()
+    return Hours(weekdays, spans, words, _dates(dates), weather, weeks)
 
 
 def _dates(text: str) -> tuple[Day, Day]:

@@ -20,7 +20,7 @@ from automotive_cosim.traffic.manoeuvres import (
     ScriptedVehicleScene,
 )
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.posted import TimedLimit
+from automotive_cosim.traffic.posted import Hours, TimedLimit
 from automotive_cosim.traffic.scene import CAR_SPACE_M, QuietScene, Scene
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING
@@ -221,11 +221,13 @@ class _SchoolZone(QuietScene):
         for edge in incident.edges:
             stage.edge(edge)
         opens, closes = incident.opens, incident.closes
-        self._limit = TimedLimit(
-            incident.limit_kmh / KMH_PER_MPS,
+        hours = Hours(
             SCHOOL_DAYS,
             ((opens.hour * 60 + opens.minute, closes.hour * 60 + closes.minute),),
-            f"{incident.limit_kmh:g} km/h Mo-Fr {opens:%H:%M}-{closes:%H:%M}",
+            f"Mo-Fr {opens:%H:%M}-{closes:%H:%M}",
+        )
+        self._limit = TimedLimit(
+            incident.limit_kmh / KMH_PER_MPS, hours, f"{incident.limit_kmh:g} km/h {hours.text}"
         )
 
     def begin(self) -> str:

@@ -46,7 +46,14 @@ class Situations:
     @property
     def are_left(self) -> bool:
         """Whether any incident is pending or active."""
-        return self._stage.signs.follow_the_clock or any(not entry.is_over for entry in self._entries)
+        return self._stage.follows_the_clock or any(not entry.is_over for entry in self._entries)
+
+    def expect(self, plan: EgoPlan, now_s: float) -> None:
+        """Opens and closes roads and turns for the clock of an ego that is about to depart, whose route depends on
+        them; without any, its clock counts once it is on the road."""
+        if self._stage.closures.follow_the_clock:
+            self._zero_s, self._start = now_s, plan.start or self._start
+            self._stage.follow(self._local_time(now_s))
 
     def set_off(self, plan: EgoPlan, sensor: Sensor, now_s: float) -> None:
         """Takes note of the ego's departure: from now on its trip, its route and its clock count.
@@ -60,7 +67,7 @@ class Situations:
         self._zero_s = now_s
         self._start = plan.start or self._start
         self._trip = plan.trip.name
-        self._stage.signs.follow(self._local_time(now_s), self._stage.weather)
+        self._stage.follow(self._local_time(now_s))
 
     def add(self, incident: Incident) -> None:
         """One more incident; its times count like those of the others.
@@ -78,7 +85,7 @@ class Situations:
         for entry in self._entries:
             if not entry.is_over:
                 told += self._proceed(entry, since_s, local_time)
-        self._stage.signs.follow(local_time, self._stage.weather)
+        self._stage.follow(local_time)
         return tuple(Event(now_s, "incident", text) for text in told if text)
 
     def reported(self, slow: Mapping[str, float]) -> tuple[RoadIncident, ...]:

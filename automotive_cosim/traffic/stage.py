@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime
 
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.traffic.closures import Closures
 from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.road_weather import Surface
 from automotive_cosim.traffic.sensing import Sensor
@@ -29,6 +31,7 @@ class IncidentStage:
         self.sensor: Sensor | None = None
         """The ego's pedals, once it is on the road."""
         self.signs = Signs(sumo, network)
+        self.closures = Closures(sumo, network)
         self.route_changed = False
         """Whether the ego's route has changed since this was last set to False."""
         self._names = 0
@@ -38,6 +41,17 @@ class IncidentStage:
     def weather(self) -> str:
         """The weather on the road, as signs know it: ``"wet"``, ``"snow"`` or neither."""
         return self._surface.condition.weather
+
+    @property
+    def follows_the_clock(self) -> bool:
+        """Whether any limit, road or turn depends on the hour."""
+        return self.signs.follow_the_clock or self.closures.follow_the_clock
+
+    def follow(self, local_time: datetime) -> None:
+        """Applies what the signs say at this time: limits, closed roads and turns."""
+        self.signs.follow(local_time, self.weather)
+        if self.closures.follow(local_time, self.weather):
+            self.route_changed = True
 
     def edge(self, edge_id: str) -> Edge:
         """An edge of the network.

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import Distribution, PackageNotFoundError, distribution, version
 from pathlib import Path
 
@@ -54,7 +54,12 @@ def environment() -> Mapping[str, str]:
     return os.environ | {"SUMO_HOME": str(home()), "PROJ_DATA": str(data / "proj"), "PROJ_LIB": str(data / "proj")}
 
 
-def run(name: str, arguments: Sequence[str | Path], folder: Path | None = None) -> tuple[bool, str]:
+def run(
+    name: str,
+    arguments: Sequence[str | Path],
+    folder: Path | None = None,
+    heard: Callable[[str], None] = lambda line: None,
+) -> tuple[bool, str]:
     """Runs a program to its end.
 
     Args:
@@ -62,21 +67,31 @@ def run(name: str, arguments: Sequence[str | Path], folder: Path | None = None) 
         arguments: its options. A comma in a file's name parts two files, and a colon a host from its port: name
             files in a folder that anybody chose from within it.
         folder: where it runs; it can then write nowhere else, if the kernel can see to that.
+        heard: called with each line as it is printed; with ``--verbose``, these are the program's own stages.
 
     Returns:
         Whether it succeeded, and everything it printed.
     """
     command = [str(program(name)), *map(str, arguments)]
-    done = subprocess.run(
+    lines: list[str] = []
+    with subprocess.Popen(
         command if folder is None else confined(folder, command),
         cwd=folder,
         env=environment(),
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
-        check=False,
-    )
-    return done.returncode == 0, done.stdout.decode("utf-8", "replace")
+        encoding="utf-8",
+        errors="replace",
+    ) as process:
+        try:
+            for line in process.stdout or ():
+                lines.append(line)
+                heard(line.strip())
+        except BaseException:
+            process.kill()
+            raise
+    return process.returncode == 0, "".join(lines)
 
 
 def first_error(printed: str) -> str:

@@ -9,8 +9,8 @@ from itertools import pairwise
 
 from automotive_cosim.traffic.network import Network
 
-NEAREST = 10_000
-"""How many edges a search for any route reaches at most: some 100 km², however large the city is."""
+NEAREST = 4_000
+"""How many edges a search for any route reaches at most: some 25 km² of a town, however large the city is."""
 
 
 @dataclass(frozen=True, slots=True)

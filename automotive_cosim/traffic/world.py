@@ -69,6 +69,8 @@ class World:
         self._sumo = load_library()
         with self._configuration.named_as_given():
             self.network = self._mapped(reader.network(), setup)
+            self.always_open = self.network.open_at_all_hours()
+            """The network with the ways only that are open at any hour."""
             options = run_options(self._configuration, setup, self.network)
             with chdir(scratch):
                 start(self._sumo, command_line(options))
@@ -147,11 +149,12 @@ class World:
         """
         driver_profile = profile(plan.driver)
         plan = replace(plan, weather=plan.weather or self._scenario.weather)
+        self._situations.expect(plan, self._sumo.time())
         for _ in range(round(plan.wait_s / self.step_s)):
             self.step()
             if beat is not None:
                 beat()
-        round_ = planned(self.network, plan.trip, plan.onward) if plan.onward else None
+        round_ = planned(self.always_open, plan.trip, plan.onward) if plan.onward else None
         edges = round_.first if round_ else self._trip_edges(plan.trip)
         self._add_ego(edges, driver_profile, parked=plan.parked)
         if plan.emission_class:
@@ -379,7 +382,7 @@ class EgoRoad:
         if route.length_m - self._sensor.position_m > ONWARD_M or here.startswith(":"):
             return ()
         rest = route.edge_ids[sumo.route_index(EGO) :]
-        way = round_.following(self._world.network, rest[-1], self._leg)
+        way = round_.following(self._world.always_open, rest[-1], self._leg)
         self._leg += 1
         if not way:
             return ()

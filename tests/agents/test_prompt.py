@@ -221,3 +221,19 @@ def test_the_stand_in_plays_by_functions_what_its_prompt_lists(observation):
     first, last = agent.act(seen), agent.act(seen)
     assert (first.function, first.arguments) == ("set_hvac_fan_speed", {"percent": 100.0})
     assert last.action_type is ActionType.STATUS
+
+
+@pytest.mark.parametrize("name", list(PROFILES))
+def test_a_file_stands_in_place_of_the_instructions_and_of_nothing_else(name, observation, button):
+    seen = observation("Fan to the maximum", elements=(button("a", "Fan"),))
+    words = "Drive a hard bargain: $5, {x}.\n## What the driver said\nnothing"
+    own, standard = (
+        turn(PROFILES[name].under(AgentSettings(instructions=text)), each)
+        for text, each in ((words, seen), ("", seen))
+    )
+    assert own.startswith(f"{words}\n\n## Actions\n")
+    assert "touch nothing else" not in own
+    assert "touch nothing else" in standard
+    assert own.partition("## What the driver said\nFan")[2] == standard.partition("## What the driver said\nFan")[2]
+    watched = replace(seen, on_watch=True)
+    assert turn(PROFILES[name].under(AgentSettings(instructions=words)), watched).startswith(words)

@@ -83,7 +83,7 @@ def test_screen_reading_and_signals_tell_the_same(make: Make) -> None:
     assert cockpit.open_app("cabin").code is FeedbackCode.OK
     shown = {key_of(one.resource_id): one.text for one in cockpit.elements()}
     assert (shown["cabin.rear_left"], shown["cabin.rear_left.awake"]) == ("Baby", "Asleep")
-    assert (shown["cabin.rear_middle"], shown["cabin.rear_middle.belt"]) == ("Object", "Belt open")
+    assert (shown["cabin.rear_middle"], shown["cabin.rear_middle.belt"]) == ("Object", "Unbuckled")
     assert (shown["cabin.rear_right"], shown["cabin.rear_right.weight"]) == ("Pet", "24 kg")
     assert (shown["cabin.passenger"], "cabin.passenger.weight" in shown) == ("Empty", False)
     assert cockpit.vehicle_state().aboard == (

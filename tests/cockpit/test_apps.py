@@ -337,7 +337,7 @@ def test_a_list_of_people_says_that_a_tap_opens_them_and_calls_nobody(cockpit: C
     for tab, first in (("favourites", "favourite"), ("recents", "recent"), ("contacts", "contact")):
         cockpit.open_app("phone")
         press(cockpit, f"phone.tab.{tab}")
-        assert shown(cockpit, "phone.about") == "Tap a name to call or send a message"
+        assert shown(cockpit, "phone.about") == "Select a contact to call or message"
         entry = next(one for one in cockpit.elements() if one.resource_id == shown_id(f"phone.{first}.0"))
         assert entry.content_description.startswith("Call or message")
         assert press(cockpit, f"phone.{first}.0") is OK

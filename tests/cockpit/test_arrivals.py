@@ -76,7 +76,7 @@ def test_a_call_is_answered_and_ended(ringing: Cockpit) -> None:
     press(ringing, "call.end")
     assert ringing.signals[CALL.PARTNER] == ""
     press(ringing, "phone.tab.recents")
-    assert "Received" in element(ringing, "phone.recent.0").content_description
+    assert "Incoming" in element(ringing, "phone.recent.0").content_description
 
 
 def test_a_call_is_declined(ringing: Cockpit) -> None:

@@ -512,7 +512,7 @@ def test_a_long_press_on_plus_goes_several_steps_and_stops_at_the_end(cockpit: C
 def test_a_page_is_named_with_its_app_and_nothing_else_is_offered(cockpit: Cockpit) -> None:
     said = cockpit.open_app("Seats")
     assert said.code is FeedbackCode.NO_SUCH_ELEMENT
-    assert said.text == "seats is no app; it is a page of vehicle"
+    assert said.text == "seats is not an app; it is a page of vehicle"
 
 
 def test_no_list_begins_where_another_was_scrolled_to(cockpit: Cockpit) -> None:

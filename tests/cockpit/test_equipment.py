@@ -70,7 +70,7 @@ def test_a_reading_without_a_sensor_is_none_and_a_dash():
     told = cockpit.call("get_signals", {"path": TYRE.REAR_LEFT.path})
     assert told.text.endswith("null}")
     shown = cockpit.call("read_screen", {"screen": "driving", "item": ""})
-    assert "–. Out of order: tyre pressure sensors" in shown.text
+    assert "–. Not working: tyre pressure sensors" in shown.text
 
 
 def test_what_only_some_values_lack_still_takes_the_others():

@@ -328,7 +328,7 @@ def test_what_was_typed_stays(make: Make, around: Surroundings) -> None:
     press(cockpit, "map.search")
     cockpit.type_text("Home")
     field = next(element for element in cockpit.elements() if element.resource_id == shown_id("map.search"))
-    assert (field.text, field.hint_text) == ("Home", "Où aller ?")
+    assert (field.text, field.hint_text) == ("Home", "Où aller\u202f?")
 
 
 def test_the_language_is_chosen_in_the_settings(make: Make) -> None:

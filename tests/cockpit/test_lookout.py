@@ -66,7 +66,7 @@ def test_the_screens_show_each_sight_and_no_other(make: Make, around: Surroundin
     assert shown(cockpit, screen) == told
     assert len(told) == LINES
     assert told["emergency_vehicle"] == "Emergency vehicle 120 m behind"
-    assert told["vehicle_behind"] == "Vehicle 45 m behind comes closer"
+    assert told["vehicle_behind"] == "Vehicle 45 m behind is closing in"
     assert told["vehicle_ahead"] == "Vehicle ahead: 24 m"
     assert told["school_zone"] == "In a school zone"
 
@@ -93,7 +93,7 @@ def test_what_is_aboard(make: Make, around: Surroundings) -> None:
     cockpit = make(surroundings=around, lookout=True, driven_s=2 * 3600.0 + 300.0, signals=signals)
     cockpit.inject(SEAT.DRIVER_BELT.path, False)
     told = {kind: sight.text for kind, sight in by_kind(cockpit).items()}
-    assert told[SightKind.DRIVER_BELT] == "Driver's belt is open"
+    assert told[SightKind.DRIVER_BELT] == "Driver's seat belt unbuckled"
     assert told[SightKind.TAILGATE] == "Tailgate is open"
     assert told[SightKind.CHARGE_FLAP] == "Charging flap is open"
     assert told[SightKind.TYRE] == "Rear left tyre: 1.5 bar"
@@ -156,9 +156,11 @@ def test_every_sight_is_translated(make: Make, around: Surroundings, language: s
     for cockpit_ in (parked, empty):
         cockpit_.sense(replace(standing, parked=True), 1.0)
     told = [sight.text for each in (cockpit, riding, parked, empty) for sight in each.sights]
-    assert {"Belt is open: Rear left", "Driver has left, aboard: Child", "Driver has left, nobody aboard"} <= {
-        *told
-    }
+    assert {
+        "Seat belt unbuckled: Rear left",
+        "Driver has left, aboard: Child",
+        "Driver has left, nobody aboard",
+    } <= {*told}
     for text in told:
         words = said(text, language)
         assert words != text or text.startswith("Tunnel")

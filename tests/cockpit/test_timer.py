@@ -47,7 +47,7 @@ def test_it_tells_once_that_the_minutes_are_over(timer: Cockpit) -> None:
     for time_s in (1200.0, 1201.0, 1600.0):
         timer.sense(outside(time_s), 1.0)
         assert not timer.commands()["timer.running"]
-    assert [notice.text for notice in timer._state.notices] == ["5 minutes are over"]
+    assert [notice.text for notice in timer._state.notices] == ["5 minutes are up"]
     assert shown(timer, "timer.left") == "5:00"
 
 

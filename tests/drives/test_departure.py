@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from hashlib import sha256
@@ -17,14 +17,14 @@ from automotive_cosim.cockpit.signals import CABIN, CALL, MOTION, OCCUPANT, SEAT
 from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, SightKind, Weather
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
-from automotive_cosim.drives.departure import depart
+from automotive_cosim.drives.departure import depart, departed_on_a_free_road
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.script import DriveScript
-from automotive_cosim.errors import ScenarioError, UnknownNameError
+from automotive_cosim.errors import NoRoomError, ScenarioError, UnknownNameError
 from automotive_cosim.interface.trace import canonical, plain
-from automotive_cosim.scenarios import WeatherAt
+from automotive_cosim.scenarios import Trip, WeatherAt
 from automotive_cosim.scenarios.incidents import AheadIncident, EmergencyVehicle
-from automotive_cosim.traffic.base import DriverAt
+from automotive_cosim.traffic.base import DriverAt, EgoPlan
 from automotive_cosim.traffic.fork import Simulations
 from tests.drives.scenes import found
 
@@ -195,3 +195,32 @@ def test_what_cannot_be_driven_is_refused(
 ) -> None:
     with pytest.raises(error, match=told):
         depart(replace(LAPS, **change), simulations)
+
+
+class _Full:
+    """Traffic without a gap on some roads."""
+
+    def __init__(self, full: set[str]) -> None:
+        self.full = full
+
+    def depart(self, plan: EgoPlan) -> Any:
+        if plan.trip.name in self.full:
+            raise NoRoomError(f"no gap on {plan.trip.name}")
+        return plan
+
+
+@pytest.mark.parametrize(
+    ("full", "round_"),
+    [((), "abc"), ("a", "bca"), ("ab", "cab"), ("abc", "")],
+)
+def test_a_drive_begins_with_the_next_trip_if_the_first_ones_road_is_full(full: Sequence[str], round_: str) -> None:
+    a, b, c = (Trip(name, f"{name}1", f"{name}2") for name in "abc")
+    plan = EgoPlan(a, "average", 1, onward=(b, c, a))
+    simulation: Any = _Full(set(full))
+    if not round_:
+        with pytest.raises(NoRoomError, match="no gap on a"):
+            departed_on_a_free_road(simulation, plan)
+        return
+    begun, traffic = departed_on_a_free_road(simulation, plan)
+    assert traffic is begun
+    assert [begun.trip.name, *(trip.name for trip in begun.onward)] == [*round_, round_[0]]

@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from automotive_cosim.osm import access, barriers, oneway
 from automotive_cosim.osm.access import CLOSED, KEYS, OPEN, lets_in
+from automotive_cosim.osm.expected import expect
 from automotive_cosim.osm.oneway import directions
 from tests.laws import over
 
@@ -116,13 +117,15 @@ def test_which_way_cars_may_drive(tags: dict[str, str], may: tuple[bool, bool]) 
         ({"access": "private"}, []),
         ({"motor_vehicle": "no;destination"}, []),
         (
-            {"motor_vehicle:conditional": "no @ (Mo-Fr 07:00-09:00)"},
-            ["motor_vehicle:conditional=no @ (Mo-Fr 07:00-09:00)"],
+            {"motor_vehicle:conditional": "no @ (sunset-sunrise)"},
+            ["motor_vehicle:conditional=no @ (sunset-sunrise)"],
         ),
         (
-            {"motor_vehicle": "no", "motor_vehicle:conditional": "yes @ (18:00-06:00)"},
-            ["motor_vehicle:conditional=yes @ (18:00-06:00)"],
+            {"motor_vehicle": "no", "motor_vehicle:conditional": "yes @ low_traffic"},
+            ["motor_vehicle:conditional=yes @ low_traffic"],
         ),
+        ({"motor_vehicle:conditional": "no @ (Mo-Fr 07:00-09:00)"}, []),
+        ({"motor_vehicle": "no", "motor_vehicle:conditional": "yes @ (18:00-06:00)"}, []),
         ({"access:conditional": "destination @ (18:00-06:00)"}, []),
         ({"access:conditional": "no @ (weight>3.5)"}, []),
         ({"access:conditional": "no @ (20:00-06:00)", "motor_vehicle": "yes"}, []),
@@ -130,12 +133,50 @@ def test_which_way_cars_may_drive(tags: dict[str, str], may: tuple[bool, bool]) 
         ({"oneway": "reversible"}, ["oneway=reversible"]),
         ({"oneway": "alternating"}, ["oneway=alternating"]),
         ({"oneway": "perhaps"}, ["oneway=perhaps"]),
-        ({"oneway": "yes", "oneway:conditional": "no @ (22:00-06:00)"}, ["oneway:conditional=no @ (22:00-06:00)"]),
+        ({"oneway": "yes", "oneway:conditional": "no @ (22:00-06:00)"}, []),
+        ({"oneway": "yes", "oneway:conditional": "no @ destination"}, ["oneway:conditional=no @ destination"]),
         ({"oneway": "yes"}, []),
     ],
 )
 def test_doubtful_access_and_directions_are_told(tags: dict[str, str], told: list[str]) -> None:
     assert list(dict.fromkeys([*access.doubts(tags), *oneway.doubts(tags)])) == told
+
+
+@pytest.mark.parametrize(
+    ("tags", "hours", "may"),
+    [
+        ({"access:conditional": "no @ (Mo-Fr 07:30-08:30)"}, "no @ (Mo-Fr 07:30-08:30)", BOTH),
+        ({"motor_vehicle:conditional": "delivery @ (06:00-11:00)"}, "no @ (06:00-11:00)", BOTH),
+        ({"access": "no", "access:conditional": "yes @ (18:00-06:00)"}, "no @ (24/7); yes @ (18:00-06:00)", BOTH),
+        ({"vehicle:conditional": "no @ (Sa 10:00-18:00); no @ snow"}, "no @ (Sa 10:00-18:00); no @ (snow)", BOTH),
+        (
+            {"access:conditional": "no @ (07:00-19:00)", "motorcar:conditional": "destination @ (10:00-12:00)"},
+            "no @ (07:00-19:00); yes @ (10:00-12:00)",
+            BOTH,
+        ),
+        ({"motor_vehicle:backward:conditional": "no @ (Mo-Fr 07:00-09:00)"}, "", BOTH),
+        ({"access": "no", "access:forward:conditional": "yes @ 24/7"}, "no @ (24/7); yes @ (24/7)", WITH),
+        ({"access:conditional": "no @ (20:00-06:00)", "motor_vehicle": "yes"}, "", BOTH),
+        ({"access": "no", "access:conditional": "yes @ (weight<3.5)"}, "", NEITHER),
+        ({"oneway:conditional": "-1 @ (Mo-Fr 07:00-09:00)"}, "no @ (Mo-Fr 07:00-09:00)", BOTH),
+        ({"oneway:conditional": "yes @ (Mo-Fr 07:00-09:00)"}, "", BOTH),
+        ({"oneway": "-1", "oneway:conditional": "no @ (22:00-06:00)"}, "no @ (24/7); yes @ (22:00-06:00)", BOTH),
+        ({"oneway": "yes", "oneway:conditional": "no @ destination"}, "", WITH),
+        (
+            {"oneway": "yes", "lanes": "3", "oneway:conditional": "-1 @ (07:00-09:00)"},
+            "no @ (07:00-09:00)",
+            WITH,
+        ),
+        ({"oneway": "yes", "oneway:motorcar": "no", "oneway:conditional": "-1 @ (07:00-09:00)"}, "", BOTH),
+        ({"access": "no", "access:conditional": "yes @ (sunrise-sunset)"}, "", NEITHER),
+    ],
+)
+def test_access_at_certain_hours(tags: dict[str, str], hours: str, may: tuple[bool, bool]) -> None:
+    """With the nodes of the way; a road that is ever open is in the network."""
+    assert oneway.at_hours(tags, "forward") == hours
+    assert directions({"highway": "tertiary"} | tags) == may
+    expected = expect({"highway": "tertiary"} | tags, "DE", miles=(), metric=("DE",))
+    assert (expected.forward, expected.backward) == may, "the second reading says the same"
 
 
 @given(st.dictionaries(st.sampled_from(KEYS), st.text(max_size=8), max_size=4))

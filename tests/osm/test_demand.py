@@ -18,7 +18,9 @@ def built(*turns: str) -> Any:
     names = sorted({name for turn in turns for name in turn})
     crossings = {name: {turn[1]: None for turn in turns if turn[0] == name} for name in names}
     edges = [SimpleNamespace(edge_id=name) for name in names]
-    return SimpleNamespace(edges=edges, network=SimpleNamespace(crossings=crossings))
+    network = SimpleNamespace(crossings=crossings)
+    network.open_at_all_hours = lambda: network
+    return SimpleNamespace(edges=edges, network=network)
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ import pytest
 
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.trace import sha256
+from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_jobs, run_plan
 from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -152,6 +153,17 @@ def test_order_and_number_of_workers_do_not_show(tmp_path, monkeypatch):
         assert (
             trace_file(tmp_path / "one", row.id).read_bytes() == trace_file(tmp_path / "two", row.id).read_bytes()
         )
+
+
+@pytest.mark.sumo
+def test_while_the_first_jobs_wait_for_their_traffic_that_is_told(tmp_path, monkeypatch):
+    monkeypatch.setattr(batch, "TELL_S", 0.05)
+    told = []
+    run_plan(plan("oracle"), tmp_path / "e", tell=told.append)
+    first, *between, last = told
+    assert (first.warming, last.warming) == ((), ())
+    assert {(each.warming, each.done, each.ended) for each in between} == {(("grid",), 0, None)}
+    assert last.ended is not None
 
 
 @pytest.mark.sumo

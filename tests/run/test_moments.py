@@ -71,14 +71,30 @@ def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
     judged = read_judged(kept[0], "a")
     task = CATALOGUE["phenomenon_front_window_fogged"]
     instance = Instance(task, "first", judged.goal, judged.parameters)
-    again = judge(instance, judged.trace, judged.baseline, judged.counterfactual, judged.declared, judged.reason)
+    again = judge(
+        instance, judged.trace, judged.baseline, lambda: judged.counterfactual, judged.declared, judged.reason
+    )
     assert again == collected[1].verdict
+
+
+def test_the_cockpit_goes_through_a_drive_again_only_if_something_else_was_left_changed(collected):
+    def asked():
+        raise AssertionError("the counterfactual is asked for")
+
+    judged = collected[0].judged()
+    instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
+    untouched = judged.baseline
+    assert judge(instance, untouched, untouched, asked, None, None).clean.ok
+    last = untouched[-1]
+    spoilt = replace(last, commands={**last.commands, "sent": ["a message"]})
+    with pytest.raises(AssertionError, match="is asked for"):
+        judge(instance, (*untouched[:-1], spoilt), untouched, asked, None, None)
 
 
 def test_an_agent_that_failed_has_no_success_even_where_silence_is_right(collected):
     judged = collected[0].judged()
     instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
-    told = (instance, judged.baseline, judged.baseline, judged.counterfactual, None, None)
+    told = (instance, judged.baseline, judged.baseline, lambda: judged.counterfactual, None, None)
     failed = judge(*told, "it crashed")
     assert "it crashed" in failed.declared.why
     assert not failed.success

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from datetime import datetime
+from functools import cache
 from zoneinfo import ZoneInfo
 
 import pytest
@@ -13,13 +14,16 @@ from automotive_cosim.contracts import (
     GpsFix,
     Limit,
     LimitSource,
+    Road,
     RoadAhead,
     RoadHere,
     Weather,
 )
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.tasking.binding import UnmetNeedError, bound, needs
+from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.tasking.binding import UnmetNeedError, bound, needs, never_here
 from automotive_cosim.tasking.task import Basis, Half
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
@@ -124,3 +128,31 @@ def test_every_half_of_a_pair_says_what_it_needs(task_id: str, half_name: str) -
             bound(each, context((-30.0, 40.0), limit_kmh=None, source=LimitSource.ASSUMED))
     if each.basis in (Basis.PHYSICS, Basis.WISH):
         assert bound(each, context((-30.0, 40.0))) == each.rule
+
+
+@pytest.mark.slow
+@over([(name, half) for name in CATALOGUE for half in CATALOGUE[name].halves])
+def test_no_half_is_refused_in_its_own_network(name: str, half: str) -> None:
+    start = CATALOGUE[name].half(half).start
+    roads, changes = _roads(start.scenario, start.origin)
+    assert changes or not never_here(CATALOGUE[name].half(half), roads)
+
+
+@cache
+def _roads(scenario: str, origin: tuple[float, float] | None) -> tuple[tuple[Road, ...], bool]:
+    """The roads of a task's place, and whether incidents or limits by the clock change them."""
+    opened = open_scenario(scenario, origin=origin)
+    network = network_of(opened)
+    return network.map.roads, bool(opened.incidents) or any(edge.timed_limits for edge in network.edges.values())
+
+
+def test_what_no_road_of_a_place_has_is_told() -> None:
+    tunnel = next(
+        half
+        for task in CATALOGUE.values()
+        for half in map(task.half, task.halves)
+        if "in a tunnel" in str(half.trigger.condition).split(", ")
+    )
+    roads, _ = _roads("grid", None)
+    assert never_here(tunnel, roads) == ""
+    assert never_here(tunnel, [road for road in roads if not road.in_tunnel]) == "in a tunnel"

@@ -6,17 +6,18 @@ from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
 from datetime import datetime, time, timedelta
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
+from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, LimitSource
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.posted import in_force, sign_mps, timed_limits
+from automotive_cosim.traffic.posted import in_force, is_open, sign_mps, timed_access, timed_limits
 
 Edit = Callable[[Path], None]
 Variant = Callable[[Edit], Scenario]
@@ -164,6 +165,27 @@ def test_days_off_are_taken_from_the_week() -> None:
     assert [bool(in_force(limits, at(day, "12:00"))) for day in range(1, 8)] == [True] * 5 + [False] * 2
 
 
+def test_the_first_sunday_of_the_month_by_season() -> None:
+    """As on an avenue in Paris that is closed to cars then; every instant of a year."""
+    closed = timed_access("no @ (Jan-Mar,Oct-Dec Su[1] 10:00-17:00; Apr-Sep Su[1] 11:00-18:00)")
+    shut = [
+        day
+        for day in (datetime(2026, 1, 1, 17, 30) + timedelta(days=number) for number in range(365))
+        if not is_open(closed, day)
+    ]
+    assert [(day.month, day.isoweekday(), day.day <= 7) for day in shut] == [
+        (month, 7, True) for month in range(4, 10)
+    ]
+    assert not is_open(closed, datetime(2026, 11, 1, 10, 0))
+    assert is_open(closed, datetime(2026, 11, 8, 10, 0))
+    spaced, plain = "no @ (We 06:30 - 14:30; Sa 06:30 – 14:30)", "no @ (We 06:30-14:30; Sa 06:30-14:30)"
+    assert timed_access(spaced) == timed_access(plain) != ()
+    (last,) = timed_access("no @ (Fr[-1] 22:00-06:00)")
+    assert [last.hours.holds(datetime(2026, 10, day, 23)) for day in (23, 30)] == [False, True]
+    assert last.hours.holds(datetime(2026, 10, 31, 5))
+    assert not timed_access("no @ (Mo-Fr[1] 08:00-09:00)")
+
+
 def test_of_several_the_last_written_holds() -> None:
     limits, _ = timed_limits("80 @ (06:00-20:00); 60 @ (08:00-09:00)")
     held = in_force(limits, at(2, "08:30"))
@@ -253,3 +275,40 @@ def test_a_limit_ends_while_the_car_is_in_it(school: Forked, grid: Scenario) -> 
     assert inside[-1].road.limit_hours
     assert not inside[-1].road.limit_by_clock
     assert inside[-1].speed_mps > by_clock[-1].speed_mps
+
+
+@pytest.fixture
+def shut(sumo: None, variant: Variant) -> Iterator[Forked]:
+    """The grid, whose avenue is closed in its middle from 8 to 9, and barred to those who drive on from 7 to 8."""
+
+    def edit(folder: Path) -> None:
+        edges = folder / "grid.edg.xml"
+        text = edges.read_text().replace('<edge id="nwn0"', '<edge id="nwn0" disallow="tram"', 1)
+        for edge, param in (
+            ("c1c2", '<param key="access:conditional" value="no @ (Mo-Fr 08:00-09:00)"/>'),
+            ("c2c3", '<param key="restriction:conditional:c3c4" value="no @ (Mo-Fr 07:00-08:00)"/>'),
+        ):
+            end = text.index("</edge>", text.index(f'<edge id="{edge}"'))
+            text = text[:end] + param + text[end:]
+        edges.write_text(text)
+        built, printed = sumo_programs.run(
+            "netconvert",
+            ["-n", folder / "grid.nod.xml", "-e", edges, "--proj.utm", "-o", folder / "grid.net.xml"],
+        )
+        assert built, printed
+
+    with closing(Forked(variant(edit), seed=1)) as simulation:
+        yield simulation
+
+
+def test_roads_and_turns_are_closed_at_the_hours_of_the_drive(shut: Forked, grid: Scenario) -> None:
+    tuesday, driven = grid.start, {}
+    for hour in (7, 8, 9):
+        plan = EgoPlan(grid.trip("avenue"), "average", seed=3, start=tuesday.replace(hour=hour, minute=20))
+        with closing(shut.depart(plan)) as traffic:
+            states = traffic.advance(600.0).states
+        assert states[-1].end is EgoEnd.ARRIVED
+        driven[hour] = [edge for edge in dict.fromkeys(state.road.edge_id for state in states) if edge[0] != ":"]
+    assert driven[9] == ["cwc0", "c0c1", "c1c2", "c2c3", "c3c4", "c4ce"]
+    assert "c1c2" not in driven[8]
+    assert ("c2c3", "c3c4") not in pairwise(driven[7])

@@ -63,7 +63,7 @@ def _seat(rect: Rect, seat: Seat, one: Occupant | None) -> Widget:
     told = [(f"{key}.weight", f"{one.weight_kg:g} kg")]
     if one.kind is not Kind.OBJECT:
         told.append((f"{key}.awake", say("Asleep") if one.asleep else say("Awake")))
-    told.append((f"{key}.belt", say("Belt closed") if one.belted else say("Belt open")))
+    told.append((f"{key}.belt", say("Buckled") if one.belted else say("Unbuckled")))
     return Card(
         rect=rect,
         look="raised",
@@ -84,7 +84,7 @@ def _forecast(rect: Rect, state: State) -> Widget:
     head, _, table, _, keep = column(rect.inset(20, 16), 30, 10, 160, REST, 60)
     lines = table.rows(4, 0)
     children: list[Widget] = [
-        heading(head, say("Cabin once you have left")),
+        heading(head, say("Cabin after you leave")),
         *(
             Label(rect=cell, text=text, style=Type.LABEL, tone="muted", align="right")
             for cell, text in zip(_columns(lines[0])[1:], (say("Climate off"), say("Climate on")), strict=True)

@@ -101,7 +101,7 @@ def appointment(state: State) -> tuple[Widget, ...]:
                 Button(
                     rect=there,
                     key="appointment.place_there",
-                    text=say("Show the place"),
+                    text=say("Show on the map"),
                     icon=Icon.GOAL,
                     on_tap=Show("place", entry.place),
                 ),

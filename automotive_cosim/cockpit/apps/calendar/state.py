@@ -15,7 +15,7 @@ APPOINTMENTS = 4
 _OCCASIONS = (
     (say("Check-up"), PlaceKind.HOSPITAL),
     (say("Team meeting"), PlaceKind.WORK),
-    (say("A meal with Nora"), PlaceKind.RESTAURANT),
+    (say("Meal with Nora"), PlaceKind.RESTAURANT),
     (say("Parents' evening"), PlaceKind.SCHOOL),
     (say("Training"), PlaceKind.GYM),
     (say("Groceries"), PlaceKind.SHOP),

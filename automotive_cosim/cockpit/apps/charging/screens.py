@@ -80,7 +80,7 @@ def charging(state: State) -> tuple[Widget, ...]:
                     checked=timer.on,
                     on_tap=Put(
                         ChargingSchedule(replace(timer, on=not timer.on)),
-                        say("Charging starts at once")
+                        say("Charging starts immediately")
                         if timer.on
                         else say("Charged by {shown}", shown=timer.shown),
                     ),

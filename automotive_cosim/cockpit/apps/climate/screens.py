@@ -69,7 +69,7 @@ def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[f
         levels(
             tiles[2],
             "hvac.steering_wheel_heating",
-            say("Wheel"),
+            say("Steering wheel heat"),
             Icon.STEERING,
             SEAT.STEERING_WHEEL_HEATING,
             signals,
@@ -107,7 +107,7 @@ def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[f
                 levels(
                     tiles[1],
                     f"hvac.{who}_seat_airing",
-                    say("Seat air"),
+                    say("Seat ventilation"),
                     Icon.SEAT_COOLER,
                     seat,
                     signals,
@@ -146,7 +146,7 @@ def _air(rect: Rect, state: State) -> Widget:
                 description=say("Fan at full speed"),
                 on_tap=Set(HVAC.FAN_SPEED, HVAC.FAN_SPEED.high),
             ),
-            heading(name, say("Air to")),
+            heading(name, say("Airflow")),
             choices(
                 ways_to,
                 "hvac.air",
@@ -258,9 +258,9 @@ def _rear(rect: Rect, state: State) -> Widget:
     known = (
         ("temperature", say("Temperature"), temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
         ("humidity", say("Humidity"), f"{signals[HVAC.CABIN_HUMIDITY]:.0f} %"),
-        ("air", say("Air comes from"), say("Inside") if signals[HVAC.RECIRCULATION] else say("Outside")),
+        ("air", say("Air intake"), say("Inside") if signals[HVAC.RECIRCULATION] else say("Outside")),
         ("purifier", say("Purifier"), say("On") if signals[HVAC.PURIFIER] else say("Off")),
-        ("fine_dust", say("Fine dust"), f"{signals[HVAC.CABIN_FINE_DUST]:.0f} µg/m³"),
+        ("fine_dust", say("Fine particles"), f"{signals[HVAC.CABIN_FINE_DUST]:.0f} µg/m³"),
     )
     return Card(
         rect=rect,
@@ -311,12 +311,14 @@ def _schedule(rect: Rect, state: State) -> Widget:
             Tile(
                 rect=prepare,
                 key="climate.schedule",
-                text=say("Prepare the cabin"),
+                text=say("Precondition the cabin"),
                 icon=Icon.CLIMATE,
                 checked=on,
                 on_tap=Put(
                     ClimateSchedule(replace(timer, on=not on)),
-                    say("The schedule is off") if on else say("The cabin is prepared for {time}", time=timer.shown),
+                    say("The schedule is off")
+                    if on
+                    else say("The cabin will be ready at {time}", time=timer.shown),
                 ),
             ),
             *time_setter(

@@ -34,7 +34,7 @@ class ClimateSchedule(AppData):
         starts = self.timer.moved(-PREPARING_MIN).minute
         if self.timer.on and _minute(before.local_time) < starts <= _minute(state.outside.local_time):
             state.vehicle.command(HVAC.AUTO, True)
-            state.notify(say("The cabin is being prepared, as set for {time}", time=self.timer.shown), Icon.CLIMATE)
+            state.notify(say("The cabin is being preconditioned for {time}", time=self.timer.shown), Icon.CLIMATE)
 
 
 def _minute(time: datetime) -> float:

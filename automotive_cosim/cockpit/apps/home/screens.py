@@ -124,7 +124,7 @@ def _map_card(rect: Rect, state: State) -> Widget:
 
 def drive_card(rect: Rect, state: State) -> Widget:
     """Speed, range and battery."""
-    signals = state.signals
+    signals, telltales = state.signals, lit(state)
     level = signals[ENERGY.LEVEL]
     inner = rect.inset(24, 14)
     head, _, reach, _, bar, _ = column(inner.right_part(220), 28, 2, 40, 14, 12, REST)
@@ -151,8 +151,8 @@ def drive_card(rect: Rect, state: State) -> Widget:
             Telltales(
                 rect=lamps.left(LAMPS_WIDTH).middle(LAMPS_WIDTH, LAMPS_WIDTH),
                 key="home.telltales",
-                description=lit_in_words(state),
-                lit=lit(state),
+                description=lit_in_words(telltales),
+                lit=telltales,
             ),
             heading(head, say("Range")),
             Label(
@@ -232,9 +232,9 @@ def _climate_card(rect: Rect, state: State) -> Widget:
 def _outside_card(rect: Rect, state: State) -> Widget:
     """The worst of the phenomena outside."""
     value, note = _lines(rect)
-    readings = {known: known.read(state) for known in PHENOMENA.values()}
-    worst = max(readings, key=lambda known: readings[known].share)
-    calm = readings[worst].share < NOTICED
+    readings = [(known, known.read(state)) for known in PHENOMENA.values()]
+    worst, reading = max(readings, key=lambda pair: pair[1].share)
+    calm = reading.share < NOTICED
     return _live(
         rect,
         "home.outside",
@@ -244,16 +244,16 @@ def _outside_card(rect: Rect, state: State) -> Widget:
         Label(
             rect=value,
             key="home.outside.value",
-            text=say("No weather hazards") if calm else readings[worst].word,
+            text=say("No weather hazards") if calm else reading.word,
             description=say("Outside"),
             style=Type.TITLE,
         ),
         Label(
             rect=note,
             key="home.outside.note",
-            text=say("Checked: rain, fog, ice, dust, wind")
+            text=say("Monitoring rain, fog, ice, dust, wind")
             if calm
-            else say("{name}: {value}", name=worst.title, value=readings[worst].value),
+            else say("{name}: {value}", name=worst.title, value=reading.value),
             style=Type.LABEL,
             tone="muted",
         ),
@@ -262,7 +262,7 @@ def _outside_card(rect: Rect, state: State) -> Widget:
 
 _WORDS = {kind: name for kind, (name, _) in KINDS.items()} | {
     AlertKind.SLIPPERY: say("Slippery"),
-    AlertKind.CORRIDOR: say("Corridor"),
+    AlertKind.CORRIDOR: say("Rescue lane"),
     AlertKind.YIELD: say("Yield"),
 }
 """Names of alerts in this card."""
@@ -272,7 +272,7 @@ def _safety_card(rect: Rect, state: State) -> Widget:
     value, note = _lines(rect)
     last = state.of(Alerts).given[-1] if state.of(Alerts).given else None
     title = say("Warn driver") if last is None else say("{kind} alert", kind=_WORDS[last.alert.kind])
-    words = say("No alerts given") if last is None else say("Given at {time}", time=last.clock)
+    words = say("No alerts yet") if last is None else say("Given at {time}", time=last.clock)
     return _live(
         rect,
         "home.safety",
@@ -302,7 +302,7 @@ def _phone_line(state: State) -> tuple[Icon, str, str]:
     """The state of the phone: icon, text and its subject."""
     phone, count = state.of(Phone), len(state.of(Directory).unread(state.of(Phone)))
     if phone.ringing is not None:
-        return Icon.CALL_IN, phone.ringing.who, say("Is calling")
+        return Icon.CALL_IN, phone.ringing.who, say("Incoming call")
     if phone.on_call is not None:
         return Icon.IN_CALL, phone.on_call.who, say("On the phone")
     new = counted("{n} new message", "{n} new messages", count) if count else say("No new messages")

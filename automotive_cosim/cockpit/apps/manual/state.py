@@ -45,7 +45,7 @@ TOPICS: tuple[tuple[str, Icon, str], ...] = (
         ),
     ),
     (
-        say("Saving range"),
+        say("Extending range"),
         Icon.BATTERY,
         say("Drive slower, use economy mode, and warm the seats rather than the air: a seat takes a tenth of it."),
     ),

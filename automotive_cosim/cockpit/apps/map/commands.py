@@ -94,6 +94,6 @@ class Follow(Message):
         """The car in the middle again; once it is there, the way up."""
         view = state.of(Viewpoint)
         if view.panned is not None:
-            return state.change(replace(view, panned=None), say("The map follows the car"))
-        said = say("North is up") if self.north_up else say("The map turns with the car")
+            return state.change(replace(view, panned=None), say("Map follows the car"))
+        said = say("North up") if self.north_up else say("Heading up")
         return state.change(replace(view, north_up=self.north_up), said)

@@ -36,7 +36,7 @@ def navigate_to(
         return found
     goal = state.of(Navigation).destination
     if goal == found:
-        return disabled(say("You are already on the way there"))
+        return disabled(say("Already navigating there"))
     if as_stop and not goal:
         return disabled(say("The route has no place as its destination"))
     return Guide(found, goal) if as_stop else Guide(found)

@@ -56,7 +56,7 @@ TYRE_NAMES = {
     TYRE.REAR_LEFT: say("Rear left tyre"),
     TYRE.REAR_RIGHT: say("Rear right tyre"),
 }
-PHONE = {"HAND": say("Phone in the driver's hand"), "CRADLE": say("Phone in use in its cradle")}
+PHONE = {"HAND": say("Driver is holding a phone"), "CRADLE": say("Phone in use in its cradle")}
 AHEAD: Mapping[SightKind, Callable[[str], Text]] = {
     SightKind.TUNNEL: lambda far: say("Tunnel in {distance}", distance=far),
     SightKind.SCHOOL_ZONE: lambda far: say("School zone in {distance}", distance=far),
@@ -80,13 +80,13 @@ def sights(state: State) -> tuple[Sight, ...]:
 def _aboard(state: State) -> Iterator[Sight]:
     signals = state.signals
     if not signals[SEAT.DRIVER_BELT] and signals[MOTION.GEAR] != "P":
-        yield Sight(SightKind.DRIVER_BELT, say("Driver's belt is open"))
+        yield Sight(SightKind.DRIVER_BELT, say("Driver's seat belt unbuckled"))
     others = sorted(
         (one for one in seated(signals) if one.seat is not Seat.DRIVER), key=lambda one: not one.kind.needs_care
     )
     unbelted = [one for one in others if not one.belted]
     if unbelted and signals[MOTION.GEAR] != "P":
-        yield Sight(SightKind.PASSENGER_BELT, say("Belt is open: {seat}", seat=SEATS[unbelted[0].seat]))
+        yield Sight(SightKind.PASSENGER_BELT, say("Seat belt unbuckled: {seat}", seat=SEATS[unbelted[0].seat]))
     if state.parked_s is not None and not signals[OCCUPANT.DRIVER.occupied]:
         left = (
             say("Driver has left, aboard: {who}", who=WHO[others[0].kind])
@@ -123,7 +123,7 @@ def _behind(state: State, driving: DrivingState) -> Iterator[Sight]:
     if follower is not None and follower.gap_m <= REAR_RADAR_M:
         closing_mps = follower.speed_mps - driving.speed_mps
         if closing_mps >= CLOSING_MPS:
-            said = say("Vehicle {distance} behind comes closer", distance=_near(state.signals, follower.gap_m))
+            said = say("Vehicle {distance} behind is closing in", distance=_near(state.signals, follower.gap_m))
             yield Sight(SightKind.VEHICLE_BEHIND, said, follower.gap_m, closing_mps)
 
 

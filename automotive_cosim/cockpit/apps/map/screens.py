@@ -180,9 +180,9 @@ def _orientation(rect: Rect, state: State) -> Button:
     if state.of(Viewpoint).panned is not None:
         words, icon, message = say("Back to the car"), Icon.GPS, Follow(state.of(Viewpoint).north_up)
     elif state.of(Viewpoint).north_up:
-        words, icon, message = say("North is up"), Icon.COMPASS, Follow(False)
+        words, icon, message = say("North up"), Icon.COMPASS, Follow(False)
     else:
-        words, icon, message = say("The map turns with the car"), Icon.NAVIGATION, Follow(True)
+        words, icon, message = say("Heading up"), Icon.NAVIGATION, Follow(True)
     return Button(
         rect=rect, key="map.orientation", description=words, icon=icon, look=Look.FLOATING, on_tap=message
     )
@@ -253,7 +253,7 @@ def _marks(rect: Rect, state: State, camera: Camera, avoid: tuple[Rect, ...]) ->
     A mark that would cover the car stands before or behind it on its road.
     """
     known: list[tuple[str, str, Icon, Spot | None]] = [
-        ("jam", say("A jam begins here"), Icon.JAM, jam(state)),
+        ("jam", say("Traffic jam starts here"), Icon.JAM, jam(state)),
         ("end", say("The route ends here"), Icon.GOAL, goal(state)),
     ]
     told = enumerate(incidents(state, besides_jam=known[0][3] is not None))

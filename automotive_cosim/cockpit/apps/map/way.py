@@ -32,7 +32,7 @@ def explore(state: State) -> tuple[Widget, ...]:
     found = nearest(state, state.of(Gazetteer).of(kind))
     return (
         *_head(state, SORTS[kind].title, SORTS[kind].icon, "explore"),
-        _places(state, found) if found else note(panel(state).below(72), "explore.empty", say("None known nearby")),
+        _places(state, found) if found else note(panel(state).below(72), "explore.empty", say("None found nearby")),
         sight(state),
     )
 
@@ -132,7 +132,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
     saved = name in navigation.favourites
     goal = navigation.destination
     cells = column(rect, 56, 8, 56, 8, 56, 8, 56)[::2]
-    there = say("You are already on the way there") if goal == name else ""
+    there = say("Already navigating there") if goal == name else ""
     extra: tuple[Widget, ...] = ()
     if known is not None and known.kind is PlaceKind.PARKING and "parking" in state.of(Installed).apps:
         extra = (
@@ -148,7 +148,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
         Button(
             rect=cells[0],
             key="place.start",
-            text=say("You are on the way there") if there else say("Start guidance"),
+            text=say("Navigating there") if there else say("Start guidance"),
             icon=Icon.ROUTE,
             look=Look.ACCENT,
             on_tap=Guide(name),
@@ -157,7 +157,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
         Button(
             rect=cells[1],
             key="place.stop",
-            text=say("Stop on the way"),
+            text=say("Add as a stop"),
             icon=Icon.PLACE,
             on_tap=Guide(name, goal),
             disabled=there or ("" if goal else say("The route has no place as its destination")),
@@ -190,7 +190,11 @@ def route(state: State) -> tuple[Widget, ...]:
             "route.tab",
             [
                 (name, text, None, shown == name, Pick("route", name))
-                for name, text in (("turns", say("Turns")), ("ways", say("Routes")), ("options", say("Options")))
+                for name, text in (
+                    ("turns", say("Directions")),
+                    ("ways", say("Routes")),
+                    ("options", say("Options")),
+                )
             ],
         ),
         *pages[shown](body, state),
@@ -206,7 +210,7 @@ def _turn_list(rect: Rect, state: State) -> tuple[Widget, ...]:
         rows(
             rect,
             "route.turns",
-            say("Turns"),
+            say("Directions"),
             state,
             len(ahead),
             lambda index, cell: Row(
@@ -242,7 +246,7 @@ def _ways(rect: Rect, state: State) -> tuple[Widget, ...]:
         )
         for at, other in enumerate(others)
     ]
-    lines.append((say("Look for a faster route"), say("With the traffic as it is now"), "", Icon.ROUTE, Guide("")))
+    lines.append((say("Look for a faster route"), say("In current traffic"), "", Icon.ROUTE, Guide("")))
     lines += [
         (charger.name, charger.detail, away(state, charger.name), Icon.CHARGING, Show("place", charger.name))
         for charger in chargers
@@ -302,7 +306,7 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
             )
             for cell, (name, (text, icon)) in zip(cells, AVOIDABLE.items(), strict=True)
         ),
-        heading(spoken, say("Spoken guidance")),
+        heading(spoken, say("Voice guidance")),
         choices(
             voices,
             "route.voice",
@@ -321,6 +325,6 @@ def _options(rect: Rect, state: State) -> tuple[Widget, ...]:
             text=say("Skip the stop: {place}", place=onward) if onward else say("Remove the stop"),
             icon=Icon.GOAL,
             on_tap=Guide(onward),
-            disabled="" if onward else say("There is no stop on the way"),
+            disabled="" if onward else say("There is no stop on the route"),
         ),
     )

@@ -35,7 +35,7 @@ def play_media(
     if not title:
         if not chosen:
             return unknown("title", title, ())
-        return Play(tracks[0], chosen) if tracks else disabled(say("It is empty"))
+        return Play(tracks[0], chosen) if tracks else disabled(say("Nothing in this list"))
     entry = _entry(library, title, by, tracks if chosen else (), state.signals[MEDIA.SOURCE])
     if entry is None:
         return unknown("title", title, (each.title for each in library.by_uri.values()))

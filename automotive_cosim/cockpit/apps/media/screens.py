@@ -212,12 +212,12 @@ def playlist(state: State) -> tuple[Widget, ...]:
             icon=Icon.PLAY,
             look=Look.ACCENT,
             on_tap=Play(tracks[0].uri if tracks else "", name),
-            disabled="" if tracks else say("It is empty"),
+            disabled="" if tracks else say("Nothing in this list"),
         ),
         Button(
             rect=change,
             key="playlist.change",
-            text=say("Remove") if inside else say("Add this"),
+            text=say("Remove") if inside else say("Add to playlist"),
             description=say("{title}: remove it", title=playing.title)
             if inside
             else say("{title}: add it", title=playing.title),
@@ -272,7 +272,7 @@ def _now(rect: Rect, state: State) -> Widget:
                 style=Type.TITLE,
                 lines=2,
             ),
-            Label(rect=by, key="media.artist", text=entry.by, description=say("By"), tone="muted"),
+            Label(rect=by, key="media.artist", text=entry.by, description=say("Artist"), tone="muted"),
             *_progress(way, state, entry.length_s),
             Button(
                 rect=previous.inset(0, 8),

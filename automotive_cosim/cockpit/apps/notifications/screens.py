@@ -60,7 +60,7 @@ def notifications(state: State) -> tuple[Widget, ...]:
                     on_tap=Dismiss(all=True),
                     disabled=""
                     if state.notices
-                    else say("These go when they are dealt with")
+                    else say("These clear once they are resolved")
                     if lines
                     else say("There is nothing to clear"),
                 ),

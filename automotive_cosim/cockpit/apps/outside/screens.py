@@ -154,7 +154,7 @@ def _air(state: State) -> OutsideReading:
 
 def _wind(state: State) -> OutsideReading:
     wind = state.signals[OUTSIDE.WIND]
-    calm = say_in("wind", "Calm")
+    calm = say_in("wind", "Light")
     word = calm if wind < 20 else say("Breeze") if wind < 50 else say("Strong") if wind < 75 else say("Storm")
     return OutsideReading(word, f"{speed(state.signals, wind)} {speed_unit(state.signals)}", min(1.0, wind / 100))
 
@@ -208,7 +208,7 @@ PHENOMENA: dict[str, Phenomenon] = {
     "ice": Phenomenon(
         say("Ice and grip"),
         Icon.SLIPPERY,
-        say("Grip as the stability control estimates it, beside a dry road."),
+        say("Grip estimated by stability control, compared with a dry road."),
         _ice,
         (
             _mode("snow_mode", say("Snow mode"), "SNOW"),
@@ -221,7 +221,7 @@ PHENOMENA: dict[str, Phenomenon] = {
     "glare": Phenomenon(
         say("Glare"),
         Icon.DAY,
-        say("A low sun ahead, as the light sensor at the mirror sees it. A clean windshield scatters less."),
+        say("Low sun ahead, measured by the light sensor at the mirror. A clean windshield reduces glare."),
         _glare,
         (
             Act("brightness", say("Bright screen"), Icon.BRIGHTNESS, HMI.BRIGHTNESS, 100.0, 70.0),
@@ -232,7 +232,7 @@ PHENOMENA: dict[str, Phenomenon] = {
     "dust": Phenomenon(
         say("Dust"),
         Icon.DUST,
-        say("Dust and sand in the air ahead."),
+        say("Dust and sand ahead."),
         _dust,
         (_RECIRCULATION, _PURIFIER, _LOW_BEAM),
         AlertKind.VISIBILITY,
@@ -240,7 +240,7 @@ PHENOMENA: dict[str, Phenomenon] = {
     "air": Phenomenon(
         say("Air quality"),
         Icon.AIR_QUALITY,
-        say("Fine dust at the air intake, graded by the European Air Quality Index."),
+        say("Fine particles at the air intake, rated by the European Air Quality Index."),
         _air,
         (_RECIRCULATION, _PURIFIER),
         AlertKind.WEATHER,

@@ -46,7 +46,7 @@ def parking(state: State) -> tuple[Widget, ...]:
                         for zone in ZONES
                     ],
                 ),
-                heading(stay_name, say("How long")),
+                heading(stay_name, say("Duration")),
                 choices(
                     stays,
                     "parking.time",

@@ -47,7 +47,7 @@ class CallEmergency(Command):
         """The call, with the car's position."""
         phone = state.of(Phone)
         state.keep(replace(phone, called=(*phone.called, "emergency")))
-        state.notify(say("Emergency call made"), Icon.PHONE_ALERT, Severity.CRITICAL)
+        state.notify(say("Emergency call placed"), Icon.PHONE_ALERT, Severity.CRITICAL)
         return Feedback(FeedbackCode.OK, say("the emergency services are called"))
 
 
@@ -110,7 +110,7 @@ class DeclineCall(Command):
         logged = phone.logged(PastCall(ringing.who, state.clock, "missed"))
         state.keep(replace(logged, ringing=None, declined=(*phone.declined, ringing.who)))
         tell(state)
-        return Feedback(FeedbackCode.OK, say("the call of {who} is declined", who=ringing.who))
+        return Feedback(FeedbackCode.OK, say("the call from {who} is declined", who=ringing.who))
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,7 +49,7 @@ SENTENCES: Mapping[str, Sentence] = {
         lambda figure: say("I have driven {distance} km", distance=figure), say("Distance"), 0, 1, 10, 990
     ),
     "used": Sentence(
-        lambda figure: say("I used {energy} kWh per 100 km", energy=figure), say("Use"), 15.0, 0.1, 1, 99
+        lambda figure: say("I used {energy} kWh per 100 km", energy=figure), say("Usage"), 15.0, 0.1, 1, 99
     ),
     "level": Sentence(
         lambda figure: say("The battery has {share} %", share=figure), say("Battery"), 50, 1, 10, 100
@@ -88,7 +88,7 @@ def figure(state: State) -> tuple[Widget, ...]:
         handset(state),
         Button(rect=back, key="figure.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()),
         Label(rect=name, key="figure.who", text=who, style=Type.TITLE),
-        heading(label, say("Say")),
+        heading(label, say("Message")),
         choices(
             sentences,
             "figure.say",

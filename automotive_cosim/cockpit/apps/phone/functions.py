@@ -94,7 +94,7 @@ def send_figure(
     try:
         value = minute_of(figure) if ":" in figure or sentence == "arrive" else float(figure)
     except ValueError:
-        value = Feedback(FeedbackCode.REFUSED, say("“{figure}” is no number", figure=figure))
+        value = Feedback(FeedbackCode.REFUSED, say("“{figure}” is not a number", figure=figure))
     if isinstance(value, Feedback):
         return value
     if not 0 <= value <= said.most:

@@ -158,7 +158,7 @@ def _ringing(picture: Rect, name: Rect, line: Rect, acts: Rect, who: str) -> tup
             rect=name,
             key="phone.ringing",
             text=who,
-            description=say("Is calling"),
+            description=say("Incoming call"),
             style=Type.STRONG,
             align="centre",
         ),

@@ -109,7 +109,7 @@ def thread(state: State) -> tuple[Widget, ...]:
         Button(
             rect=figure,
             key="thread.figure",
-            text=say("Send a figure"),
+            text=say("Send trip data"),
             icon=Icon.MESSAGE,
             on_tap=Show("figure", who),
         ),
@@ -121,11 +121,11 @@ def thread(state: State) -> tuple[Widget, ...]:
             on_tap=Read(who),
             disabled="" if said and not opened else say("There is nothing new to read"),
         ),
-        heading(right.top(28), say("Answer")),
+        heading(right.top(28), say("Reply")),
         rows(
             right.below(36),
             "thread.answers",
-            say("Answers"),
+            say("Replies"),
             state,
             len(TEMPLATES),
             lambda index, cell: Row(

@@ -54,7 +54,7 @@ def phone(state: State) -> tuple[Widget, ...]:
 
 def _about(rect: Rect) -> Label:
     """What a tap on somebody does, above the list that fills the rest."""
-    return heading(rect.top(28), say("Tap a name to call or send a message"), "phone.about")
+    return heading(rect.top(28), say("Select a contact to call or message"), "phone.about")
 
 
 def _favourites(rect: Rect, state: State) -> tuple[Widget, ...]:
@@ -96,7 +96,7 @@ def _recents(rect: Rect, state: State) -> tuple[Widget, ...]:
             key=f"phone.recent.{index}",
             text=call.who,
             description=OPENS,
-            detail={"in": say("Received"), "out": say("Made"), "missed": say("Missed")}[call.way],
+            detail={"in": say("Incoming"), "out": say("Outgoing"), "missed": say("Missed")}[call.way],
             trail=call.when,
             icon=WAYS[call.way],
             tone="warning" if call.way == "missed" else "accent",

@@ -105,7 +105,7 @@ def _draft(rect: Rect, state: State) -> Widget:
                 rect=chosen,
                 key="safety.draft",
                 text=title,
-                description=say("Alert to give"),
+                description=say("Selected alert"),
                 style=Type.TITLE,
             ),
             choices(
@@ -179,7 +179,7 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
         Choice(
             rect=posted,
             key="safety.speed.posted",
-            text=say("Leave it to the signs"),
+            text=say("Use posted limit"),
             selected=advised is None,
             look="boxed",
             on_tap=_put(replace(draft, speed_kmh=None)),
@@ -239,7 +239,7 @@ def _history(rect: Rect, state: State) -> Widget:
         )
 
     empty = Label(
-        rect=body.top(40), key="safety.history.empty", text=say("Nothing yet"), tone="muted", style=Type.LABEL
+        rect=body.top(40), key="safety.history.empty", text=say("No alerts yet"), tone="muted", style=Type.LABEL
     )
     listed = rows(body, "safety.history", say("Alerts given"), state, len(given), line, height=84, gap=6)
     return Card(rect=rect, children=(heading(head, say("History")), listed if given else empty))
@@ -266,9 +266,9 @@ def emergency(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=about,
                     key="emergency.about",
-                    text=say("A call was made. They have the car's position.")
+                    text=say("Emergency call placed. They have the car's position.")
                     if made
-                    else say("They receive the car's position. A call can't be undone."),
+                    else say("They will receive the car's position. A call can't be undone."),
                     tone="muted",
                     align="centre",
                     lines=2,

@@ -8,11 +8,11 @@ from typing import Any, ClassVar
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Alert, AlertKind, Answer, RoadRequest, Severity
-from automotive_cosim.contracts.text import say
+from automotive_cosim.contracts.text import say, say_in
 
 KINDS: dict[AlertKind, tuple[str, Icon]] = {
     AlertKind.SPEED: (say("Speed"), Icon.SPEED),
-    AlertKind.DISTANCE: (say("Distance"), Icon.DISTANCE),
+    AlertKind.DISTANCE: (say_in("alert", "Distance"), Icon.DISTANCE),
     AlertKind.COLLISION: (say("Collision"), Icon.COLLISION),
     AlertKind.LANE: (say("Lane"), Icon.LANE),
     AlertKind.FATIGUE: (say("Fatigue"), Icon.FATIGUE),
@@ -32,8 +32,8 @@ KINDS: dict[AlertKind, tuple[str, Icon]] = {
 """Name on screen and icon of every kind of alert."""
 ADVICE: dict[AlertKind, str] = {
     AlertKind.SPEED: say("Slow down"),
-    AlertKind.DISTANCE: say("Keep more distance"),
-    AlertKind.COLLISION: say("Danger of collision: brake"),
+    AlertKind.DISTANCE: say("Increase your distance"),
+    AlertKind.COLLISION: say("Collision risk: brake"),
     AlertKind.LANE: say("Stay in your lane"),
     AlertKind.FATIGUE: say("Time for a break"),
     AlertKind.DISTRACTION: say("Eyes on the road"),

@@ -146,7 +146,7 @@ def sound(state: State) -> tuple[Widget, ...]:
     )
     bands = (
         ("sound.bass", say("Bass"), MEDIA.BASS, _decibels(signals[MEDIA.BASS])),
-        ("sound.middle", say("Middle"), MEDIA.MIDDLE, _decibels(signals[MEDIA.MIDDLE])),
+        ("sound.middle", say("Mid"), MEDIA.MIDDLE, _decibels(signals[MEDIA.MIDDLE])),
         ("sound.treble", say("Treble"), MEDIA.TREBLE, _decibels(signals[MEDIA.TREBLE])),
         ("sound.balance", say("Left, right"), MEDIA.BALANCE, _left_right(signals[MEDIA.BALANCE])),
         ("sound.fader", say("Rear, front"), MEDIA.FADER, _rear_front(signals[MEDIA.FADER])),
@@ -317,8 +317,8 @@ def language(state: State) -> tuple[Widget, ...]:
         right.inset(*PADDING), 40, 16, 28, 8, 68, 20, 132, REST, 64
     )
     now, form = signals[HMI.LANGUAGE], signals[HMI.TIME_FORMAT]
-    date = say("Not known yet") if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
-    zone = say("Not known yet") if state.outside is None else f"UTC{state.outside.local_time:%z}"
+    date = say("Not available yet") if state.outside is None else f"{state.outside.local_time:%Y-%m-%d}"
+    zone = say("Not available yet") if state.outside is None else f"UTC{state.outside.local_time:%z}"
     lines = facts.rows(3, 8)
     return _page(
         state,
@@ -343,7 +343,7 @@ def language(state: State) -> tuple[Widget, ...]:
             rect=right,
             children=(
                 title(when, Icon.CLOCK, say("Date and time")),
-                heading(name, say("Time of day")),
+                heading(name, say("Time format")),
                 choices(
                     forms,
                     "language.time",
@@ -389,7 +389,7 @@ def privacy(state: State) -> tuple[Widget, ...]:
             say("Share driving data"),
             Icon.CAR_BESIDE,
             LINK.SHARE_DRIVING,
-            say("Speed, braking and consumption go to the maker to improve the car."),
+            say("Speed, braking and consumption are sent to the manufacturer to improve the car."),
         ),
         (
             "privacy.microphone",

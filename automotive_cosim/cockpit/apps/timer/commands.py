@@ -22,7 +22,7 @@ class StartTimer(Command):
         """The countdown, from now on."""
         now = state.of(Countdown)
         return state.change(
-            replace(now, begun_s=state.time_s), say("{minutes} minutes are counted down", minutes=now.minutes)
+            replace(now, begun_s=state.time_s), say("the timer runs for {minutes} minutes", minutes=now.minutes)
         )
 
 

@@ -52,7 +52,7 @@ def timer(state: State) -> tuple[Widget, ...]:
                     rect=time,
                     key="timer.left",
                     text=minutes(left_s),
-                    description=say("Time left") if runs else say("Length"),
+                    description=say("Time left") if runs else say("Duration"),
                     style=Type.DISPLAY,
                     align="centre",
                 ),

@@ -38,5 +38,5 @@ class Countdown(AppData):
         """Tells the driver when it is over."""
         if self.begun_s is not None and self.left_s(state.time_s) <= 0:
             state.keep(replace(self, begun_s=None))
-            words = say("{minutes} minutes are over", minutes=self.minutes)
+            words = say("{minutes} minutes are up", minutes=self.minutes)
             state.notify(words, Icon.CLOCK, Severity.WARNING, opens=("timer", ""))

@@ -30,7 +30,7 @@ def trip(state: State) -> tuple[Widget, ...]:
     tiles = (
         ("trip.distance", say("Distance"), distance(signals, driven_m), Icon.ROUTE),
         ("trip.time", say("Driving time"), minutes(took_s), Icon.CLOCK),
-        ("trip.speed", say("Mean speed"), f"{speed(signals, mean_kmh)} {speed_unit(signals)}", Icon.SPEED),
+        ("trip.speed", say("Average speed"), f"{speed(signals, mean_kmh)} {speed_unit(signals)}", Icon.SPEED),
         ("trip.energy", say("Energy"), Quantity(f"{used_kwh:.2f} kWh"), Icon.BATTERY),
         ("trip.consumption", say("Consumption"), Quantity(f"{per_100:.1f} kWh/100 {unit}"), Icon.CHARGING),
         ("trip.range", say("Range"), distance(signals, signals[ENERGY.RANGE]), Icon.GOAL),

@@ -9,7 +9,7 @@ from automotive_cosim.cockpit.camera import scene
 from automotive_cosim.cockpit.commands import Put, Set, SetAll
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column
-from automotive_cosim.cockpit.messages import Pick
+from automotive_cosim.cockpit.messages import Pick, Show
 from automotive_cosim.cockpit.notices import LOW_KPA
 from automotive_cosim.cockpit.parts import (
     StepWords,
@@ -276,7 +276,7 @@ _SEATS: dict[str, tuple[tuple[str, str, Signal[float], str, StepWords], ...]] = 
 
 
 def seats(state: State) -> tuple[Widget, ...]:
-    """Positions of the front seats, massage, and the driver's memory."""
+    """Positions of the front seats, massage, the driver's memory, and the way to who is aboard."""
     signals = state.signals
     area = _area(state)
     who = state.picked["seats"]
@@ -334,7 +334,7 @@ def _adjust(
 
 def _memory(rect: Rect, state: State) -> Widget:
     inner = rect.inset(20, 16)
-    lines = inner.below(40).rows(3, 14)
+    *lines, onward = inner.below(40).rows(4, 14)
     held = state.vehicle.held(SEAT.DRIVER_POSITION)
     now = tuple(state.signals[signal] for signal in REMEMBERED)
     children: list[Widget] = [heading(inner.top(30), say("Driver's memory"))]
@@ -367,6 +367,15 @@ def _memory(rect: Rect, state: State) -> Widget:
                 disabled=say("The seat is already in this position") if same else "",
             ),
         ]
+    children.append(
+        Button(
+            rect=onward,
+            key="seat.cabin",
+            text=say("Airbag, occupants"),
+            icon=Icon.AIRBAG,
+            on_tap=Show("cabin"),
+        )
+    )
     return Card(rect=rect, children=tuple(children))
 
 
@@ -433,7 +442,7 @@ def _mirror(
     children: list[Widget] = [heading(inner.top(28), name)]
     sideways, upwards = _ANGLES[who]
     for line, key, text, told, signal, ways in (
-        (pan, "pan", say("Sideways"), sideways, angles[0], right_left),
+        (pan, "pan", say("Left, right"), sideways, angles[0], right_left),
         (tilt, "tilt", say("Up, down"), upwards, angles[1], lower_higher),
     ):
         children += [
