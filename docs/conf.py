@@ -28,12 +28,16 @@ from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.formats.docs import field_docs, member_docs
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.policy import HOUSE
+from automotive_cosim.publish.leaderboard import board
 from automotive_cosim.safety.space import LIBRARY, read_space
 from automotive_cosim.tasking.task import Dimension, Module
 from automotive_cosim.tasks import CATALOGUE
 
 DOCS = Path(__file__).parent
 MADE = DOCS / "_made"
+
+HEADS = ("Agent", "Model", "Prompt", "Safety pairs", "All episodes", "Bundle")
+"""Columns of the leaderboard that the site's page shows; the whole page has all."""
 
 project = "automotive_cosim"
 author = "The automotive_cosim authors"
@@ -43,6 +47,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphin
 INCLUDED = (
     "conditions",
     "functions",
+    "leaderboard",
     "readme",
     "spaces",
     "drive_families",
@@ -68,6 +73,7 @@ highlight_language = "none"
 html_theme = "furo"
 html_title = f"automotive_cosim {__version__}"
 html_static_path = ["_static"]
+html_extra_path = ["_made/board"]
 html_css_files = ["site.css"]
 html_theme_options = {"navigation_with_keys": True}
 
@@ -82,6 +88,7 @@ def setup(sphinx: Sphinx) -> None:
     _drives()
     _search()
     _conditions()
+    _leaderboard()
     _table("policy.md", ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE])
     for name in ("plan", "scenario"):
         _fields(name)
@@ -202,6 +209,22 @@ def _conditions() -> None:
         told = [f"`{kind[name]}`: {text}" if text else f"`{kind[name]}`" for name, text in docs.items()]
         rows.append((f"`--{each.word}`", each.help, "<br>".join(told) or f"`{each.default}` and up"))
     _table("conditions.md", ("option", "what it is about", "values, the usual one first"), rows)
+
+
+def _leaderboard() -> None:
+    """The page of all bundles in the repository, and its tables; a bundle with a problem fails the build."""
+    out = MADE / "board" / "leaderboard.html"
+    out.parent.mkdir(parents=True, exist_ok=True)
+    made, left_out = board(DOCS / "leaderboard", out)
+    if left_out:
+        raise RuntimeError(f"docs/leaderboard: {'; '.join(left_out)}")
+    page: list[str] = []
+    for table, conditions, _ in made:
+        shown = [place for place, head in enumerate(table.columns) if head in HEADS]
+        page += [f"{conditions.tasks}, {conditions.scenarios}, seed {conditions.seeds}, {conditions.limits}:", ""]
+        rows = [table.columns, ["---"] * len(table.columns), *table.rows]
+        page += [f"| {' | '.join(str(row[place]) for place in shown)} |" for row in rows] + [""]
+    _write("leaderboard.md", *page)
 
 
 def _fields(name: str) -> None:

@@ -65,6 +65,10 @@ class BundleConditions:
         ]
 
 
+BoardTable = tuple[Table, BundleConditions, list[str]]
+"""A table, the conditions that its rows share, and how they differ from those of the first table."""
+
+
 @dataclass(frozen=True, slots=True)
 class BoardEntry:
     """One contestant of one bundle."""
@@ -122,7 +126,16 @@ class DrivenEntry:
 
 
 def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> list[str]:
-    """Writes the page.
+    """Writes the page; see ``board``.
+
+    Returns:
+        The bundles that were left out, and why.
+    """
+    return board(folder, out, workers=workers, mixed=mixed)[1]
+
+
+def board(folder: Path, out: Path, *, workers: int = 1, mixed: bool = False) -> tuple[list[BoardTable], list[str]]:
+    """Checks every bundle and writes the page.
 
     Args:
         folder: of bundles.
@@ -131,7 +144,7 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
         mixed: put evaluations of several versions of the suite into one table, and say so.
 
     Returns:
-        The bundles that were left out, and why.
+        The tables of tasks, and the bundles that were left out with why.
 
     Raises:
         UserError: there is no bundle without a problem, or the page cannot be written.
@@ -161,9 +174,10 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
         )
         driven = [replace(each, suite=suite) for each in driven]
         entries = [replace(entry, conditions=replace(entry.conditions, suite=suite)) for entry in entries]
+    made = tables(entries)
     page = render(
         "publish/leaderboard.html",
-        tables=tables(entries),
+        tables=made,
         drives=drives_tables(driven),
         left_out=left_out,
         rates=RATES,
@@ -172,7 +186,7 @@ def write_leaderboard(folder: Path, out: Path, *, workers: int = 1, mixed: bool 
         write_whole(out, page)
     except OSError as error:
         raise cannot_write(out.parent, error) from error
-    return left_out
+    return made, left_out
 
 
 def read_entries(bundle: Path) -> list[BoardEntry]:
@@ -235,7 +249,7 @@ def drives_tables(entries: Sequence[DrivenEntry]) -> list[Table]:
     ]
 
 
-def tables(entries: Sequence[BoardEntry]) -> list[tuple[Table, BundleConditions, list[str]]]:
+def tables(entries: Sequence[BoardEntry]) -> list[BoardTable]:
     """A table for each set of conditions, the largest first, and how it differs from the first."""
     alike: dict[BundleConditions, list[BoardEntry]] = defaultdict(list)
     for entry in entries:
