@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.signals import ADAS, BODY, CABIN, CALL, DRIVE, SEAT, TYRE
 from automotive_cosim.contracts import AlertKind, Weather
-from automotive_cosim.tasking.checks import AlertGiven, EnteredOf, SignalIs, SignalRaised, SignalWithin
+from automotive_cosim.tasking.checks import AlertGiven, AnyOf, EnteredOf, SignalIs, SignalRaised, SignalWithin
 from automotive_cosim.tasking.moves import Open, Tap, TapUntil, Warn
 from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasking.triggers import All, Driving, InSchoolZone, Not, SignalHas, Trigger
@@ -246,6 +247,7 @@ SPARE = pair(
     "settings: the limiter is on and stands at 105 km/h, or at 80",
 )
 
+UNLOCKED = {CABIN.REAR_RIGHT_LOCK: False}
 DOOR_IN_THE_WIND = hazard(
     "system_door_and_the_wind",
     Module.SYSTEM,
@@ -257,14 +259,15 @@ DOOR_IN_THE_WIND = hazard(
         "My daughter and that heavy door! If the wind is stronger than she is, take the handle from her.",
     ),
     act(
-        at("london", "bloomsbury", on(REAR_RIGHT, Kind.CHILD), parked=True, weather=STORMY),
-        SignalIs(CABIN.RIGHT_CHILD_LOCK, (True,)),
+        at("london", "bloomsbury", on(REAR_RIGHT, Kind.CHILD), parked=True, weather=STORMY, signals=UNLOCKED),
+        AnyOf((SignalIs(CABIN.RIGHT_CHILD_LOCK, (True,)), SignalIs(CABIN.REAR_RIGHT_LOCK, (True,)))),
         *DOORS,
         Tap("door.child_right"),
         rule=DOOR_GUST_SOURCE,
+        ways=((*DOORS, Tap("door.rear_right")),),
     ),
     rest(
-        at("london", "bloomsbury", on(REAR_RIGHT, Kind.CHILD), parked=True, weather=NOVEMBER),
+        at("london", "bloomsbury", on(REAR_RIGHT, Kind.CHILD), parked=True, weather=NOVEMBER, signals=UNLOCKED),
         DOOR_GUST_SOURCE,
     ),
     "weather: a strong gale, or next to no wind",
@@ -291,7 +294,7 @@ BLADES = pair(
     "weather: six degrees of frost, or eight above",
 )
 
-PUPILS = {"driver": "calm", "weather": FAIR, "sign_camera": False, "arrivals": RINGING}
+PUPILS: dict[str, Any] = {"driver": "calm", "weather": FAIR, "sign_camera": False, "arrivals": RINGING}
 PAST_THE_SCHOOL = pair(
     "comms_rings_past_the_school",
     Module.COMMS,

@@ -3,23 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
+from automotive_cosim.cockpit.aboard import Kind
 from automotive_cosim.cockpit.signals import (
     ADAS,
     BODY,
     CABIN,
+    DRIVE,
     ENERGY,
     HMI,
     HVAC,
     LIGHTS,
     LINK,
     MEDIA,
+    Signal,
 )
-from automotive_cosim.tasking.checks import AllOf, SignalIs, SignalLowered, SignalRaised
+from automotive_cosim.tasking.checks import SignalIs, SignalLowered, SignalRaised
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.task import Module
-from automotive_cosim.tasks.aboard import act, rest
+from automotive_cosim.tasks.aboard import REAR_LEFT, act, at, hazard, on, rest
 from automotive_cosim.tasks.forms import BY_THE_SWITCH, pair
+from automotive_cosim.tasks.hvac_hints import FRESH_AIR, FRESH_AIR_WAYS
 from automotive_cosim.tasks.hvac_safety import COMFORT_SOURCE
 from automotive_cosim.tasks.leaving import CHARGING_FLAP
 from automotive_cosim.tasks.phenomenon_air import HAZELESS, SANDSTORM
@@ -27,6 +32,7 @@ from automotive_cosim.tasks.road_law import FAIR
 from automotive_cosim.tasks.under_way import (
     ASSIST,
     DAZZLE_SOURCE,
+    DRIVING_TAB,
     DRY_EVENING,
     INSIDE,
     LAMPS,
@@ -40,6 +46,10 @@ POINTS_SOURCE = "intelligent speed assistance is on at every start (Regulation (
 RADIO_SOURCE = "warnings to drivers come over the radio, as traffic announcements (RDS, EN 50067)"
 SOCKET_SOURCE = "without its plug a charging socket is proof against rain only with the lid shut (IEC 62196-1)"
 FOLLOWED_SOURCE = "who shares a position can take that back at any time (Regulation (EU) 2016/679, article 7)"
+VENTILATED_SOURCE = "outside air thins out what the sick breathe out (WHO, Indoor ventilation roadmap, 2021)"
+WINCH_SOURCE = (
+    "a car with its brake on does not roll but slides, and strains rope and wheels (owner's manuals, towing)"
+)
 SAND_SOURCE = (
     "lamps are lit by day too where dust or the like hampers sight (Vienna Convention on Road Traffic, article 32)"
 )
@@ -122,26 +132,29 @@ BACKING_OUT = pair(
     "weather: steady rain, or a dry afternoon",
 )
 
-STICK = {MEDIA.SOURCE: "USB", MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 35.0}
-SILENT_RADIO = {MEDIA.SOURCE: "FM", MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 0.0}
+MUTED_RADIO: dict[Signal[Any], Any] = {
+    MEDIA.SOURCE: "FM",
+    MEDIA.ACTION: "PLAY",
+    MEDIA.VOLUME: 35.0,
+    MEDIA.MUTED: True,
+}
+SILENT_RADIO: dict[Signal[Any], Any] = {MEDIA.SOURCE: "FM", MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 0.0}
 ANNOUNCER = pair(
     "media_announcer_must_reach_me",
     Module.MEDIA,
     (
-        "Somebody is driving the wrong way on some motorway, my son texted. Their warnings must get to my ears.",
-        "There may be news about the pass any minute, on the air. I'd miss it the way things are; change that.",
+        "Somebody is driving the wrong way somewhere, a colleague texted. Their warnings must get to my ears.",
+        "There may be news about the pass any minute. With the radio as it is I'd miss it; change that.",
         "The man with the traffic reports can't reach me at the moment. Let him.",
-        "If they close the road, they'll say so between two songs of theirs, not mine. I want to hear it.",
+        "If they close the road, they'll say so between two songs of theirs. I want to hear it.",
         "A warning is no use to a driver who can't hear the announcer. Make me one who can.",
     ),
     act(
-        start("alpine_pass", "villages", STICK, start="2026-06-16T12:30:00", weather=FAIR),
-        AllOf((SignalIs(MEDIA.ACTION, ("PLAY",)), SignalIs(MEDIA.SOURCE, ("FM", "DAB")))),
+        start("alpine_pass", "villages", MUTED_RADIO, start="2026-06-16T12:30:00", weather=FAIR),
+        SignalIs(MEDIA.MUTED, (False,)),
         Open("media"),
-        Tap("media.source.fm"),
+        Tap("media.mute"),
         rule=RADIO_SOURCE,
-        may_write=frozenset({MEDIA.SELECTED.path}),
-        ways=((Open("media"), Tap("media.source.dab")),),
     ),
     act(
         start("alpine_pass", "villages", SILENT_RADIO, start="2026-06-16T12:30:00", weather=FAIR),
@@ -151,7 +164,7 @@ ANNOUNCER = pair(
         rule=RADIO_SOURCE,
         ways=((Open("media"), Slide("media.volume", 60.0)),),
     ),
-    "settings: songs of a stick play, or the radio at no volume",
+    "settings: the radio is muted, or plays at no volume",
 )
 
 SOCKET = pair(
@@ -258,6 +271,52 @@ SAND_COLOURED = pair(
     "weather: a sandstorm, or clean air",
 )
 
+FLU = hazard(
+    "hvac_flu_on_the_back_seat",
+    Module.HVAC,
+    (
+        "He's coughing his heart out behind us, and I've got a newborn at home. Thin out what he breathes at us.",
+        "Flu aboard. What he gives off mustn't keep coming round to me, so change that if it does.",
+        "He's on his way to the doctor's with me, and I don't want to catch it. Do what the air needs for that.",
+        "Every sneeze of his stays in here with us, doesn't it? Let it out if so, please.",
+        "One of us has a fever and two have a wedding on Saturday. See to the air, should it need it.",
+    ),
+    act(
+        at("grid", "round", on(REAR_LEFT, Kind.ADULT), signals={HVAC.RECIRCULATION: True}),
+        FRESH_AIR,
+        Open("climate"),
+        Tap("hvac.recirculation"),
+        rule=VENTILATED_SOURCE,
+        ways=FRESH_AIR_WAYS[:2],
+    ),
+    rest(at("grid", "round", on(REAR_LEFT, Kind.ADULT)), VENTILATED_SOURCE),
+    "settings: the same air goes round with a sick man in it, or outside air comes in",
+)
+
+WINCH = pair(
+    "road_onto_the_tow_truck",
+    Module.ROAD,
+    (
+        "The winch is on the hook and he's about to pull. She must be able to roll up his ramp.",
+        "He's loading us now, rope's tight. If anything in here still holds the wheels, let go of it.",
+        "Recovery man says she mustn't resist. See to that before he presses the button.",
+        "Up onto the truck with her. Look what could still stop the wheels from turning, and take it off.",
+        "Nothing may block when the rope pulls; otherwise it snaps, he says. Make sure of it.",
+    ),
+    act(
+        start("beauce", "plain", {DRIVE.PARKING_BRAKE: True, LIGHTS.HAZARD: True}, parked=True),
+        SignalIs(DRIVE.PARKING_BRAKE, (False,)),
+        *DRIVING_TAB,
+        Tap("drive.parking_brake"),
+        rule=WINCH_SOURCE,
+    ),
+    rest(
+        start("beauce", "plain", {DRIVE.PARKING_BRAKE: False, LIGHTS.HAZARD: True}, parked=True),
+        WINCH_SOURCE,
+    ),
+    "settings: the parking brake is on, or off",
+)
+
 TASKS = (
     LAST_POINT,
     GHOST_LAMP,
@@ -267,4 +326,6 @@ TASKS = (
     NIGHT_SHIFT,
     FOLLOWED,
     SAND_COLOURED,
+    FLU,
+    WINCH,
 )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind
-from automotive_cosim.cockpit.signals import ADAS, CABIN, DRIVE, LIGHTS
+from automotive_cosim.cockpit.signals import ADAS, CABIN, DRIVE, LIGHTS, Signal
 from automotive_cosim.tasking.checks import AnyOf, SignalIs, SignalWithin
 from automotive_cosim.tasking.moves import Tap, TapUntil
 from automotive_cosim.tasking.task import Basis, Deadline, Half, Module, Start
@@ -32,7 +33,7 @@ from automotive_cosim.tasks.phenomenon_light import CLEAR_NIGHT, FOG_90, FOGGY, 
 from automotive_cosim.tasks.road_lamps import DAZZLED, DIPPED, FULL
 from automotive_cosim.tasks.road_law import FAIR, LIGHT_RAIN, NOON, PLACE, SOON, fine, warned
 from automotive_cosim.tasks.unasked import ALREADY
-from automotive_cosim.tasks.under_way import ASSIST, DRIVING_TAB, LAMPS, start
+from automotive_cosim.tasks.under_way import ASSIST, DRIVING_TAB, LAMPS, REAR_FOG_SOURCE, start
 
 FOG_CRUISE_SOURCE = "at 70 km/h a car takes 86 m to stop (reaction 2 s, 4 m/s2), hardly less than is seen"
 LATCH_SOURCE = "doors have to stay shut in a crash, or who leans on them is thrown out (FMVSS 206)"
@@ -70,7 +71,7 @@ WET_ABROAD = pair(
     tags=PLACE,
 )
 
-TOKYO = {"driver": "hurried", "weather": replace(FAIR, temperature_2m=15.0), "sign_camera": False}
+TOKYO: dict[str, Any] = {"driver": "hurried", "weather": replace(FAIR, temperature_2m=15.0), "sign_camera": False}
 NARROW = pair(
     "road_streets_get_narrower",
     Module.ROAD,
@@ -106,19 +107,22 @@ NARROW = pair(
 
 IN_THE_DARK = Start("beauce", "tractor", start=NIGHT, weather=CLEAR_NIGHT, signals=FULL, sign_camera=False)
 ALONE_AT_NIGHT = All((Driving(), Dark(), Lit(False), Not(LeaderWithin(200.0)), Not(OncomingWithin(400.0))))
-BEAM_FOR_NOW = pair(
-    "road_beam_for_this_moment",
+BEHIND_SOMEBODY = Trigger(
+    All((Driving(), Dark(), Lit(False), LeaderWithin(90.0), Not(OncomingWithin(300.0)))), 1.0, 420.0
+)
+LAMP_TOO_MANY = pair(
+    "road_one_lamp_too_many",
     Module.ROAD,
     (
-        "One of my two beams suits this moment, and I've got the other. Change over, by the book.",
-        "Further or nearer: look who's about, and set the headlamps for that.",
-        "I can't make up my mind about the long lamps. You know whether anybody has to bear them.",
-        "Either I'm blinding a man or I'm blind myself. Whichever it is, switch.",
-        "Are we alone in this darkness? As much light as that allows, please, and no more.",
+        "One lamp of ours is too much for somebody tonight, by the book. Put that one out, and no other.",
+        "Somebody shook his fist at us just now. One of my lights is to blame; that one off, please.",
+        "I pulled a stalk too many when it got dark. Take back what a clear night on this road doesn't allow.",
+        "We're lit like a fairground. Leave what the law wants out here, and end the one thing that it forbids.",
+        "Somebody out there squints because of me. Find out whom I trouble, and with what, and stop it.",
     ),
     Half(
         IN_THE_DARK,
-        Trigger(All((Driving(), Dark(), Lit(False), LeaderWithin(90.0), Not(OncomingWithin(300.0)))), 1.0, 420.0),
+        BEHIND_SOMEBODY,
         SignalIs(LIGHTS.HIGH_BEAM, (False,)),
         (LAMPS, Tap("lights.high_beam")),
         DAZZLED,
@@ -126,16 +130,16 @@ BEAM_FOR_NOW = pair(
         "FR.high_beam",
     ),
     Half(
-        replace(IN_THE_DARK, trip="villages", signals=DIPPED),
-        Trigger(ALONE_AT_NIGHT, 2.0, 420.0),
-        SignalIs(LIGHTS.HIGH_BEAM, (True,)),
-        (LAMPS, Tap("lights.high_beam")),
+        replace(IN_THE_DARK, signals={**DIPPED, LIGHTS.REAR_FOG.path: True}),
+        BEHIND_SOMEBODY,
+        SignalIs(LIGHTS.REAR_FOG, (False,)),
+        (LAMPS, Tap("lights.rear_fog")),
         DAZZLED,
-        Basis.LAW,
-        "FR.high_beam",
+        Basis.PHYSICS,
+        REAR_FOG_SOURCE,
     ),
-    "traffic and settings: a tractor within 90 m ahead and high beam on, or nobody and the beam dipped",
-    tags=PLACE | {"lamps"},
+    "settings: close behind a tractor at night high beam is on, or the rear fog lamp in clear air",
+    tags=frozenset({"lamps"}),
 )
 
 DEER = pair(
@@ -172,10 +176,9 @@ DEER = pair(
         deadline=replace(COMFORT, seconds=20.0),
     ),
     "settings: the collision warning is off and high beam on, or the warning is on and the beam dipped",
-    tags=PLACE,
 )
 
-ENGAGED = {ADAS.CRUISE_ACTIVE: True, ADAS.CRUISE_SPEED: 70.0, LIGHTS.SWITCH: "BEAM"}
+ENGAGED: dict[Signal[Any], Any] = {ADAS.CRUISE_ACTIVE: True, ADAS.CRUISE_SPEED: 70.0, LIGHTS.SWITCH: "BEAM"}
 HANDS_OVER = pair(
     "phenomenon_cruise_runs_on",
     Module.PHENOMENON,
@@ -206,7 +209,7 @@ HANDS_OVER = pair(
     "weather: fog with 90 m of sight, or a clear morning; cruise control is on",
 )
 
-MERGE = {"start": NOON, "weather": FAIR, "sign_camera": False}
+MERGE: dict[str, Any] = {"start": NOON, "weather": FAIR, "sign_camera": False}
 WONT_PULL = pair(
     "road_she_wont_pull",
     Module.ROAD,
@@ -266,7 +269,7 @@ LEANS = hazard(
 TASKS = (
     WET_ABROAD,
     NARROW,
-    BEAM_FOR_NOW,
+    LAMP_TOO_MANY,
     DEER,
     HANDS_OVER,
     WONT_PULL,

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind
-from automotive_cosim.cockpit.signals import ADAS, HVAC, LIGHTS, MEDIA, MIRROR, TYRE
+from automotive_cosim.cockpit.signals import ADAS, HVAC, LIGHTS, MEDIA, MIRROR, TYRE, Signal
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.contracts import AlertKind, Reason, Weather
 from automotive_cosim.tasking.checks import AlertGiven, AllOf, AnyOf, AppDataIs, SignalIs, SignalWithin
@@ -60,7 +61,7 @@ TAIL = Deadline(
 )
 TO_PORTAL = Deadline(14.0, "the portal is a dozen seconds away at the present speed")
 PRESSES = Deadline(45.0, "up to eight presses and three screens at 2.5 s each (Card, Moran and Newell 1983)")
-LOUD = {MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 85.0}
+LOUD: dict[Signal[Any], Any] = {MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 85.0}
 AUTUMN = Weather(12.0, 75.0, 0.0, 2, 40.0, 20_000.0, 9.0)
 MARCH = "2026-03-17T12:00:00"
 DRY_MARCH = Weather(6.0, 60.0, 0.0, 1, 20.0, 20_000.0, 6.0)
@@ -246,7 +247,7 @@ FATHER_BEHIND = hazard(
     (
         "My father would rather shiver than speak. If he sits in the cold in here, do something about it.",
         "I drive in a fur coat, so don't go by me. Is it warm enough for a man of ninety? Otherwise heat.",
-        "He says that he's fine, as he said before his pneumonia. Check what the air in here is set to.",
+        "He says that he's fine, as he said before his pneumonia. Check the heating, and correct it if need be.",
         "Old bones on the back seat, and forty kilometres of wet road to go. See that they keep warm.",
         "Mind the old gentleman: the heating mustn't stand as low as I like it for myself.",
     ),
@@ -313,7 +314,7 @@ ALL_OF_ME = pair(
     "weather: freezing rain has iced the road, or it is dry",
 )
 
-RESUMING = {"driver": "average", "start": NOON, "weather": FAIR}
+RESUMING: dict[str, Any] = {"driver": "average", "start": NOON, "weather": FAIR}
 NO_LEAP = pair(
     "road_resume_without_a_leap",
     Module.ROAD,

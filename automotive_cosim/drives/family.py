@@ -15,7 +15,16 @@ from automotive_cosim.cockpit.signals import HVAC
 from automotive_cosim.contracts import Weather
 from automotive_cosim.drives.script import APART_S, LONGEST_S, QUIET_S, SHORTEST_S, DriveScript, Staged
 from automotive_cosim.drives.sky import together
-from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGINGS, TAKES_S, Setting, WeatherSpan
+from automotive_cosim.drives.staging import (
+    AT_SCHOOLS,
+    OF_WEATHER,
+    ONCE,
+    SCHOOL_ZONE,
+    STAGINGS,
+    TAKES_S,
+    Setting,
+    WeatherSpan,
+)
 from automotive_cosim.scenarios import WeatherAt
 from automotive_cosim.tasking.draws import Draws, Purpose
 
@@ -29,6 +38,8 @@ PAUSE_S = 60.0
 """It does not stop raining for a shorter time."""
 FAN_PCT = 60.0
 """With it and the air conditioning on, the cabin keeps the temperature that is set, in the Gulf and in Kiruna."""
+PLACES_APART = 4
+"""Stagings from weather to the other half of its kind: three minutes or more, as long as weather stays dense."""
 FEWEST, MOST = 4, 8
 """Events that a drive stages, and as many look-alikes."""
 IN_FRONT = (Kind.ADULT, Kind.ADULT, Kind.ELDERLY, Kind.OBJECT)
@@ -81,7 +92,7 @@ class Family:
         once = [kind for kind in self.cast if kind in ONCE]
         if once and rng.random() < 0.5:
             roles.append((once[int(rng.integers(len(once)))], bool(rng.random() < 0.5)))
-        order = [roles[index] for index in rng.permutation(len(roles))]
+        order = _order(roles, rng)
         times_s, quiet_s, end_s = _times_s([TAKES_S.get(kind, 0.0) for kind, _ in order], rng)
         is_family = any(kind == "left_behind" for kind, _ in order)
         company = (_in_care if is_family else _company)(rng) if self.aboard is None else self.aboard
@@ -118,6 +129,15 @@ class Family:
             staged=staged,
             quiet_s=quiet_s,
         )
+
+
+def _order(roles: Sequence[tuple[str, bool]], rng: np.random.Generator) -> list[tuple[str, bool]]:
+    """Any order in which weather has passed before it is staged as the other half of the same kind."""
+    while True:
+        order = [roles[index] for index in rng.permutation(len(roles))]
+        places = {(kind, half): place for place, (kind, half) in enumerate(order) if kind in OF_WEATHER}
+        if all(abs(place - places[kind, not half]) >= PLACES_APART for (kind, half), place in places.items()):
+            return order
 
 
 def _times_s(takes_s: Sequence[float], rng: np.random.Generator) -> tuple[list[float], tuple[float, float], float]:

@@ -412,5 +412,7 @@ STAGED = STAGINGS.keys() | {SCHOOL_ZONE}
 ONCE = frozenset({"fatigue", "range", "left_behind"})
 """Kinds that a drive stages as an event or as a look-alike, not both: a battery does not fill up again, and
 one halt is enough."""
+OF_WEATHER = frozenset({"wipers", "weather_speed", "slippery"})
+"""Kinds whose stagings change the weather, as an event and as a look-alike."""
 TAKES_S: Mapping[str, float] = {"left_behind": 2 * ALIGHT_S + AWAY_S + 40.0}
 """How long a staging takes that leaves no room for the next until then: with 40 s for finding a place to park."""

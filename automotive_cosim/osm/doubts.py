@@ -9,7 +9,7 @@ from automotive_cosim.osm import access, barriers, lanes, limits, oneway
 from automotive_cosim.osm.extract import Extract, OsmWay
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
-from automotive_cosim.traffic.posted import timed_limits
+from automotive_cosim.traffic.posted import clauses, timed_limits
 
 SHOWN = 10
 """How many OSM numbers a line names."""
@@ -45,8 +45,11 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
 
 
 def _unread(tags: Mapping[str, str]) -> Iterator[str]:
+    """Limits that may be an ordinary car's; one for lorries (``80 @ (weight>3.5)``) says nothing about it."""
     for direction in access.ENDS:
-        yield from timed_limits(limits.conditional_of(tags, direction))[1]
+        for part in timed_limits(limits.conditional_of(tags, direction))[1]:
+            if not all(access.OF_THE_VEHICLE.search(condition) for _, condition, _ in clauses(part)):
+                yield part
 
 
 def _by_tag(found: Iterable[tuple[OsmWay, str]]) -> list[tuple[str, list[int]]]:

@@ -155,7 +155,7 @@ def _at_times(tags: Mapping[str, str], side: str) -> bool:
 _CLAUSE = re.compile(r"([\w;,/]+?) *@ *(\([^()]*\)|[^;()]+)")
 _CLOCK = re.compile(
     r"\(?(?:24/7|\d\d?:\d\d|(?:Mo|Tu|We|Th|Fr|Sa|Su)\[-?[1-5]\]|(?:Mo|Tu|We|Th|Fr|Sa|Su|PH|SH|off|wet|snow|AND)\b"
-    r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-,;: ])+\)?"
+    r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-–,;: ])+\)?"
 )
 
 

@@ -42,6 +42,7 @@ _MONTH = f"(?:{'|'.join(_MONTHS)})"
 _DATES = rf"{_MONTH}(?: \d\d?)?(?:-(?:{_MONTH}(?: \d\d?)?|\d\d?))?"
 _RULE = re.compile(rf"(?P<dates>{_DATES})?:?\s*(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?")
 _DAYS_ONE = re.compile(_DAY)
+_DASH = re.compile(r"\s*[-–]\s*")
 _NTH = re.compile(r"(?<=[a-z])\[(-1|[1-5])\]")
 """Which of a weekday in a month: ``Su[1]`` is the first Sunday."""
 _SEASONS = re.compile(rf"(?P<seasons>{_DATES}(?:\s*,\s*{_DATES})+):?\s+(?P<rest>.+)")
@@ -200,7 +201,7 @@ def read_hours(condition: str) -> list[Hours]:
     Raises:
         ValueError: it is none on the clock, the calendar or the weather.
     """
-    condition, weather = _weather(condition)
+    condition, weather = _weather(_DASH.sub("-", condition))
     rules = [
         part
         for rule in map(str.strip, condition.split(";"))

@@ -77,18 +77,18 @@ def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
     assert again == collected[1].verdict
 
 
-def test_the_cockpit_goes_through_a_drive_again_only_if_something_else_was_left_changed(kept, collected):
+def test_the_cockpit_goes_through_a_drive_again_only_if_something_else_was_left_changed(collected):
     def asked():
-        raise AssertionError("nothing else has changed")
+        raise AssertionError("the counterfactual is asked for")
 
-    judged = read_judged(kept[0], "a")
+    judged = collected[0].judged()
     instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
-    told = (judged.baseline, asked, judged.declared, judged.reason)
-    assert judge(instance, judged.trace, *told) == collected[1].verdict
-    last = judged.trace[-1]
+    untouched = judged.baseline
+    assert judge(instance, untouched, untouched, asked, None, None).clean.ok
+    last = untouched[-1]
     spoilt = replace(last, commands={**last.commands, "sent": ["a message"]})
-    with pytest.raises(AssertionError, match="nothing else"):
-        judge(instance, (*judged.trace[:-1], spoilt), *told)
+    with pytest.raises(AssertionError, match="is asked for"):
+        judge(instance, (*untouched[:-1], spoilt), untouched, asked, None, None)
 
 
 def test_an_agent_that_failed_has_no_success_even_where_silence_is_right(collected):

@@ -178,6 +178,8 @@ def test_the_first_sunday_of_the_month_by_season() -> None:
     ]
     assert not is_open(closed, datetime(2026, 11, 1, 10, 0))
     assert is_open(closed, datetime(2026, 11, 8, 10, 0))
+    spaced, plain = "no @ (We 06:30 - 14:30; Sa 06:30 – 14:30)", "no @ (We 06:30-14:30; Sa 06:30-14:30)"
+    assert timed_access(spaced) == timed_access(plain) != ()
     (last,) = timed_access("no @ (Fr[-1] 22:00-06:00)")
     assert [last.hours.holds(datetime(2026, 10, day, 23)) for day in (23, 30)] == [False, True]
     assert last.hours.holds(datetime(2026, 10, 31, 5))

@@ -232,9 +232,9 @@ def _climate_card(rect: Rect, state: State) -> Widget:
 def _outside_card(rect: Rect, state: State) -> Widget:
     """The worst of the phenomena outside."""
     value, note = _lines(rect)
-    readings = {known: known.read(state) for known in PHENOMENA.values()}
-    worst = max(readings, key=lambda known: readings[known].share)
-    calm = readings[worst].share < NOTICED
+    readings = [(known, known.read(state)) for known in PHENOMENA.values()]
+    worst, reading = max(readings, key=lambda pair: pair[1].share)
+    calm = reading.share < NOTICED
     return _live(
         rect,
         "home.outside",
@@ -244,7 +244,7 @@ def _outside_card(rect: Rect, state: State) -> Widget:
         Label(
             rect=value,
             key="home.outside.value",
-            text=say("No weather hazards") if calm else readings[worst].word,
+            text=say("No weather hazards") if calm else reading.word,
             description=say("Outside"),
             style=Type.TITLE,
         ),
@@ -253,7 +253,7 @@ def _outside_card(rect: Rect, state: State) -> Widget:
             key="home.outside.note",
             text=say("Monitoring rain, fog, ice, dust, wind")
             if calm
-            else say("{name}: {value}", name=worst.title, value=readings[worst].value),
+            else say("{name}: {value}", name=worst.title, value=reading.value),
             style=Type.LABEL,
             tone="muted",
         ),
