@@ -39,14 +39,15 @@ def load(name_or_folder: str | Path) -> Scenario:
     """
     folder = Path(name_or_folder)
     if not (folder / "scenario.toml").is_file():
-        if folder.is_dir():
-            raise ScenarioError(f"{folder} has no scenario.toml; make one with `automotive-cosim scenarios import`")
-        if is_file(folder):
-            raise ScenarioError(f"{folder} is not a scenario's folder, which this needs: it has no scenario.toml")
         names = shipped()
-        if str(name_or_folder) not in names:
+        if str(name_or_folder) in names:  # also beside a folder of results of that name
+            folder = Path(str(files("automotive_cosim").joinpath("sumo_scenarios"))) / str(name_or_folder)
+        elif folder.is_dir():
+            raise ScenarioError(f"{folder} has no scenario.toml; make one with `automotive-cosim scenarios import`")
+        elif is_file(folder):
+            raise ScenarioError(f"{folder} is not a scenario's folder, which this needs: it has no scenario.toml")
+        else:
             raise UnknownNameError("scenario", str(name_or_folder), names, "automotive-cosim scenarios list")
-        folder = Path(str(files("automotive_cosim").joinpath("sumo_scenarios"))) / str(name_or_folder)
     document = read_toml(folder / "scenario.toml", ScenarioError)
     file = document.read(ScenarioFile)
     if problems := tuple(str(problem) for problem in _contradictions(file, document)):

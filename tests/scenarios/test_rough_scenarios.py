@@ -47,3 +47,10 @@ def test_a_wrong_value_is_refused(tmp_path, old: str, new: str, said: str):
         scenarios.load(folder)
     assert "scenario.toml" in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_a_folder_of_results_named_like_a_shipped_scenario_does_not_hide_it(tmp_path, monkeypatch):
+    (tmp_path / "grid").mkdir()
+    monkeypatch.chdir(tmp_path)
+    assert scenarios.load("grid").folder.name == "grid"
+    assert (scenarios.load("grid").folder / "scenario.toml").is_file()
