@@ -215,9 +215,9 @@ def _leaderboard() -> None:
     """The page of all bundles in the repository, and its tables; a bundle with a problem fails the build."""
     out = MADE / "board" / "leaderboard.html"
     out.parent.mkdir(parents=True, exist_ok=True)
-    made, left_out = board(DOCS / "leaderboard", out)
+    made, left_out = board(DOCS / "leaderboard" / "bundles", out)
     if left_out:
-        raise RuntimeError(f"docs/leaderboard: {'; '.join(left_out)}")
+        raise RuntimeError(f"docs/leaderboard/bundles: {'; '.join(left_out)}")
     page: list[str] = []
     for table, conditions, _ in made:
         shown = [place for place, head in enumerate(table.columns) if head in HEADS]
