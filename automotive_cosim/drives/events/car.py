@@ -88,6 +88,7 @@ class FlapOpen(EventKind):
     source = "UN R11 asks for a warning of doors not shut; 2 s; deadline: 20 s"
     neutral = "while the car stands, but is not parked"
     grace_s = 20.0
+    lasts_s = 600.0
     alerts = frozenset({AlertKind.VEHICLE})
     requests = (PullOver,)
     writes: ClassVar[Mapping[str, Wanted]] = {CABIN.TRUNK.path: off, ENERGY.CHARGE_FLAP.path: off}

@@ -75,12 +75,13 @@ class PhoneUse(EventKind):
         """Reads the interior camera."""
         now = drive[-1]
         where, kmh = now.signals[CALL.PHONE.path], speed_kmh(now)
-        if where == "AWAY" or kmh < SLOW_KMH:
+        if where == "AWAY" or now.signals[MOTION.GEAR.path] == "P":
             return
-        if where == "CRADLE":
+        if where == "HAND":
+            told = f"the phone in the driver's hand at {kmh:.0f} km/h"
+            yield Sighting(told, due=kmh >= SLOW_KMH, hold_s=gaze_s(kmh))
+        elif kmh >= SLOW_KMH:
             yield Sighting("the phone is used in its cradle", lookalike=True)
-        else:
-            yield Sighting(f"the phone in the driver's hand at {kmh:.0f} km/h", due=True, hold_s=gaze_s(kmh))
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """No phone in the hand, or a parked car."""
