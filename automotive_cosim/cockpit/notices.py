@@ -65,4 +65,4 @@ NAMES: Mapping[Telltale, str] = {
 def lit_in_words(telltales: Iterable[Telltale]) -> str:
     """The tell-tales that are lit, for the list."""
     names = [NAMES[telltale] for telltale in telltales]
-    return say("Warning lights: {lit}", lit=listed(names)) if names else say("Warning lights")
+    return say("Dashboard lights: {lit}", lit=listed(names)) if names else say("Dashboard lights")

@@ -46,7 +46,7 @@ def test_a_telltale_lights_up_on_the_picture_and_is_named_in_the_list(cockpit: C
     assert set(lit(cockpit._state)) == expected
     assert (dark[:64, 216:371] != cockpit.screenshot()[:64, 216:371]).any()
     told = {each.content_description for each in pictures(cockpit)} - {each.content_description for each in listed}
-    assert told == {f"Telltales: {', '.join(NAMES[each] for each in Telltale if each in expected)}"}
+    assert told == {f"Dashboard lights: {', '.join(NAMES[each] for each in Telltale if each in expected)}"}
 
 
 def pictures(cockpit: Cockpit) -> list[Element]:

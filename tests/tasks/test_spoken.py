@@ -34,7 +34,7 @@ ENGLISH = re.compile(r"\b(the|and|with|please|then|when|what|my|you|that|this|se
 """Words that no sentence in another of the languages has."""
 JAPANESE = "\u3001-\u9fff"
 WRONG = {
-    Language.FRENCH: re.compile(r"[\"“”’]|[^ ][;!?»]|[^ \d]:|«[^ ]|  |\d\.\d"),
+    Language.FRENCH: re.compile(r"[\"“”’]|[^ \u202f][;!?»]|[^ \u202f\d]:|«[^ \u202f]|  |\d\.\d"),
     Language.GERMAN: re.compile(r"[\"«»”’]| [;!?:]|  |\d\.\d"),
     Language.JAPANESE: re.compile(
         rf"[\"',;!?:“”„«»()](?!\d)|\.(?!\d)|\u3000| (?=[{JAPANESE}])|(?<=[{JAPANESE}]) |[０-９Ａ-Ｚａ-ｚ％]"
