@@ -92,12 +92,12 @@ class Kept:
     def came_off(self, staged: Staged) -> bool:
         """Whether the staged event happened in the do-nothing run."""
         latest_s = APART_S if staged.is_lookalike else LATEST_S
-        due = any(
-            event.kind == staged.kind
-            and event.obliged_s is not None
-            and staged.at_s - 1 <= event.observable_s <= staged.at_s + latest_s
+        due_s = [
+            event.observable_s if staged.is_lookalike else event.obliged_s
             for event in self.untouched
-        )
+            if event.kind == staged.kind and event.obliged_s is not None
+        ]
+        due = any(staged.at_s - 1 <= at_s <= staged.at_s + latest_s for at_s in due_s)
         return due != staged.is_lookalike
 
 

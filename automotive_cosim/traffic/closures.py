@@ -14,7 +14,7 @@ from automotive_cosim.traffic.sumo import LibSumo
 CARS = "passenger"
 """SUMO's class of the vehicles that are kept out."""
 
-Turn = tuple[str, str]
+EdgePair = tuple[str, str]
 """From edge, to edge."""
 
 
@@ -29,7 +29,7 @@ class Closures:
         self._turns = {(edge.edge_id, goal): access for edge in edges for goal, access in edge.timed_turns}
         self._lanes = {edge_id: network.edges[edge_id].lane_ids for edge_id in self._roads}
         self._shut: frozenset[str] = frozenset()
-        self._barred: frozenset[Turn] = frozenset()
+        self._barred: frozenset[EdgePair] = frozenset()
         self._allowed: dict[str, Sequence[str]] = {}
         """Of each closed lane, the classes that may use it otherwise; none stands for all."""
         self._seen: tuple[datetime, str] | None = None
@@ -63,7 +63,7 @@ class Closures:
             self._divert()
         return any(closed)
 
-    def _of(self, edges: Iterable[str], turns: Iterable[Turn]) -> list[str]:
+    def _of(self, edges: Iterable[str], turns: Iterable[EdgePair]) -> list[str]:
         """The lanes of edges, and those of turns across their junctions."""
         lanes = [lane for edge_id in sorted(edges) for lane in self._lanes[edge_id]]
         for start, goal in sorted(turns):
