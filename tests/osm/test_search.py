@@ -44,7 +44,7 @@ class Searched:
         monkeypatch.setattr(importer.trips, "pick", lambda *_: ())
         drawn: Any = SimpleNamespace(journeys=list(range(1000)), routes=())
         rng = np.random.default_rng(0)
-        self.search = importer._Search(Path("x"), options, Place(), drawn, rng, lambda *_: None)
+        self.search = importer._Search(Path("x"), options, Place(), drawn, rng, lambda *_: None, edges=1000)
 
 
 def jams_above(scale_max: float) -> Judge:
