@@ -243,9 +243,11 @@ def _behind_words(drive: Drive) -> str:
     for kind, words in ((SightKind.EMERGENCY_VEHICLE, "blue light"), (SightKind.VEHICLE_BEHIND, "vehicle")):
         sight = _seen(drive[-1], kind)
         if sight is not None:
-            closing_kmh = (sight.value or 0.0) * KMH_PER_MPS
-            trend = f"closing at {closing_kmh:.0f} km/h" if closing_kmh > 1 else "not closing"
-            return f"{words} {sight.distance_m or 0:.0f} m behind, {trend}"
+            away_m, closing_mps = sight.distance_m or 0.0, sight.value or 0.0
+            if closing_mps * KMH_PER_MPS <= 1:
+                return f"{words} {away_m:.0f} m behind, not closing"
+            closing = f"closing at {closing_mps * KMH_PER_MPS:.0f} km/h, {away_m / closing_mps:.1f} s away"
+            return f"{words} {away_m:.0f} m behind, {closing}"
     return ""
 
 
