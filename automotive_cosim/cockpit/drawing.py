@@ -21,6 +21,8 @@ from automotive_cosim.cockpit.theme import CAP_HEIGHT, EAST_ASIAN_FROM, SMALLER,
 _NOT_FIRST = "、。：？！」』）％ーぁぃぅぇぉっゃゅょァィゥェォッャュョ"
 """Characters that must not begin a line in Japanese."""
 _PIECE = re.compile(f"(?:[{EAST_ASIAN_FROM}-\U0010ffff]|[^{EAST_ASIAN_FROM}-\U0010ffff]+)[{_NOT_FIRST}]*")
+_BLANKS = re.compile(r"[ \t\n]+")
+"""Where a line may break; no-break spaces stay."""
 _FINE = 4
 """Oversampling of shapes."""
 
@@ -177,7 +179,7 @@ def fit(text: str, style: Type, width: int, lines: int, height: int = 0) -> tupl
         lines: maximum number of lines, as long as the text fits on them in some style.
         height: height of the box; more lines are used before the smallest style if it has room for them.
     """
-    text = " ".join(text.split())
+    text = _BLANKS.sub(" ", text).strip(" ")
     styles = [style]
     while styles[-1] in SMALLER:
         styles.append(SMALLER[styles[-1]])
