@@ -129,6 +129,7 @@ EXPLICIT = (
             ),
         ),
         parameters={"playlist": FromCockpit("playlists"), "percent": (10, 15, 20, 40, 45, 50, 55, 60, 65)},
+        may_write=ANY_ENTRY,
     ),
     asked(
         "media_like_current",
