@@ -198,11 +198,13 @@ def coupled(ground: Ground, right: Played) -> Wrong:
     All are tried, so that those which the car couples to the goal are among them. One that the car refuses or that
     changes nothing is skipped.
     """
-    before, end = right.moments[:-1], right.moments[-1]
+    before, start, end = right.moments[:-1], right.moments[0], right.moments[-1]
     done = replayed(ground.episode.at_hand_over, right.given, before)
     for path in sorted(set(ACTUATORS) - ground.half.allowed_writes - may_part(ground.half)):
         car = done.copy()
         value = mutations.another_value(named(path), car.signals[named(path)])
+        if value == start.commands[path]:  # sets back what followed, which is free: `uncoupled`
+            continue
         if car.command(named(path), value).code is not FeedbackCode.OK:
             continue
         car.sense(end.surroundings, end.time_s - before[-1].time_s)
