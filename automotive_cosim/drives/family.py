@@ -132,11 +132,15 @@ class Family:
 
 
 def _order(roles: Sequence[tuple[str, bool]], rng: np.random.Generator) -> list[tuple[str, bool]]:
-    """Any order in which weather has passed before it is staged as the other half of the same kind."""
+    """Any order in which weather has passed before it is staged as the other half of the same kind.
+
+    There is one for any roles: first one half of each kind, then the other halves in the same order.
+    """
+    apart = min(PLACES_APART, len(roles) // 2)
     while True:
         order = [roles[index] for index in rng.permutation(len(roles))]
         places = {(kind, half): place for place, (kind, half) in enumerate(order) if kind in OF_WEATHER}
-        if all(abs(place - places[kind, not half]) >= PLACES_APART for (kind, half), place in places.items()):
+        if all(abs(place - places[kind, not half]) >= apart for (kind, half), place in places.items()):
             return order
 
 

@@ -237,3 +237,12 @@ def test_a_battery_that_runs_low_is_an_event_or_looks_like_one(is_lookalike: boo
     signals = {change.path: change.value, ENERGY.RANGE.path: 4_000.0 * change.value}
     drive = [moment(float(second), signals=signals, route_left_m=20_000.0) for second in range(10)]
     assert [event.lookalike for event in found(drive, "range")] == [is_lookalike]
+
+
+@pytest.mark.timeout(30)
+def test_a_cast_of_weather_alone_is_drawn():
+    """Its halves stand as far apart as so few stagings allow."""
+    staged = replace(FAMILIES["grid_january"], cast=("slippery", "wipers")).draw(0).staged
+    kinds = [one.kind for one in staged]
+    assert sorted(kinds) == ["slippery", "slippery", "wipers", "wipers"]
+    assert all(kinds.index(kind) + 2 == 3 - kinds[::-1].index(kind) for kind in set(kinds))
