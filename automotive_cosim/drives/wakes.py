@@ -280,11 +280,28 @@ def _next_limit_words(drive: Drive) -> str:
     limit, away_m = ahead.next_limit, ahead.next_limit_distance_m
     if limit is None or not limit.is_posted or away_m is None or away_m > HORIZON_M:
         return ""
-    return f"{'no limit' if limit.kmh is None else f'{limit.kmh:.0f} km/h'} in {_far(away_m, drive[-1])}"
+    what = "no limit" if limit.kmh is None else f"{limit.kmh:.0f} km/h"
+    return f"{what} in {_far(away_m, drive[-1])}{_signed(ahead.next_limit_hours)}"
 
 
-def _ahead(name: str, away_m: Callable[[Moment], float | None], about: str) -> Wake:
-    """What the map or the traffic service reports on the route."""
+def _signed(hours: str) -> str:
+    return f", signed for {hours}" if hours else ""
+
+
+def _ahead(
+    name: str,
+    away_m: Callable[[Moment], float | None],
+    about: str,
+    more: Callable[[Moment], str] = lambda now: "",
+) -> Wake:
+    """What the map or the traffic service reports on the route.
+
+    Args:
+        name: of the reading.
+        away_m: how far it is; 0 within it, None without it.
+        about: what it is.
+        more: what else there is to read, within it or ahead of it.
+    """
 
     def reads(drive: Drive) -> Hashable:
         far_m = away_m(drive[-1])
@@ -294,7 +311,9 @@ def _ahead(name: str, away_m: Callable[[Moment], float | None], about: str) -> W
 
     def words(drive: Drive) -> str:
         far_m = away_m(drive[-1])
-        return "" if far_m is None or far_m <= 0 else f"in {_far(far_m, drive[-1])}"
+        if far_m is None:
+            return ""
+        return more(drive[-1]) if far_m <= 0 else f"in {_far(far_m, drive[-1])}{more(drive[-1])}"
 
     early, late = (seconds + DUE_S[name] for seconds in BEFORE_S)
     return Wake(
@@ -311,7 +330,14 @@ def _reported(kind: SightKind, about: str) -> Wake:
         sight = _seen(now, kind)
         return None if sight is None else sight.distance_m
 
-    return _ahead(kind.value.replace("_", " "), away_m, about)
+    def more(now: Moment) -> str:
+        sight = _seen(now, kind)
+        if sight is None:
+            return ""
+        left_m = sight.value if kind is SightKind.JAM and not sight.distance_m else None
+        return _signed(sight.hours) if left_m is None else f"the car is in it, {left_m:.0f} m are left"
+
+    return _ahead(kind.value.replace("_", " "), away_m, about, more)
 
 
 # --- sky and road ----------------------------------------------------------------------------------------------

@@ -133,6 +133,23 @@ def test_what_has_ended_wakes_nobody_and_is_read_with_the_next_look() -> None:
     assert "school zone (changed): ended, no longer ahead" in read
 
 
+def test_a_jam_that_the_car_has_reached_is_read_by_what_is_left_of_it() -> None:
+    ahead, within = Sight(SightKind.JAM, "", 300.0), Sight(SightKind.JAM, "", 0.0, 140.0)
+    assert "jam: in 300 m, 22 s at this speed" in noticed([moment(sights=(ahead,))]).splitlines()
+    assert "jam: the car is in it, 140 m are left" in noticed([moment(sights=(within,))]).splitlines()
+    assert woken([{"sights": (ahead,)}, {"sights": (within,)}, {"sights": (within,)}])[1] == []
+
+
+def test_a_limit_that_falls_for_a_school_is_read_with_the_hours_of_its_sign() -> None:
+    hours = "Mo-Fr 08:00-09:30"
+    sign = {"next_limit": limit(40), "next_limit_distance_m": 100.0}
+    zone = (Sight(SightKind.SCHOOL_ZONE, "", 100.0, hours=hours),)
+    read = noticed([moment(sights=zone, **sign, next_limit_hours=hours)]).splitlines()
+    assert "limit ahead: 40 km/h in 100 m, 7 s at this speed, signed for Mo-Fr 08:00-09:30" in read
+    assert "school zone: in 100 m, 7 s at this speed, signed for Mo-Fr 08:00-09:30" in read
+    assert "limit ahead: 40 km/h in 100 m, 7 s at this speed" in noticed([moment(**sign)]).splitlines()
+
+
 def test_a_gap_that_becomes_shorter_than_a_second_wakes_again_and_one_that_opens_does_not() -> None:
     gaps_s = [1.9] * 3 + [0.8] * 3 + [1.5] * 3 + [0.8] * 3 + [1.5] * 13 + [0.8] * 3
     told = woken([{"leader": vehicle(gap_s * 50 / 3.6)} for gap_s in gaps_s])

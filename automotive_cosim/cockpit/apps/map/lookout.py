@@ -162,22 +162,52 @@ def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
     starts_m = _starts_m(state, driving)
     news = state.news
     found: dict[SightKind, float] = {}
+    hours = ""
     for edge_id, start_m in starts_m.items():
         road = state.roads.find(edge_id)
-        if road is not None and road.school_zone and start_m >= 0:
-            found[SightKind.SCHOOL_ZONE] = min(start_m, found.get(SightKind.SCHOOL_ZONE, start_m))
-    if news is not None:
-        if news.ahead.jam_distance_m is not None:
-            found[SightKind.JAM] = news.ahead.jam_distance_m - (driving.distance_m - news.distance_m)
-        for incident in news.ahead.incidents:
-            if incident.edge_id in starts_m:
-                kind = SightKind(incident.kind.value)
-                away_m = starts_m[incident.edge_id] + incident.position_m
-                if away_m > 0:
-                    found[kind] = min(away_m, found.get(kind, away_m))
+        if road is not None and road.school_zone and start_m >= 0 and SightKind.SCHOOL_ZONE not in found:
+            found[SightKind.SCHOOL_ZONE], hours = start_m, road.limit_hours
+    queue: tuple[float, float] | None = None
+    for incident in () if news is None else news.ahead.incidents:
+        if incident.edge_id in starts_m:
+            kind, start_m = SightKind(incident.kind.value), starts_m[incident.edge_id]
+            away_m = start_m + incident.position_m
+            if away_m > 0 and kind is SightKind.JAM:
+                queue = min((away_m, start_m), queue or (away_m, start_m))
+            elif away_m > 0:
+                found[kind] = min(away_m, found.get(kind, away_m))
+    yield from _jam(state, driving, queue)
     for kind, away_m in found.items():
-        if kind is not SightKind.SCHOOL_ZONE or not driving.road.school_zone:
+        if kind is not SightKind.SCHOOL_ZONE:
             yield from _told(state, kind, away_m)
+        elif not driving.road.school_zone:
+            yield from _told(state, kind, away_m, hours)
+
+
+def _jam(state: State, driving: DrivingState, queue: tuple[float, float] | None) -> Iterator[Sight]:
+    """The next jam of the last report: how far it is, and within it how much is left.
+
+    Slow traffic is reported road by road, from the start of the first slow one; of some queues the tail is known.
+
+    Args:
+        state: the cockpit's state.
+        driving: where the car is now.
+        queue: how far the next reported tail is, and where its road begins; in metres from the car.
+    """
+    ahead_m = [] if queue is None else [queue[0]]
+    news = state.news
+    if news is not None and news.ahead.jam_distance_m is not None:
+        begins_m = news.ahead.jam_distance_m - (driving.distance_m - news.distance_m)
+        left_m = begins_m + news.ahead.jam_length_m
+        is_known_better = queue is not None and queue[1] <= begins_m and queue[0] <= left_m
+        if begins_m > 0 and not is_known_better:
+            ahead_m.append(begins_m)
+        elif left_m > 0 and not is_known_better:
+            far = _near(state.signals, left_m)
+            yield Sight(SightKind.JAM, say("In a traffic jam, {distance} left", distance=far), 0.0, left_m)
+            return
+    if ahead_m:
+        yield from _told(state, SightKind.JAM, min(ahead_m))
 
 
 def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
@@ -197,9 +227,9 @@ def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
     return found
 
 
-def _told(state: State, kind: SightKind, away_m: float) -> Iterator[Sight]:
+def _told(state: State, kind: SightKind, away_m: float, hours: str = "") -> Iterator[Sight]:
     if 0 <= away_m <= HORIZON_M:
-        yield Sight(kind, AHEAD[kind](_near(state.signals, away_m)), away_m)
+        yield Sight(kind, AHEAD[kind](_near(state.signals, away_m)), away_m, hours=hours)
 
 
 def _near(signals: Signals, metres: float) -> str:
