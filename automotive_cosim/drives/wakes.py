@@ -45,6 +45,9 @@ EASED_S = 10.0
 """What has eased for as long may become worse again, and wakes."""
 CLOSING_S = (8.0, 5.0)
 """Times to collision: time to brake gently behind a slow vehicle, and the last for a warning to be heard."""
+FAR_S = 120.0
+"""Who is so long from a collision does not close, as a car would say."""
+STANDING_MPS = 0.1
 BEFORE_S = (15.0, 2.0)
 """What lies ahead wakes this long before a warning of it is due, at the speed driven."""
 DUE_S = {"tunnel": 10.0, "jam": 15.0, "breakdown": 12.0, "roadworks": 12.0, "closure": 12.0, "school zone": 8.0}
@@ -222,9 +225,9 @@ def _leader_words(drive: Drive) -> str:
     leader, mps = _in_sight(drive[-1]), drive[-1].driving.speed_mps
     if leader is None:
         return ""
-    gap_s = f"time gap {leader.gap_m / mps:.1f} s" if mps >= 1.0 else "the car stands"
+    gap_s = f"time gap {leader.gap_m / mps:.1f} s" if mps >= STANDING_MPS else "the car stands"
     ttc_s = leader.time_to_collision_s
-    closing = "not closing" if ttc_s is None else f"time to collision {ttc_s:.1f} s"
+    closing = "not closing" if ttc_s is None or ttc_s > FAR_S else f"time to collision {ttc_s:.1f} s"
     return f"{leader.gap_m:.0f} m at {leader.speed_mps * KMH_PER_MPS:.0f} km/h, {gap_s}, {closing}"
 
 

@@ -237,6 +237,13 @@ def test_beyond_the_radar_there_is_no_vehicle_ahead() -> None:
     assert "vehicle ahead" in noticed([moment(leader=vehicle(140.0))])
 
 
+def test_who_hardly_closes_does_not_close_and_who_creeps_does_not_stand() -> None:
+    slow = {"leader": vehicle(70.0, time_to_collision_s=4288.0)}
+    assert "vehicle ahead: 70 m at 50 km/h, time gap 5.0 s, not closing" in noticed([moment(**slow)])
+    assert "time gap 84.0 s" in noticed([moment(kmh=3.0, **slow)])
+    assert "the car stands" in noticed([moment(kmh=0.0, **slow)])
+
+
 @pytest.mark.parametrize(
     ("name", "signals"),
     [
@@ -274,6 +281,9 @@ def test_what_the_driver_was_asked_for_is_told_as_long_as_it_is_in_force() -> No
     released = (90.0, "released", "drives as before; advice taken back")
     assert driver_words(slows, released, until_s=100) == ["driver: drives as before; advice taken back, 10 s ago"]
     assert driver_words(slows, released, until_s=160) == []
+    over = (60.0, "goes_on", "goes on; the advised speed has ended")
+    assert driver_words(slows, over, until_s=100) == ["driver: goes on; the advised speed has ended, 40 s ago"]
+    assert driver_words(slows, over, until_s=130) == []
     assert driver_words(stops, (90.0, "drives_on", "drives on"), until_s=100) == ["driver: drives on, 10 s ago"]
 
 
