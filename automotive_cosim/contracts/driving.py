@@ -190,9 +190,6 @@ class RoadAhead:
     divided by the limit, as reported by a live-traffic service."""
     incidents: tuple[RoadIncident, ...] = ()
     """Incidents anywhere in the network that such a service reports now."""
-    next_limit_hours: str = ""
-    """The hours on the sign of the next limit, ``"Mo-Fr 08:00-09:30, 14:30-16:00"``; empty if it holds at all
-    hours."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -284,7 +284,8 @@ def _next_limit_words(drive: Drive) -> str:
     if limit is None or not limit.is_posted or away_m is None or away_m > HORIZON_M:
         return ""
     what = "no limit" if limit.kmh is None else f"{limit.kmh:.0f} km/h"
-    return f"{what} in {_far(away_m, drive[-1])}{_signed(ahead.next_limit_hours)}"
+    sign = _seen(drive[-1], SightKind.LIMIT)
+    return f"{what} in {_far(away_m, drive[-1])}{_signed('' if sign is None else sign.hours)}"
 
 
 def _signed(hours: str) -> str:

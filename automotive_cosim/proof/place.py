@@ -69,7 +69,6 @@ def moved(moment: Moment, other: Moment) -> Moment:
             ahead,
             next_limit=next_there.next_limit,
             next_limit_distance_m=next_there.next_limit_distance_m,
-            next_limit_hours=next_there.next_limit_hours,
             tunnel_distance_m=next_there.tunnel_distance_m,
             exit_distance_m=next_there.exit_distance_m,
         ),

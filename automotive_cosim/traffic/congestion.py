@@ -154,8 +154,8 @@ class _Leg:
     time_after_s: float
     """Travel time from its end to the destination at present speeds; the next is at the limits."""
     free_after_s: float
-    next_limit: tuple[Limit, float, str] | None
-    """The next different limit, its position, and the hours on its sign."""
+    next_limit: tuple[Limit, float] | None
+    """The next different limit and its position."""
     tunnel_m: float | None
     """Where the next tunnel starts after this edge."""
     jam: tuple[float, float] | None
@@ -237,7 +237,6 @@ class Route:
             self._camera_m(position_m) if self._cameras_m else None,
             self._slow,
             self._incidents,
-            leg.next_limit[2] if leg.next_limit else "",
         )
 
     def _camera_m(self, position_m: float) -> float | None:
@@ -275,14 +274,10 @@ def _legs(
     return tuple(reversed(legs))
 
 
-def _next_limit(edge: Edge, after: _Leg | None) -> tuple[Limit, float, str] | None:
+def _next_limit(edge: Edge, after: _Leg | None) -> tuple[Limit, float] | None:
     if after is None:
         return None
-    there = after.edge
-    if there.limit_mps == edge.limit_mps:
-        return after.next_limit
-    is_timed = there.timed_limit is not None and there.limit_mps == there.timed_limit.limit_mps
-    return there.limit, after.start_m, there.timed_limit.hours.text if is_timed and there.timed_limit else ""
+    return (after.edge.limit, after.start_m) if after.edge.limit_mps != edge.limit_mps else after.next_limit
 
 
 def _jam(edge: Edge, start_m: float, relative_speed: float, after: _Leg | None) -> tuple[float, float] | None:

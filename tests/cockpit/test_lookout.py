@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
@@ -17,8 +18,11 @@ from automotive_cosim.cockpit.signals import CABIN, ENERGY, HMI, OCCUPANT, SEAT,
 from automotive_cosim.contracts import (
     Connectivity,
     IncidentKind,
+    Limit,
+    LimitSource,
     OtherVehicle,
     RoadIncident,
+    RoadNetwork,
     Sight,
     SightKind,
     Surroundings,
@@ -123,6 +127,23 @@ def test_an_incident_elsewhere_is_not_ahead(make: Make, around: Surroundings) ->
     ahead = replace(around.driving.ahead, incidents=(RoadIncident(IncidentKind.ROADWORKS, "e0_0", 10.0),))
     cockpit = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)), lookout=True)
     assert SightKind.ROADWORKS not in by_kind(cockpit)
+
+
+def test_a_limit_ahead_is_seen_with_the_hours_of_its_sign(network: RoadNetwork, around: Surroundings) -> None:
+    """But not where the road has that limit at all hours."""
+    hours = "Mo-Fr 08:00-09:30"
+    roads = tuple(
+        replace(road, limit_hours=hours, limit_mps=14.0) if road.edge_id == "e6_6" else road
+        for road in network.roads
+    )
+    here_m = next(road.length_m for road in roads if road.edge_id == "e6_5")
+    away_m = here_m - around.driving.road.lane_position_m + 15.0  # with the junction before it
+    for mps, told in ((8.0, hours), (14.0, "")):
+        limit = Limit(mps, LimitSource.POSTED)
+        ahead = replace(around.driving.ahead, next_limit=limit, next_limit_distance_m=away_m)
+        cockpit = Cockpit(replace(network, roads=roads), rng=np.random.default_rng(1), lookout=True)
+        cockpit.sense(replace(around, driving=replace(around.driving, ahead=ahead)), 0.0)
+        assert by_kind(cockpit)[SightKind.LIMIT].hours == told
 
 
 def jam_told(cockpit: Cockpit, around: Surroundings, driven_m: float) -> str:

@@ -143,8 +143,8 @@ def test_a_jam_that_the_car_has_reached_is_read_by_what_is_left_of_it() -> None:
 def test_a_limit_that_falls_for_a_school_is_read_with_the_hours_of_its_sign() -> None:
     hours = "Mo-Fr 08:00-09:30"
     sign = {"next_limit": limit(40), "next_limit_distance_m": 100.0}
-    zone = (Sight(SightKind.SCHOOL_ZONE, "", 100.0, hours=hours),)
-    read = noticed([moment(sights=zone, **sign, next_limit_hours=hours)]).splitlines()
+    seen = tuple(Sight(kind, "", 100.0, hours=hours) for kind in (SightKind.SCHOOL_ZONE, SightKind.LIMIT))
+    read = noticed([moment(sights=seen, **sign)]).splitlines()
     assert "limit ahead: 40 km/h in 100 m, 7 s at this speed, signed for Mo-Fr 08:00-09:30" in read
     assert "school zone: in 100 m, 7 s at this speed, signed for Mo-Fr 08:00-09:30" in read
     assert "limit ahead: 40 km/h in 100 m, 7 s at this speed" in noticed([moment(**sign)]).splitlines()

@@ -23,13 +23,17 @@ from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOT
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Sight, SightKind
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Limit, Sight, SightKind
 from automotive_cosim.contracts.text import Text, say
 
 LINE_PX, LINES = 38, 8
 """Height of a line on the screen, and how many there are room for."""
 METRES_BELOW_M, FEET_BELOW_M, FOOT_M = 100.0, 300.0, 0.3048
 """Distances below are shown in metres or feet, others as on signs."""
+JUNCTIONS_M = 60.0
+"""By how much the roads up to a sign are together shorter than the way to it, with its junctions."""
+ROUNDED_MPS = 2.0
+"""By less than this a sign differs from the limit on the map where a network was moved to another country."""
 ICONS: Mapping[SightKind, Icon] = {
     SightKind.DRIVER_BELT: Icon.SEAT_BELT,
     SightKind.PASSENGER_BELT: Icon.SEAT_BELT,
@@ -147,7 +151,7 @@ def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
                 distance=far,
             )
         )
-        yield Sight(SightKind.LIMIT, told, limit_m, kmh)
+        yield Sight(SightKind.LIMIT, told, limit_m, kmh, _limit_hours(state, driving, limit, limit_m))
     if driving.road.in_tunnel:
         yield Sight(SightKind.TUNNEL, say("In a tunnel"), 0.0)
     elif ahead.tunnel_distance_m is not None:
@@ -155,6 +159,17 @@ def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
     if driving.road.school_zone:
         yield Sight(SightKind.SCHOOL_ZONE, say("In a school zone"), 0.0)
     yield from _mapped(state, driving)
+
+
+def _limit_hours(state: State, driving: DrivingState, limit: Limit, limit_m: float) -> str:
+    """The hours on the sign of the next limit; empty if the road has that limit at all hours."""
+    for edge_id, start_m in _starts_m(state, driving).items():
+        road = state.roads.find(edge_id)
+        if road is not None and road.limit_hours and -JUNCTIONS_M <= start_m - limit_m <= 1.0:
+            usual_mps = road.limit_mps
+            if limit.mps is None or usual_mps is None or abs(limit.mps - usual_mps) > ROUNDED_MPS:
+                return road.limit_hours
+    return ""
 
 
 def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
