@@ -298,13 +298,19 @@ def _limits(steps: int | None, tokens: int | None, seconds: int | None) -> Json:
 
 
 def _failures(rows: Sequence[TrialRow]) -> Iterator[str]:
-    """A line for each agent that failed."""
-    failed: dict[str, list[TrialRow]] = {}
-    for row in rows:
-        if row.agent_error is not None:
-            failed.setdefault(row.agent, []).append(row)
-    for agent, (row, *more) in failed.items():
-        yield f"agent {agent} failed in {counted(1 + len(more), 'trial')}, e.g. {row.id}: {row.agent_error}"
+    """A line for each agent that failed, and for each whose answers were no actions."""
+    for agent in dict.fromkeys(row.agent for row in rows):
+        mine = [row for row in rows if row.agent == agent]
+        failed = [row for row in mine if row.agent_error is not None]
+        for row in failed[:1]:
+            yield f"agent {agent} failed in {counted(len(failed), 'trial')}, e.g. {row.id}: {row.agent_error}"
+        lost = [row for row in mine if row.malformed]
+        steps = sum(row.malformed or 0 for row in lost)
+        for row in lost[:1]:
+            yield (
+                f"agent {agent} gave no action in {counted(steps, 'step')} of {counted(len(lost), 'trial')}, e.g. "
+                f"{row.id}: {row.malformed_why}"
+            )
 
 
 def _said(progress: Progress[TrialRow]) -> str:
