@@ -17,7 +17,7 @@ from automotive_cosim.report.consistency import consistency, varied
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.policy import house_rules
-from automotive_cosim.report.results import Results, contestant, read_results
+from automotive_cosim.report.results import NOT_RANKED, Results, contestant, read_results
 from automotive_cosim.report.summary import PUBLISHED, errors, progress, replaced, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
@@ -129,6 +129,7 @@ def _page(
         conditions=told(results.manifest["plan"]),
         starts=starts,
         is_mixed=any(start["git"] != starts[0]["git"] for start in starts),
+        has_controls=any(row.agent in NOT_RANKED for row in results.rows),
         has_stand_in=any(row.model == "rules" for row in results.rows),
         megabytes=megabytes(results.folder),
         drive_tables=driven[0],
