@@ -158,9 +158,10 @@ def _distribution(results: Results) -> Drawing:
 
     def draw(axes: Axes) -> None:
         done = [0] * len(modules)
-        for number, (name, title) in enumerate(DIMENSIONS.items()):
+        for name in dimensions(results):
             counts = [sum(row.module == module and row.dimension == name for row in tasks) for module in modules]
-            axes.barh(range(len(modules)), counts, left=done, height=0.6, color=PALETTE[number], label=title)
+            colour = PALETTE[list(DIMENSIONS).index(name)]
+            axes.barh(range(len(modules)), counts, left=done, height=0.6, color=colour, label=DIMENSIONS[name])
             done = [before + count for before, count in zip(done, counts, strict=True)]
         axes.set_yticks(range(len(modules)), [NAMES.get(module, module.capitalize()) for module in modules])
         axes.set_ylim(len(modules) - 0.5, -0.5)
