@@ -76,7 +76,7 @@ def translated(walk: Episode) -> tuple[TimedCall, ...]:
     try:
         while walk.end is None:
             at_s, heard = walk.observation.time_s, len(walk.heard)
-            action = oracle.act(walk.observation)
+            action = oracle.act(replace(walk.observation, elements=walk.elements))
             before, listed = walk.world.cockpit.copy(), walk.elements
             walk.step(action)
             if action.action_type not in BY_HAND:
