@@ -1,6 +1,6 @@
 """The same tasks by touch, by functions and by both: success, time, tokens, cost and distraction.
 
-    python benchmarks/interfaces.py --out runs/interfaces            # rerun to resume
+    python benchmarks/interfaces.py --out runs/interfaces --scenario grid --workers 2    # rerun to resume
     python benchmarks/interfaces.py --out runs/mine --models openai/NAME --agents caller,t3a
 
 A sample of all tasks that do not hang on the picture, drawn by seed. The first table is of the reference solutions,
@@ -20,18 +20,20 @@ from automotive_cosim.report.interfaces import interfaces
 from automotive_cosim.report.results import read_results
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.processes import Processes
 from automotive_cosim.tasks import CATALOGUE
 
 
-def sample(count: int, seed: int) -> list[str]:
+def sample(count: int, seed: int, scenario: str) -> list[str]:
     """Ids of so many tasks, of all suites; a smaller sample is part of a larger one."""
-    plain = [task.id for task in CATALOGUE.values() if not task.needs_picture]
+    tasks = (task for task in CATALOGUE.values() if not scenario or task.runs_whole_in(scenario))
+    plain = [task.id for task in tasks if not task.needs_picture]
     return [str(name) for name in np.random.default_rng(seed).permutation(plain)[:count]]
 
 
-def table(folder: Path, plan: Json) -> str:
+def table(folder: Path, plan: Json, workers: int) -> str:
     """Runs what is left of an evaluation; its table, in Markdown."""
-    run_plan(make_plan(plan), folder)
+    run_plan(make_plan(plan), folder, executor=Processes(workers))
     return interfaces(read_results(folder).shared()).markdown()
 
 
@@ -44,13 +46,17 @@ def main() -> None:
     parser.add_argument("--agents", default="caller", help="separated by commas (caller)")
     parser.add_argument("--models", default="rules", help="separated by commas (rules)")
     parser.add_argument("--prompt", default="standard", help="standard, short or long")
+    parser.add_argument("--scenario", default="", help="where to run what can run there, e.g. grid")
+    parser.add_argument("--workers", type=int, default=1, help="processes (1)")
     given = parser.parse_args()
-    tasks = sample(given.tasks, given.seed)
+    where = {"scenarios": [given.scenario]} if given.scenario else {}
+    tasks, few = (sample(count, given.seed, given.scenario) for count in (given.tasks, given.agent_tasks))
     by_either = [str(Interface.TOUCH), str(Interface.FUNCTIONS)]
-    print(table(given.out / "reference", {"agents": ["oracle"], "tasks": tasks, "interface": by_either}))
-    plan = {"agents": given.agents.split(","), "models": given.models.split(","), "prompt": [given.prompt]}
-    few = sample(min(given.agent_tasks, given.tasks), given.seed)
-    print(table(given.out / "agents", plan | {"tasks": few, "interface": [str(each) for each in Interface]}))
+    plan: Json = {"agents": ["oracle"], "tasks": tasks, "interface": by_either} | where
+    print(table(given.out / "reference", plan, given.workers))
+    plan |= {"agents": given.agents.split(","), "models": given.models.split(","), "prompt": [given.prompt]}
+    plan |= {"tasks": few, "interface": [str(each) for each in Interface]}
+    print(table(given.out / "agents", plan, given.workers))
 
 
 if __name__ == "__main__":
