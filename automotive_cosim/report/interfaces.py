@@ -12,7 +12,7 @@ from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
 
 Value = Callable[[EpisodeRow], float | None]
-Instances = Mapping[Hashable, EpisodeRow]
+Instances = Mapping[tuple[Hashable, ...], EpisodeRow]
 
 FIGURES: tuple[tuple[str, int, Value], ...] = (
     ("Steps", 1, lambda row: row.steps),
@@ -44,15 +44,16 @@ def interfaces(results: Results) -> Table:
             if (mine := [row for row in results.of(group.under("interface", which)) if row.success is not None])
         }
         touched = found.get(Interface.TOUCH, {})
-        for which, mine in found.items() if len(found) > 1 else ():
-            own, ids = tuple(mine.values()), tuple(row.id for row in mine.values())
+        for which, instances in found.items() if len(found) > 1 else ():
+            own = tuple(instances.values())
+            ids = tuple(row.id for row in own)
             rows.append(
                 (
                     group.label,
                     which,
                     rate_cell(own),
                     *(Cell(_mean(own, digits, of), ids) for _, digits, of in FIGURES),
-                    *([NONE] * (1 + COMPARED) if which is Interface.TOUCH else _differences(mine, touched)),
+                    *([NONE] * (1 + COMPARED) if which is Interface.TOUCH else _differences(instances, touched)),
                 )
             )
     compared = tuple(
@@ -86,8 +87,11 @@ def _differences(mine: Instances, touched: Instances) -> list[Cell]:
     if won is not None:
         cells = [f"{won.difference:+.0%} ({won.interval.low:+.0%} to {won.interval.high:+.0%})"]
     for _, digits, of in FIGURES[:COMPARED]:
-        both = [(mine[key].task, of(mine[key]), of(touched[key])) for key in shared]
-        found = clustered_mean((task, one - other) for task, one, other in both if None not in (one, other))
+        found = clustered_mean(
+            (mine[key].task, one - other)
+            for key in shared
+            if (one := of(mine[key])) is not None and (other := of(touched[key])) is not None
+        )
         bounds = None if found is None else found.interval
         told = "" if bounds is None else f" ({bounds.low:+.{digits}f} to {bounds.high:+.{digits}f})"
         cells.append(NONE if found is None else f"{found.value:+.{digits}f}{told}")
