@@ -40,8 +40,8 @@ def table(folder: Path, plan: Json, workers: int) -> str:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", type=Path, required=True, help="folder of the two evaluations")
-    parser.add_argument("--tasks", type=int, default=75, help="how many tasks (75)")
-    parser.add_argument("--agent-tasks", type=int, default=12, help="how many of them the agents get (12)")
+    parser.add_argument("--tasks", type=int, default=90, help="how many tasks (90)")
+    parser.add_argument("--agent-tasks", type=int, default=30, help="how many of them the agents get (30)")
     parser.add_argument("--seed", type=int, default=0, help="of the sample (0)")
     parser.add_argument("--agents", default="caller", help="separated by commas (caller)")
     parser.add_argument("--models", default="rules", help="separated by commas (rules)")
