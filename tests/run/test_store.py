@@ -44,9 +44,9 @@ def test_results_are_not_resumed_with_other_code_of_the_agent(tmp_path, monkeypa
         with opened(tmp_path / f"e{len(code)}", plan, JobRow):
             pass
         assert list(read_manifest(tmp_path / f"e{len(code)}")["starts"][0]["own_code"]) == ["mine:Careful"]
-    with pytest.raises(UserError, match="code of mine:Careful has changed"):
-        with opened(tmp_path / "e20", plan, JobRow):
-            pass
+    other = opened(tmp_path / "e20", plan, JobRow)
+    with pytest.raises(UserError, match="code of mine:Careful has changed"), other:
+        pass
 
 
 def test_a_package_counts_with_all_its_modules(tmp_path, monkeypatch):
