@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import statistics
 import subprocess
@@ -49,9 +50,7 @@ COLUMNS = {
     "bare_memory_mb": "bare SUMO's, MB",
 }
 
-BARE = (
-    "import sys, libsumo; libsumo.simulation.start(['sumo', '-n', sys.argv[1], '--no-warnings'])"
-)
+BARE = "import sys, libsumo; libsumo.simulation.start(['sumo', '-n', sys.argv[1], '--no-warnings'])"
 
 
 def main() -> None:
@@ -59,6 +58,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("streets", type=int, nargs="*", default=STREETS)
     parser.add_argument("--write", type=Path, help="also write the rows as JSON")
+    parser.add_argument("--bare", action="store_true", help="only bare SUMO's load and its memory")
     parser.add_argument("--plot", type=Path, help="only draw the rows of this file")
     given = parser.parse_args()
     if given.plot:
@@ -73,8 +73,9 @@ def main() -> None:
             ok, printed = sumo_programs.run("netgenerate", [*grid, "-o", net.name, "--no-warnings"], net.parent)
             if not ok:
                 sys.exit(sumo_programs.first_error(printed))
-            rows.append({"edges": 4 * streets * (streets - 1), **measured(net), **bare(net)})
-        print(f"| {' | '.join(f'{rows[-1][name]:,.6g}' for name in COLUMNS)} |", flush=True)
+            ours = {} if given.bare else measured(net)
+            rows.append({"edges": 4 * streets * (streets - 1), **ours, **bare(net)})
+        print(f"| {' | '.join(f'{rows[-1].get(name, math.nan):,.6g}' for name in COLUMNS)} |", flush=True)
         if given.write:
             given.write.write_text(json.dumps(rows, indent=1) + "\n", encoding="utf-8")
 
@@ -135,15 +136,18 @@ def draw(rows: Sequence[Row], target: Path) -> None:
     mpl.rcParams["svg.hashsalt"] = "towns"
     from matplotlib import pyplot
 
-    edges = [row["edges"] / 1000 for row in rows]
     figure, axes = pyplot.subplots(1, 3, figsize=(11, 3.6), layout="constrained")
     for axis, title, unit, whole, alone in (
         (axes[0], "First reset", "seconds of a processor", "first_s", "bare_load_s"),
         (axes[1], "A simulated second", "ms of a processor", "second_ms", "bare_second_ms"),
         (axes[2], "Memory", "MB", "memory_mb", "bare_memory_mb"),
     ):
-        axis.plot(edges, [row[whole] for row in rows], "o-", color="#1b5e9b", label="with the cockpit")
-        axis.plot(edges, [row[alone] for row in rows], "s--", color="#b4582a", label="bare SUMO")
+        for name, line, color, label in (
+            (whole, "o-", "#1b5e9b", "with the cockpit"),
+            (alone, "s--", "#b4582a", "bare SUMO"),
+        ):
+            points = [(row["edges"] / 1000, row[name]) for row in rows if name in row]
+            axis.plot(*zip(*points, strict=True), line, color=color, label=label)
         axis.set(title=title, xlabel="thousand edges", ylabel=unit, xlim=(0, None), ylim=(0, None))
         axis.grid(alpha=0.3)
     axes[0].legend(frameon=False)
