@@ -122,7 +122,7 @@ class SituationFinder:
                     full[trip] = error
                     continue
                 try:
-                    self._check(half, traffic.network)
+                    self._refuse_impossible(half, traffic.network)
                     drive = self._drive_up(_Drive.begun(self._couple(traffic, half, plan, draws)), half)
                     if drive is not None:
                         return self._handed_over(draws, half, drive)
@@ -140,7 +140,7 @@ class SituationFinder:
             f"{seeds.traffic}){self._lacking()}; try another seed, trip or scenario"
         )
 
-    def _check(self, half: Half, network: RoadNetwork) -> None:
+    def _refuse_impossible(self, half: Half, network: RoadNetwork) -> None:
         """Refuses another place than the task's own in which no road is as the situation needs it: drives on every
         trip would take a minute to find out."""
         never = never_here(half, network.roads) if self._is_elsewhere and not self.scenario.incidents else ""

@@ -217,6 +217,7 @@ class Content:
                 **shared,
                 "kind": "drive",
                 **{name: drive[name] for name in (*HEAD, "running", "value", "started")},
+                "conditions": drive.get("conditions", ()),
             }
         path = entry.folder / "episode.json"
         head = _head_of(self.records.file(entry, path.name), *_stamp(path)) if path.is_file() else None

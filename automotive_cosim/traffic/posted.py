@@ -82,8 +82,8 @@ class Hours:
         return in_season and self.weather in ("", weather) and self._holds_at(local_time)
 
     def _holds_at(self, local_time: datetime) -> bool:
-        minute, date = local_time.hour * 60 + local_time.minute, local_time.date()
-        today, yesterday = self._has(date), self._has(date - timedelta(days=1))
+        minute, day = local_time.hour * 60 + local_time.minute, local_time.date()
+        today, yesterday = self._has(day), self._has(day - timedelta(days=1))
         for first, last in self.spans:
             if first < last:
                 if today and first <= minute < last:

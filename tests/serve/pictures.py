@@ -25,9 +25,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from PIL import Image
+from PIL import Image, ImageSequence
 from playwright.sync_api import sync_playwright
 
+from automotive_cosim.report.frames import STEP_MS
 from automotive_cosim.serve.dealing import PeoplePlan
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.server import WebServer
@@ -43,6 +44,7 @@ RECORDS = {
     "agents": f"eval --agents oracle,asurada --tasks {TASK},hvac_cold_hands,hvac_fan_max,media_forever --seeds 0"
     " --pictures all --workers 1",
     "drive": "drive grid_june",
+    "run": "run",
 }
 STUDY = "study reroute --seeds 0 --departures 0 --trips centre,tunnel --trajectories --workers 1"
 START = "from automotive_cosim_main import main; main()"
@@ -68,13 +70,19 @@ def main() -> None:
     wanted = asked.only.split(",") if asked.only else list(PICTURES)
     with opened(asked.records, window) as studio:
         for name in wanted:
-            page = PICTURES[name](studio)
-            if page is not None:
-                page.wait_for_timeout(SETTLED_MS)
-                image = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-                image.save(asked.to / f"{name}.webp", quality=QUALITY, method=6)
-                page.context.close()
+            shown = PICTURES[name](studio)
+            if shown is not None:
+                image = shown if isinstance(shown, Image.Image) else taken(shown)
+                image.convert("RGB").save(asked.to / f"{name}.webp", quality=QUALITY, method=6)
             print(name, flush=True)
+
+
+def taken(page: Any) -> Image.Image:
+    """A picture of a page, which is then closed."""
+    page.wait_for_timeout(SETTLED_MS)
+    image = Image.open(io.BytesIO(page.screenshot()))
+    page.context.close()
+    return image
 
 
 def begin(*words: object) -> subprocess.Popen[bytes]:
@@ -193,12 +201,24 @@ def people(studio: Studio) -> Any:
     return page
 
 
+def episode(studio: Studio) -> Image.Image:
+    """The main job's film when the driver has just been warned: three actions after the hand-over."""
+    film = Image.open(studio.records / "run" / "episode.webp")
+    shown_ms = []
+    for frame in ImageSequence.Iterator(film):
+        frame.load()
+        shown_ms.append(frame.info["duration"])
+    film.seek(shown_ms.index(STEP_MS) + 3)
+    return film
+
+
 def compare(studio: Studio) -> Any:
     run = studio.record("agents")
     return studio.open(f"#/compare/{run}/{run}")
 
 
 PICTURES: dict[str, Callable[[Studio], Any]] = {
+    "main_job": episode,
     "runs": lambda studio: studio.open("#/"),
     "replay": lambda studio: studio.open(f"#/run/{studio.episode('oracle')}?at=2"),
     "beside": lambda studio: studio.open(f"#/beside/{studio.episode('oracle')}/{studio.episode('asurada')}?at=3"),

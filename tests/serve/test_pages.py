@@ -6,11 +6,14 @@ import gzip
 import json
 import re
 from collections.abc import Callable
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
 import pytest
 
+from automotive_cosim.contracts.given import GeoInput
+from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
 from automotive_cosim.scenarios import shipped
 from automotive_cosim.serve import catalogue
@@ -57,6 +60,15 @@ def test_a_running_record_is_read_from_where_the_reader_was(serving: Serving, tm
     raw.close()
     assert not is_being_written(run / "road.jsonl.gz")
     assert browser(f"{base}/steps?skip=3").json == {"steps": [], "running": False}
+
+
+def test_the_list_tells_runs_of_a_pair_apart(serving: Serving, tmp_path: Path) -> None:
+    given = Conditions()
+    write_record(tmp_path / "with_place", conditions=given.as_json())
+    write_record(tmp_path / "without_place", conditions=replace(given, geo=GeoInput.NONE).as_json())
+    records = serving(tmp_path)("/api/runs").json["records"]
+    told = {each["name"]: each["conditions"] for each in records}
+    assert told == {"with_place": [], "without_place": ["geo none"]}
 
 
 def test_hostile_names_stay_text(serving: Serving, tmp_path: Path) -> None:

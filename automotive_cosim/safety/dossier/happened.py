@@ -140,7 +140,7 @@ def measured(subject: Subject) -> Section:
         f"Worst and median of the trials; then how many of them were critical, with Wilson's interval "
         f"({CONFIDENCE_WORDS}). "
         "TET and TIT: per hour driven, with the interval from resampling whole trials. Definitions, with sources: "
-        "docs/reference/search.md. SUMO's drivers avoid collisions by construction: compare runs with each other."
+        "docs/reference/failures.md. SUMO's drivers avoid collisions by construction: compare runs with each other."
     )
     heads = "Measure", "Worst", "Median or rate", "Critical trials, or interval"
     return Section(

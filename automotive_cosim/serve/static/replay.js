@@ -66,7 +66,7 @@ export async function replayPage(query, id, episode) {
     heading.replaceChildren(
       h("div", {}, h("h1", {}, run.task), run.goal && h("p", { class: "said" }, `“${run.goal}”`), h("p", { class: "muted" }, told.filter(Boolean).flatMap((each, index) => (index ? [" · ", each] : [each])))),
       run.of_study ? h("span", { class: running ? "pill live" : "pill quiet" }, running ? "Running" : "Ended")
-        : run.kind === "drive" && !running ? h("span", { class: "pill" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.lookalike && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
+        : run.kind === "drive" && !running ? h("span", { class: run.value === null ? "pill" : "pill quiet" }, run.value === null ? plain(run.end) || "No judgement" : `Score ${Math.round(run.value)} · ${run.met} of ${run.spans.filter((each) => !each.lookalike && each.outcome !== "void").length} events met`) : outcome({ ...run, running }));
     live.hidden = !running;
     const parts = Object.entries(run.verdict?.parts ?? {});
     verdict.replaceChildren(...(parts.length ? [h("h2", {}, "Verdict"), h("ol", { class: "card parts" },

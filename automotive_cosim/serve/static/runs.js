@@ -32,12 +32,12 @@ function line(record) {
       record.running && record.kind === "study" ? h("a", { class: "pill live", href: `#/live/${record.id}` }, "Watch live")
         : h("span", { class: record.running ? "pill live" : "pill quiet" }, record.running ? "Running" : "Results"));
   }
-  const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && record.model, record.seed !== null && `seed ${record.seed}`, when(record.started)];
+  const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && record.model, record.seed !== null && `seed ${record.seed}`, ...(record.conditions ?? []), when(record.started)];
   return h("li", { class: "card" },
     h("div", {}, h("a", { href: `#/run/${record.id}` }, record.task),
       record.goal && h("p", {}, `“${record.goal}”`),
       h("p", { class: "muted" }, about.filter(Boolean).join(" · "))),
-    record.kind === "drive" && !record.running && record.value !== null ? h("span", { class: "pill" }, `Score ${Math.round(record.value)}`) : outcome(record));
+    record.kind === "drive" && !record.running && record.value !== null ? h("span", { class: "pill quiet" }, `Score ${Math.round(record.value)}`) : outcome(record));
 }
 
 const when = (text) => (text ? text.slice(0, 16).replace("T", " ") : "");
