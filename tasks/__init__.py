@@ -51,6 +51,7 @@ from automotive_cosim.tasks import (
     road_aboard,
     road_asking,
     second_thoughts,
+    so_ordered,
     spoken,
     system,
     system_aboard,
@@ -58,6 +59,7 @@ from automotive_cosim.tasks import (
     system_doors_aboard,
     unasked,
     under_way,
+    word_from_others,
 )
 
 __all__ = ["CATALOGUE"]
@@ -107,6 +109,8 @@ for _module in (
     on_the_open_road,
     half_noticed,
     body_and_ears,
+    word_from_others,
+    so_ordered,
     hints,
     hard,
     limits,
