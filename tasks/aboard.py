@@ -124,7 +124,7 @@ def wrong_or_well(
     return mended, rest(well, rule, trigger=triggers[1])
 
 
-def but(start: Start, signals: Mapping[Signal[Any], Any] | None = None, **fields: Any) -> Start:
+def but(start: Start, signals: Mapping[Signal[Any], Any] | None = None, /, **fields: Any) -> Start:
     """The same start, but for some settings, by signal, and some of its fields."""
     values = {signal.path: value for signal, value in (signals or {}).items()}
     return replace(start, signals={**start.signals, **values}, **fields)
