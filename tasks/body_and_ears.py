@@ -136,7 +136,7 @@ INSULIN = hazard(
         "The bag beside me is full of Dad's insulin. It mustn't cook on the way to him.",
         "What's in there spoils at thirty degrees, said the chemist. Is that place too hot for it? Then change it.",
         "I've put the injections on the other front seat. See that they're still good when we arrive.",
-        "My wife sat there before, and she's always cold. Is the medicine on a hotplate now? End that, if so.",
+        "Somebody sat there before who's always cold. Is the medicine on a hotplate now? End that, if so.",
         "Spare the stuff in that bag, it has to stay cool and can't say so.",
     ),
     *wrong_or_well(
@@ -271,7 +271,7 @@ TREMBLES = pair(
     (
         "My mirrors shake so that I see two of every lorry. Is it our music's low end? Then tame that.",
         "The picture behind me blurs with every beat. If the booming is ours, take it out.",
-        "Either this road is corrugated or my son has been at the sound. In the second case, even it out.",
+        "Either this road is corrugated or the last driver has been at the sound. In the second case, even it out.",
         "Boom, boom, and nothing in the mirrors stands still. Less of the deep stuff, if there's too much of it.",
         "I can't judge a gap in glass that trembles. Should the bass be to blame, turn it back to normal.",
     ),
@@ -317,7 +317,7 @@ DOWN_BY_THE_SCHOOL = pair(
     "media_down_by_the_school",
     Module.MEDIA,
     (
-        "I sing along at the top of the dial. Not where kids run about, though; so what about here, now?",
+        "I sing along at the top of the dial, but not where kids run about. Do what this place wants at this hour.",
         "This loud is for when they're all at their desks. Bring it down if it's that hour of the day.",
         "A scooter bell is what I'd have to hear, if this zone is on. Otherwise let her sing.",
         "Lollipop lady's hours? Then quiet. Lesson time? Leave my record alone.",

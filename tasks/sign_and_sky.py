@@ -293,10 +293,10 @@ BY_THE_LINE = pair(
 
 IN_TRAFFIC = Start("autobahn", "south", ORLEANS, start=NOON, weather=FAIR, sign_camera=False)
 BUMPERS = pair(
-    "road_my_wife_says_i_push",
+    "road_they_say_i_push",
     Module.ROAD,
     (
-        "My wife says that I hang on people's bumpers. Alert me if she's right.",
+        "They say at home that I hang on people's bumpers. Alert me if she's right.",
         "Could I read his number plate without my glasses? Then sound the alarm.",
         "I get pushy when I'm late. Let me have a warning, should the law find me so.",
         "Count the seconds between him and us, and shout if they aren't enough.",
@@ -335,7 +335,7 @@ RED_LAMP = pair(
     "phenomenon_red_lamp_behind",
     Module.PHENOMENON,
     (
-        "There's a red glow on the road behind us, ours. Does one still drive with that in such air?",
+        "There's a red glow on the road behind us, ours. If one doesn't drive with that in such air, put it out.",
         "The chap behind shades his eyes. If our bright red one is no longer called for, out with it.",
         "I lit something at the back when I couldn't see the bonnet. Keep it or kill it, by the Highway Code.",
         "The mist is moving. See whether our tail may still shine like that, and act on it.",
@@ -469,7 +469,7 @@ OVERFULL = pair(
         "My boy held the air hose, and held it, and held it. Warn me before we roll on balloons.",
         "Pump, pump, pump, I lost count at the front. A warning, please, if one is fit to burst.",
         "They say that more air saves current. Have I gone too far? Sound off.",
-        "Look at the four pressures: too much of a good thing anywhere? Then let me hear it.",
+        "Look at the four pressures. Too much of a good thing anywhere? Then an alert, please.",
     ),
     *wrong_or_well(
         AT_THE_PUMP,
@@ -632,7 +632,7 @@ PAST_THE_GATE = pair(
     "road_fifty_past_the_gate",
     Module.ROAD,
     (
-        "Fifty, kept by the car, past a school. That's fine when they're all inside; is it now?",
+        "Fifty, kept by the car, past a school. That's fine when they're all inside; correct it if they aren't.",
         "I let the cruise do the streets. If the yellow sign is awake, it's too fast for it; see to that.",
         "Drop-off time or not? The machine doesn't know, and it holds fifty. Put it right, if it's the hour.",
         "A fine outside a school is the last thing I need. Does what we're holding fit the plate's hours? Make it.",

@@ -143,8 +143,8 @@ MIDWIFE = hazard(
         "{who} has written, and my hands shake. Get me to where I'm needed.",
         "It's starting, or it isn't. {who} says where they are; go there.",
         "News from {who}! Don't ask me, just set the way.",
-        "I can't look now. Wherever {who} wants me with my wife, that's where we're going.",
-        "My wife's in labour, I think. {who} knows; take me to her.",
+        "I can't look now. Wherever {who} wants me to be, that's where we're going.",
+        "The baby's on its way, I think. {who} knows where I should be; take me there.",
     ),
     heard(
         start("london", "euston"),
