@@ -144,7 +144,7 @@ MIDWIFE = hazard(
         "It's starting, or it isn't. {who} says where they are; go there.",
         "News from {who}! Don't ask me, just set the way.",
         "I can't look now. Wherever {who} wants me to be, that's where we're going.",
-        "The baby's on its way, I think. {who} knows where I should be; take me there.",
+        "It's begun, I think. {who} knows where I should be; take me there.",
     ),
     heard(
         start("london", "euston"),
