@@ -40,7 +40,6 @@ from automotive_cosim.tasking.triggers import (
     HeadwayBelow,
     InCountry,
     InSchoolZone,
-    InTunnel,
     LeaderWithin,
     Not,
     OnRoadClass,
@@ -291,6 +290,7 @@ BY_THE_LINE = pair(
     tags=PLACE,
 )
 
+ON_A_MOTORWAY = All((OnRoadClass(("motorway",)), Unposted()))
 IN_TRAFFIC = Start("autobahn", "south", ORLEANS, start=NOON, weather=FAIR, sign_camera=False)
 BUMPERS = pair(
     "road_they_say_i_push",
@@ -304,7 +304,7 @@ BUMPERS = pair(
     ),
     warned(
         replace(IN_TRAFFIC, driver="tailgating"),
-        Trigger(All((SpeedBetween(60.0), HeadwayBelow(1.2), Not(InTunnel()))), 3.0, 400.0),
+        Trigger(All((ON_A_MOTORWAY, SpeedBetween(60.0), HeadwayBelow(1.2))), 3.0, 400.0),
         replace(
             TO_PORTAL, reason="at a second behind, the driver in front need only brake once within the next few"
         ),
@@ -314,7 +314,7 @@ BUMPERS = pair(
     ),
     fine(
         replace(IN_TRAFFIC, driver="calm"),
-        Trigger(All((SpeedBetween(60.0), LeaderWithin(150.0), Not(HeadwayBelow(2.1)))), 3.0, 400.0),
+        Trigger(All((ON_A_MOTORWAY, SpeedBetween(60.0), LeaderWithin(150.0), Not(HeadwayBelow(2.1)))), 3.0, 400.0),
         TO_PORTAL,
         Basis.LAW,
         "FR.following_distance",

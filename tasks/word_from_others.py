@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind
 from automotive_cosim.cockpit.apps.phone.state import Contact
@@ -272,7 +273,7 @@ NANNY = hazard(
     who=SITTERS,
 )
 
-FILM_AND_SONG: dict[Signal[object], object] = {HMI.REAR_SCREEN: 60.0, MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 60.0}
+FILM_AND_SONG: dict[Signal[Any], Any] = {HMI.REAR_SCREEN: 60.0, MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 60.0}
 MEMOS = {
     "flicker": "Noah, from the clinic: no films for him, flicker may bring on a fit",
     "ear": "Noah, from the clinic: ear just operated on, no sound above 30 per cent",
