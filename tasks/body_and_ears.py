@@ -158,7 +158,7 @@ DRY_ICE = hazard(
         "There's dry ice in the box on the bench, and it smokes. We mustn't breathe it over and over.",
         "Eight kilos of frozen gas behind me, turning into the other kind. See that it finds its way out.",
         "The lab said: never without new air. Is that how the ventilation stands? If not, change it.",
-        "My head hums since I loaded that white steaming stuff. Look at what we're breathing.",
+        "My head hums since I loaded that white steaming stuff. Let it out, if it only goes round and round.",
         "What leaks from the cooler at the back stifles people in closed cars. Make ours not so closed, if it is.",
     ),
     *wrong_or_well(
@@ -233,6 +233,7 @@ ASLEEP = hazard(
 )
 
 WHEEL_NUTS = start("peripherique", "south")
+SOUND_DOWN = frozenset({MEDIA.VOLUME.path, MEDIA.MUTED.path, MEDIA.ACTION.path})
 PLAYING: dict[Signal[Any], Any] = {MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 70.0}
 KNOCK = pair(
     "media_listen_to_the_knock",
@@ -258,7 +259,7 @@ KNOCK = pair(
         Open("climate"),
         Slide("hvac.fan", 10.0),
         rule=KNOCK_SOURCE,
-        may_write=frozenset({HVAC.AUTO.path}),
+        may_write=frozenset({HVAC.AUTO.path}) | SOUND_DOWN,
         ways=((Open("climate"), Slide("hvac.fan", 40.0)),),
     ),
     "settings: music plays at 70 per cent, or at five and the blower is at its most",
