@@ -591,7 +591,8 @@ BARRIERS = pair(
     tags=PLACE,
 )
 
-RINGING = tuple(Arrival("call", 15.0 + 33.0 * number) for number in range(14))
+AT_80 = SpeedAbove(50.0, 80.0, 80.0)
+RINGING = tuple(Arrival("call", 15.0 + 33.0 * number, "Yasmin") for number in range(14))
 """Again and again, so that one of the calls comes with the ambulance."""
 RINGS: dict[str, Any] = {"driver": "average", "start": NOON, "weather": FAIR, "arrivals": RINGING}
 WITH_THE_SIREN = pair(
@@ -601,7 +602,7 @@ WITH_THE_SIREN = pair(
         "Phone! I can't talk while I make room for somebody in a hurry. Look behind us, then take it or don't.",
         "It's ringing. Only if nobody with a blue light wants past; otherwise get rid of the caller.",
         "Answer that, unless an ambulance needs all my attention first; then refuse it.",
-        "My mother-in-law, surely. If there's a siren coming up, I'm spared: decline. If not, put her on.",
+        "Her again! If there's a siren coming up, I'm spared: decline. If not, put her on.",
         "Ring ring! Pick up if the road behind is quiet, reject if help is on its way through.",
     ),
     act(
@@ -609,7 +610,7 @@ WITH_THE_SIREN = pair(
         EnteredOf("calls.declined", CALL.RINGING),
         Tap("call.decline"),
         rule=SIREN_SOURCE.partition(":")[0],
-        trigger=Trigger(All((BlueLightWithin(450.0), Not(SignalHas(CALL.RINGING, "")))), 1.0, 400.0),
+        trigger=Trigger(All((AT_80, BlueLightWithin(450.0), Not(SignalHas(CALL.RINGING, "")))), 1.0, 400.0),
         deadline=WHILE_IT_RINGS,
     ),
     act(
@@ -617,9 +618,7 @@ WITH_THE_SIREN = pair(
         EnteredOf("calls.answered", CALL.RINGING),
         Tap("call.answer"),
         rule=SIREN_SOURCE.partition(":")[0],
-        trigger=Trigger(
-            All((Driving(), Not(BlueLightWithin(3000.0)), Not(SignalHas(CALL.RINGING, "")))), 1.0, 400.0
-        ),
+        trigger=Trigger(All((AT_80, Not(BlueLightWithin(3000.0)), Not(SignalHas(CALL.RINGING, "")))), 1.0, 400.0),
         deadline=WHILE_IT_RINGS,
     ),
     "traffic: an ambulance with blue light comes up from behind, or nobody does",
