@@ -59,7 +59,7 @@ from automotive_cosim.tasking.triggers import (
 from automotive_cosim.tasks.aboard import DOORS, SEATS, act, but, rest, wrong_or_well
 from automotive_cosim.tasks.comms_safety import WHILE_IT_RINGS
 from automotive_cosim.tasks.forms import BY_THE_SWITCH, COMFORT, decline, pair
-from automotive_cosim.tasks.leaving import CHARGING_FLAP, LOAD_SOURCE, MIRROR_SOURCE, MIRRORS
+from automotive_cosim.tasks.leaving import LOAD_SOURCE, MIRROR_SOURCE, MIRRORS
 from automotive_cosim.tasks.maps import SETS_OUT, named
 from automotive_cosim.tasks.maps_safety import NO_FUEL, STRETCH, TO_PORTAL
 from automotive_cosim.tasks.one_of_two import THEFT_SOURCE
@@ -494,18 +494,19 @@ LITTLE_DOOR = pair(
     "apps_the_little_door_flaps",
     Module.APPS,
     (
-        "Something flutters at our flank since the charger. Did I forget the little door? Then shut it.",
-        "A cyclist pointed at my rear wing. Is there anything sticking out of us? Pull it in.",
-        "I unplugged in a hurry, with a call on my ear. Look whether the socket is covered, and cover it if not.",
-        "In these narrow streets nothing may stand off from the car. The charger's side worries me; see to it.",
-        "Where the current goes in: is that shut? I can't stop to look. Close it, should it be open.",
+        "Something flutters at our flank since the charger. Did I forget the little door? An alert, please, if so.",
+        "A cyclist pointed at my rear wing. Warn me if there's anything of ours sticking out.",
+        "I unplugged in a hurry, with a call on my ear. Sound off if the socket isn't covered.",
+        "In these narrow streets nothing may stand off from the car. Alarm, if I have to stop and shut something.",
+        "Where the current goes in: is that closed? If I'd better pull up and see to it, give me a warning.",
     ),
     *wrong_or_well(
         CHARGED_UP,
         but(CHARGED_UP, {ENERGY.CHARGE_FLAP: True}),
-        SignalIs(ENERGY.CHARGE_FLAP, (False,)),
-        *CHARGING_FLAP,
-        rule=LOAD_SOURCE,
+        AlertGiven(AlertKind.VEHICLE),
+        Open("charging"),
+        Warn(AlertKind.VEHICLE),
+        rule=f"{LOAD_SOURCE}; this car's flap can be shut only while it stands",
     ),
     "settings: the flap over the charging socket is open, or shut",
 )
