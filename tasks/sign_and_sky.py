@@ -176,6 +176,7 @@ SUNGLASSES = pair(
         ADAPT_SOURCE,
     ),
     "road: a tunnel's portal in a few seconds, or streets without one",
+    tags=PLACE,
 )
 
 WORKS = Start("autobahn", "roadworks", start=NOON, weather=FAIR)
@@ -526,7 +527,7 @@ SHORT = pair(
         but(FOUR_FOOT_TEN, {SEAT.DRIVER_HEIGHT: 0.0}),
         SignalRaised(SEAT.DRIVER_HEIGHT, 20.0),
         *SEATS,
-        Tap("seat.driver.height.increase", times=6),
+        Tap("seat.driver.height.increase", times=4),
         rule=SEE_OUT_SOURCE,
         deadline=PRESSES,
         ways=((*SEATS, Tap("seat.driver.height.increase", times=10)),),
@@ -535,7 +536,7 @@ SHORT = pair(
         but(FOUR_FOOT_TEN, {SEAT.DRIVER_POSITION: 250.0, SEAT.DRIVER_HEIGHT: 50.0}),
         SignalLowered(SEAT.DRIVER_POSITION, 80.0),
         *SEATS,
-        Tap("seat.driver.position.decrease", times=9),
+        Tap("seat.driver.position.decrease", times=8),
         rule=f"{SEE_OUT_SOURCE}; {NEAR_AIRBAG_SOURCE}",
         deadline=PRESSES,
         ways=((*SEATS, Tap("seat.driver.position.decrease", times=11)),),
