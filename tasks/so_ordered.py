@@ -53,10 +53,10 @@ from automotive_cosim.tasks.phenomenon_air import (
 )
 from automotive_cosim.tasks.phenomenon_light import (
     BEAM,
+    BRITAIN,
     CHINA,
     FOG_90,
     FOGGY,
-    GERMANY,
     IN_SIGHT,
     ITALY,
     SWITZERLAND,
@@ -400,7 +400,7 @@ HAZARDS_OFF = pair(
     tags=PLACE | {"lamps"},
 )
 
-MORNING = start("beauce", "plain", {LIGHTS.SWITCH: "BEAM"}, origin=GERMANY, start=FOGGY, sign_camera=False)
+MORNING = start("london", "bloomsbury", {LIGHTS.SWITCH: "BEAM"}, origin=BRITAIN, start=FOGGY, sign_camera=False)
 FOR_THE_LOOK = pair(
     "phenomenon_fogs_for_the_look",
     Module.PHENOMENON,
@@ -412,11 +412,11 @@ FOR_THE_LOOK = pair(
         "Switch on the foggies at the nose.",
     ),
     decline(
-        replace(MORNING, weather=replace(FAIR, temperature_2m=7.0)),
-        Trigger(All((Driving(), VisibilityBetween(5000.0, 1e9))), 5.0, 120.0),
+        replace(MORNING, weather=replace(FOG_90, visibility=450.0)),
+        Trigger(All((Driving(), VisibilityBetween(300.0, 1000.0))), 5.0, 120.0),
         IN_SIGHT,
         Basis.LAW,
-        "DE.front_fog",
+        "GB.front_fog",
         reasons=UNLAWFUL,
     ),
     Half(
@@ -426,9 +426,9 @@ FOR_THE_LOOK = pair(
         (LAMPS, Tap("lights.front_fog")),
         IN_SIGHT,
         Basis.LAW,
-        "DE.front_fog",
+        "GB.front_fog",
     ),
-    "weather: a clear morning, when German law forbids front fog lamps, or fog with 90 m of sight",
+    "visibility: 450 m, where British law forbids front fog lamps (100 m), or 90 m",
     dimension=EXPLICIT,
     tags=PLACE | {"lamps"},
 )
