@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
+    from automotive_cosim.run.forecast import CostForecast, Range
     from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.row import JobRow
     from automotive_cosim.scenarios import Scenario
@@ -134,6 +135,26 @@ def check_prices(models: Iterable[str], budget: Budget) -> None:
                 f"a budget in dollars needs the price of {name}; add "
                 "?usd_per_million_in=...&usd_per_million_out=... to it"
             )
+
+
+def forecast_in_words(told: CostForecast, workers: int) -> Iterator[str]:
+    """Lines on what a plan will take."""
+    slow = ", plus the time that the models take to answer" if told.asks_models else ""
+    yield f"time: {minutes_in_words(told.wall_s)} with {counted(workers, 'worker')} on an idle machine{slow}"
+    if told.asks_models:
+        yield f"tokens: {told.tokens.low / 1e6:,.2f} to {told.tokens.high / 1e6:,.2f} million"
+        if told.usd.high:
+            yield f"cost: ${told.usd.low:,.2f} to ${told.usd.high:,.2f}"
+        else:
+            yield "cost: unknown; a model's name takes ?usd_per_million_in=...&usd_per_million_out=..."
+
+
+def minutes_in_words(seconds: Range) -> str:
+    """A span of time to a minute."""
+    low, high = seconds.low / 60, seconds.high / 60
+    if high < 1:
+        return "less than a minute"
+    return f"{f'{low:.0f} to' if low >= 1 else 'up to'} {counted(round(high), 'minute')}"
 
 
 def tell_stopped(end: Progress[Any]) -> None:
