@@ -117,7 +117,8 @@ def drives(as_json: AsJson = False) -> None:
 
 
 def _tell(console: Console, row: DriveTrialRow) -> None:
-    """The drive's events and acts in chronological order, and its score."""
+    """The drive's events and acts in chronological order, what went wrong and why, and its score."""
+    from automotive_cosim.drives.faults import clock, faults
     from automotive_cosim.drives.judge import Worth
 
     lines = [
@@ -137,6 +138,10 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         console.print(
             f"{int(time_s) // 60:3}:{int(time_s) % 60:02}  {words}  [{became}]", markup=False, soft_wrap=True
         )
+    if wrong := faults(row.events, row.acts):
+        console.print("Missed, late and needless:", soft_wrap=True)
+    for fault in wrong:
+        console.print(f"  {fault.line}", markup=False, soft_wrap=True)
     found = row.score
     assert found is not None
     recall = "no events" if found.recall is None else f"{found.met} of {found.events} events met"
@@ -150,7 +155,6 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         near_s, nobodys_s = row.harm.short_ttc_s, row.baseline_harm.short_ttc_s
         console.print(f"Near-collision time {near_s:.0f} s; without the agent {nobodys_s:.0f} s", soft_wrap=True)
     if row.unwatched_from_s is not None:
-        minutes, seconds = divmod(int(row.unwatched_from_s), 60)
         console.print(
-            f"Nobody watched from {minutes}:{seconds:02d} on: {row.agent_error or row.end}", soft_wrap=True
+            f"Nobody watched from {clock(row.unwatched_from_s)} on: {row.agent_error or row.end}", soft_wrap=True
         )
