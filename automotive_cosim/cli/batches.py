@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
@@ -87,7 +88,9 @@ def executor_of(name: str, workers: int | None, ray_address: str | None, ray_sen
 class ProgressView(Generic[R]):
     """Shows the progress of a run: a bar in a terminal, else occasional lines."""
 
-    EVERY_S = 15.0
+    EVERY_S, UNCHANGED_S = 15.0, 120.0
+    """A line at most as often, and one that says nothing new."""
+    OVERDUE_S = 5.0
 
     def __init__(self, console: Console, what: str, said: Callable[[Progress[R]], str]) -> None:
         """``what`` is being run; ``said`` gives the text next to its count."""
@@ -101,6 +104,9 @@ class ProgressView(Generic[R]):
         self._bar = Bar(*columns, console=console) if console.is_terminal else None
         self._task = self._bar.add_task("", total=None, said="") if self._bar else None
         self._said_s = -self.EVERY_S
+        self._said = ""
+        self._known = -1, 0.0
+        """How many runs had ended when the time left was first told, and when it would have been up."""
 
     def __enter__(self) -> ProgressView[R]:
         if self._bar:
@@ -113,12 +119,27 @@ class ProgressView(Generic[R]):
 
     def tell(self, progress: Progress[R]) -> None:
         """Shows the current progress."""
-        said = self._words(progress) + _warming(progress)
+        progress, overdue = self._overdue(progress)
+        said = self._words(progress) + (overdue or _warming(progress))
         if self._bar and self._task is not None:
             self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
-        elif progress.seconds - self._said_s >= self.EVERY_S or progress.done == progress.planned:
-            self._said_s = progress.seconds
-            self._console.print(f"{progress.done} of {progress.planned} {self._what}; {said}")
+            return
+        line = f"{progress.done} of {progress.planned} {self._what}; {said}"
+        every_s = self.UNCHANGED_S if line == self._said else self.EVERY_S
+        if progress.seconds - self._said_s >= every_s or progress.done == progress.planned:
+            self._said_s, self._said = progress.seconds, line
+            self._console.print(line)
+
+    def _overdue(self, progress: Progress[R]) -> tuple[Progress[R], str]:
+        """Without the time left, and words instead, while a run takes longer than was expected of it: each second
+        would otherwise add one to the estimate."""
+        if progress.left_s is None:
+            return progress, ""
+        up_s, (done, was_s) = progress.seconds + progress.left_s, self._known
+        if progress.done == done and up_s > was_s + self.OVERDUE_S:
+            return replace(progress, left_s=None), "; it takes longer than expected"
+        self._known = progress.done, up_s if progress.done != done else min(up_s, was_s)
+        return progress, ""
 
 
 def check_prices(models: Iterable[str], budget: Budget) -> None:

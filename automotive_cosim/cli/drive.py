@@ -108,12 +108,16 @@ def drives(as_json: AsJson = False) -> None:
     """List the families of drives, with their season and what can happen in them."""
     from automotive_cosim.drives.families import FAMILIES
 
-    listed = [{"id": family.id, "season": family.season, "about": family.about} for family in FAMILIES.values()]
+    listed = [
+        {"id": family.id, "season": family.season, "about": family.about, "stages": list(family.cast)}
+        for family in FAMILIES.values()
+    ]
     if as_json:
         print_json({"drives": listed})
         return
     for family in listed:
         typer.echo(f"{family['id']:24} {family['season']:7} {family['about']}")
+        typer.echo(f"{'':34} stages {', '.join(family['stages'])}")
 
 
 def _tell(console: Console, row: DriveTrialRow) -> None:

@@ -245,6 +245,9 @@ def evaluate(
     left = [job for job in plan.jobs() if job.id not in known or known[job.id].error is not None]
     if unfit := tuple(misfits(left)):
         raise UserError("; ".join(unfit))
+    if left:
+        for line in forecast_in_words(forecast(plan.jobs(), workers or 1, known.values()), workers or 1):
+            console.print(line, soft_wrap=True)
     with where, ProgressView(console, f"{unit}s", _said) as view:
         try:
             end = run_plan(
