@@ -78,7 +78,7 @@ def timeline_chart(row: DriveTrialRow, timeline: Json) -> tuple[str, str]:
 def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:
     kinds = _kinds(row.events, row.acts)
     told = [_told(number, act, row.events, timeline) for number, act in enumerate(row.acts[:MOST_ACTS], 1)]
-    room = round(width_in * CHARACTERS_AN_INCH)
+    room = round((width_in - LABELS_IN) * CHARACTERS_AN_INCH)
     lines = [part for line in (*KEY, "", *told) for part in wrap(line, room, subsequent_indent="    ") or [""]]
     panels: list[tuple[float, Callable[[Axes], None]]] = [(SPEED_IN, lambda axes: _speeds(axes, timeline))]
     if "ttc_s" in timeline:  # a drive of an earlier version has speeds alone
@@ -171,7 +171,7 @@ def _told(number: int, act: JudgedAct, events: Sequence[JudgedEvent], timeline: 
     what += f" ({act.reason})" if act.reason else ""
     if act.worth is Worth.RIGHT and _came_to_nothing(act, events):
         what += ", which was never due: no point"
-    return f"{number}  {clock(act.time_s)}  {act.words}: {what}" + (f"; {answers[0]}" if answers else "")
+    return f"{number}. {clock(act.time_s)} {act.words}: {what}" + (f"; {answers[0]}" if answers else "")
 
 
 def _came_to_nothing(act: JudgedAct, events: Sequence[JudgedEvent]) -> bool:
@@ -182,12 +182,12 @@ def _came_to_nothing(act: JudgedAct, events: Sequence[JudgedEvent]) -> bool:
 
 KEY = (
     "Bars: green met, light blue prevented, amber late, red missed (or a look-alike taken), purple caused or "
-    "evaded, grey nothing was due; hatched: look-alike; | due, > deadline, dot: the act.",
+    "evaded, grey nothing was due, hatched look-alike; | when due, > deadline, dot the act.",
     "Acts: green dot right, amber dot late, grey dot neither, X false alarm, + false alarm while something else "
     "was due, diamond look-alike, amber square repeat.",
 )
-CHARACTERS_AN_INCH = 17.0
-"""Of the list of acts, so that its lines end within the plot."""
+LABELS_IN, CHARACTERS_AN_INCH = 1.3, 19.0
+"""The room left of the plot, and the characters of the list of acts, so that its lines end within the plot."""
 
 
 def _kinds(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct]) -> list[str]:

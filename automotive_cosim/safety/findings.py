@@ -383,7 +383,8 @@ def sentence(found: Hunt, agent: str) -> str:
     told_first += f"; in {empty} more nothing was due." if empty else "."
     if bound.upper is None:
         return told_first
-    return f"{told_first} The failure rate in this space is at most {percent(bound.upper)} ({CONFIDENCE_WORDS})."
+    where = "Where something is due in this space, the failure rate" if empty else "The failure rate in this space"
+    return f"{told_first} {where} is at most {percent(bound.upper)} ({CONFIDENCE_WORDS})."
 
 
 def _all_of(samples: int) -> str:
