@@ -55,7 +55,7 @@ def search(
         typer.Option(
             help="What to use in all, with earlier starts: points to sample (64), wall time (2h, 90min), money for "
             "the model (5usd), or several with commas, of which the first that is spent ends it. A failure that is "
-            "made small takes some thirty runs beyond the points.",
+            "reduced takes some thirty runs beyond the points.",
             metavar="N",
             show_default=False,
         ),
@@ -68,7 +68,10 @@ def search(
         int, typer.Option(help="Seed of the sampler.", metavar="N", parser=whole_number(0, 2**31 - 1))
     ] = 0,
     failures: Annotated[
-        int, typer.Option(help="How many failures are made small.", metavar="N", parser=whole_number(0, 1000))
+        int,
+        typer.Option(
+            help="How many failures are reduced to what they need.", metavar="N", parser=whole_number(0, 1000)
+        ),
     ] = 5,
     workers: Workers = None,
     executor: ExecutorName = "processes",

@@ -333,7 +333,7 @@ def _cell(
 
 def _unsteady(found: Hunt) -> Table:
     lines = [("passed when repeated", _point(each), each.outcome.trial) for each in found.unsteady]
-    lines += [("not made small", _point(each), each.outcome.trial) for each in found.not_reduced]
+    lines += [("not reduced", _point(each), each.outcome.trial) for each in found.not_reduced]
     return Table("other", "Other failures", ("What", "Where", "Trial"), tuple(lines), heads=3)
 
 
@@ -378,8 +378,8 @@ def sentence(found: Hunt, agent: str) -> str:
     if not failed:
         told_first = f"{agent} failed in none of {counted(len(samples), 'sample')}"
     else:
-        causes = counted(len(found.minimal), "minimal failure")
-        told_first = f"{agent} failed in {failed} of {counted(len(samples), 'sample')}, from {causes}"
+        causes = f", from {counted(len(found.minimal), 'minimal failure')}" if found.minimal else ", none reduced"
+        told_first = f"{agent} failed in {failed} of {counted(len(samples), 'sample')}{causes}"
     told_first += f"; in {empty} more nothing was due." if empty else "."
     if bound.upper is None:
         return told_first

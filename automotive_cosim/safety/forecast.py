@@ -20,7 +20,7 @@ MOST_LAID = 256
 
 
 def search_forecast(space: Space, plan: Plan, points: int, workers: int = 1) -> CostForecast:
-    """What the nominal point and so many samples will take; failures that are made small come in addition.
+    """What the nominal point and so many samples will take; failures that are reduced come in addition.
 
     The points are others than the search's, drawn at random from the same space.
 
@@ -41,7 +41,7 @@ def search_forecast(space: Space, plan: Plan, points: int, workers: int = 1) -> 
 
 
 def of_a_failure(found: CostForecast) -> Range:
-    """Seconds that one failure takes to be made small, one run after the other."""
+    """Seconds that one failure takes to be reduced, one run after the other."""
     each = RUNS_A_FAILURE / max(1, found.runs)
     return Range(found.wall_s.low * each, found.wall_s.high * each)
 

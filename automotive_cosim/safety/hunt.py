@@ -1,4 +1,4 @@
-"""Tries points, repeats what fails, and makes each failure small, with its nearest passing neighbour."""
+"""Tries points, repeats what fails, and reduces each failure, with its nearest passing neighbour."""
 
 from __future__ import annotations
 
@@ -116,7 +116,7 @@ class Hunt:
     unsteady: list[Tried] = field(default_factory=list)
     """Failures that passed when repeated."""
     not_reduced: list[Tried] = field(default_factory=list)
-    """Failures beyond the number that are made small."""
+    """Failures beyond the number that are reduced."""
     stopped: str = ""
     """Why it ended before its budget; empty if it did not."""
     interrupted: bool = False
@@ -150,7 +150,7 @@ def hunt(
         sampler: chooses the points.
         budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
             reductions come in addition: about thirty runs a failure.
-        most_failures: how many failures are made small; those that one of them explains are not.
+        most_failures: how many failures are reduced; those that one of them explains are not.
         tell: called after each point.
 
     Returns:

@@ -100,6 +100,7 @@ def _page(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> str
         found=found,
         sentence=sentence(found, agent),
         failures=len(found.minimal),
+        failed=sum(each.outcome.failed for each in found.samples),
         empty=len(nothing_due(found.samples)),
         judged=len(judged(found.samples)),
         tables=made,
