@@ -10,9 +10,13 @@ from automotive_cosim.drives.score import score
 def test_every_loss_of_the_score_is_listed_once() -> None:
     alike = EventOutcome.AVOIDED, EventOutcome.TAKEN
     events = tuple(
-        JudgedEvent("tunnel", f"a tunnel in {number} m", each in alike, 1.0, each, 10.0 * number, *times)
+        JudgedEvent("tunnel", f"a tunnel in {number} m", True, 1.0, each, 10.0 * number, None, None, 99.0)
+        if each in alike
+        else JudgedEvent(
+            "tunnel", f"a tunnel in {number} m", False, 1.0, each, from_s, from_s + 5, from_s + 9, 99.0, 75.0
+        )
         for number, each in enumerate(EventOutcome)
-        for times in [(None, None, 99.0) if each in alike else (10.0 * number + 5, 10.0 * number + 9, 99.0, 75.0)]
+        for from_s in (10.0 * number,)
     )
     acts = tuple(JudgedAct(7.0 * number, f"alert {each}", each, "", "a fact") for number, each in enumerate(Worth))
     found, counted = faults(events, acts), score(Judgement(events, acts), 600.0)
