@@ -112,12 +112,12 @@ class ProgressView(Generic[R]):
 
     def tell(self, progress: Progress[R]) -> None:
         """Shows the current progress."""
-        said = self._words(progress) + _warming(progress)
+        said = ", ".join(part for part in (self._words(progress), _warming(progress), time_left(progress)) if part)
         if self._bar and self._task is not None:
             self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
         elif progress.seconds - self._said_s >= self.EVERY_S or progress.done == progress.planned:
             self._said_s = progress.seconds
-            self._console.print(f"{progress.done} of {progress.planned} {self._what}; {said}")
+            self._console.print(f"{progress.done} of {progress.planned} {self._what}{said and f'; {said}'}")
 
 
 def check_prices(models: Iterable[str], budget: Budget) -> None:
@@ -183,16 +183,16 @@ def seeds_in(text: str) -> list[int]:
 
 def _warming(progress: Progress[Any]) -> str:
     """Where the first jobs wait for their traffic, while there is no estimate yet."""
-    return (
-        "" if progress.left_s is not None or not progress.warming else f"; warming up {', '.join(progress.warming)}"
-    )
+    if progress.left_s is not None or progress.done == progress.planned:
+        return ""
+    return f"warming up {', '.join(progress.warming)}" if progress.warming else ""
 
 
 def time_left(progress: Progress[Any]) -> str:
-    """For example ``, 3:05 left`` or ``, 1:03:05 left``; empty if unknown or if nothing is left."""
+    """For example ``3:05 left`` or ``1:03:05 left``; empty if unknown or if nothing is left."""
     left_s = progress.left_s
     if left_s is None or progress.done == progress.planned:
         return ""
     minutes, seconds = divmod(int(left_s), 60)
     told = f"{minutes // 60}:{minutes % 60:02d}" if minutes >= 60 else f"{minutes}"
-    return f", {told}:{seconds:02d} left"
+    return f"{told}:{seconds:02d} left"

@@ -276,7 +276,8 @@ def horizons(study: Study) -> Table:
     note = (
         "Seconds that all others together save up to the instant at which the given share has arrived in the "
         f"faster future, over the decisions where the policy reroutes. The futures end at {study.plan.arrived:.0%} "
-        "(--arrived)."
+        "(--arrived), and not before the ego has arrived: so “Others save” in “Other effects” may count longer than "
+        "the column of that share, and over all decisions."
     )
     return Table("horizons", "The others, by horizon", columns, tuple(rows), note, heads=3)
 

@@ -228,7 +228,7 @@ class StudyJob(LoneJob):
     @property
     def simulation(self) -> tuple[str, int]:
         """The warm traffic it departs from."""
-        return f"{self.share:g}", self.seed
+        return f"traffic in which {100 * self.share:g} % reroute", self.seed
 
     @property
     def wall_s(self) -> float:
