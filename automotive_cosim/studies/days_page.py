@@ -48,7 +48,9 @@ def write_days(folder: Path) -> Path:
     plan = study.plan
     about = f"{counted(len(plan.seeds), 'seed')}, up to {counted(plan.days, 'day')} of {plan.minutes:g} minutes"
     shown = ShownStudy("Study from day to day", about, answer(study), warnings(study), tables(study), charts(study))
-    return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.jobs()) - len(study.rows))
+    return write_shown(
+        folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.jobs()) - len(study.rows)
+    )
 
 
 def named(drivers: Drivers) -> str:

@@ -187,9 +187,9 @@ def costs(study: Study) -> Table:
     )
     note = (
         "Means over decisions; negative values are costs. CO2 and fuel by SUMO's emission model. Others: "
-        "the sum over every vehicle on the road or due at the decision, departure delay included, until the ego and "
-        f"{study.plan.arrived:.0%} of them had arrived in one of the two futures; the rest counts up to that "
-        "instant. Unfinished: the number of the latter, if the ego keeps its route / as the policy chooses."
+        "the sum over every vehicle on the road or due at the decision, departure delay included, until the "
+        f"ego and {study.plan.arrived:.0%} of them had arrived in one of the two futures; the rest counts up to "
+        "that instant. Unfinished: the number of the latter, if the ego keeps its route / as the policy chooses."
     )
     return Table("costs", "Other effects", columns, tuple(rows), note, heads=3)
 

@@ -31,8 +31,8 @@ def missing_told(planned: int, ran: int, unit: str) -> Iterator[str]:
     """The same for any kind of study."""
     if ran < planned:
         yield (
-            f"{planned - ran} of {counted(planned, unit)} are missing, so the figures are those of a part: rerun the "
-            "`study` command to resume."
+            f"{planned - ran} of {counted(planned, unit)} are missing, so the figures are those of a part: rerun "
+            "the `study` command to resume."
         )
 
 

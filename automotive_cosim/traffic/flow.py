@@ -70,8 +70,8 @@ class FlowSummary:
     seconds of ``accounts.LOUD_DB``; empty if it is not recorded."""
     cut_short: int
     kept_in: int
-    """Vehicles whose trip ended before a closed road, and those that would have set out on one, since the simulation
-    began (``detours``)."""
+    """Vehicles whose trip ended before a closed road, and those that would have set out on one, since the start
+    (``detours``)."""
 
 
 class Advisor:

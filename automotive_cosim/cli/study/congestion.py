@@ -111,8 +111,11 @@ def congestion(
     folder = out or folder_of(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
-    measures = counted(len(plan.measures), "measure")
-    console.print(f"{measures} and none, {counted(len(plan.seeds), 'seed')}, into {folder}", soft_wrap=True)
+    measures, over = counted(len(plan.measures), "measure"), counted(len(plan.seeds), "seed")
+    console.print(
+        f"{measures} and none, {over}, in steps of {plan.step_s:g} s, into {folder}",
+        soft_wrap=True,
+    )
     with where, ProgressView(console, "seeds", errors_so_far) as view, resumable("seeds", folder):
         run_congestion(plan, folder, executor=where, tell=view.tell)
     study = read_congestion(folder)

@@ -61,7 +61,12 @@ def reroute(
         ),
     ] = None,
     trips: Annotated[
-        str | None, typer.Option(help="Ego trips of the scenario, separated by commas.", show_default="all")
+        str | None,
+        typer.Option(
+            help="Ego trips of the scenario, separated by commas: names, the beginnings of names, or numbers as in "
+            "`scenarios show`.",
+            show_default="all",
+        ),
     ] = None,
     from_place: Annotated[
         str, typer.Option("--from", help="Where the ego's route begins: an edge, a street or LON,LAT.")
@@ -292,6 +297,7 @@ def _announce(console: Console, plan: StudyPlan, folder: Path) -> None:
     table.add_row("seeds", f"{len(plan.seeds)}")
     table.add_row("policies", ", ".join(plan.policies))
     table.add_row("replicates", str(plan.replicates))
+    table.add_row("steps", f"{plan.step_s:g} s")
     for incident in plan.incidents:
         table.add_row("incident", incident)
     if plan.close:

@@ -40,7 +40,9 @@ def write_congestion(folder: Path) -> Path:
         "the same traffic"
     )
     shown = ShownStudy("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
-    return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.seeds) - len(study.rows))
+    return write_shown(
+        folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.seeds) - len(study.rows)
+    )
 
 
 def answer(study: CongestionStudy) -> str:
