@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Callable
 from contextlib import closing
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -151,3 +153,39 @@ def test_so_do_they_round_roadworks_that_take_a_turn(town: Path) -> None:
 def test_a_route_that_is_broken_anyway_is_named(town: Path) -> None:
     with pytest.raises(ScenarioError, match=r"vehicle 'v' sets out .* cannot drive its route 'A2B2 C2D2'; mend"):
         driven(scenario(town, '<vehicle id="v" depart="5"><route edges="A2B2 C2D2"/></vehicle>'))
+
+
+@pytest.mark.sumo
+@pytest.mark.parametrize(
+    "config",
+    [
+        "ingolstadt/ingolstadt1/ingolstadt1.sumocfg",
+        "ingolstadt/ingolstadt7/ingolstadt7.sumocfg",
+        "bologna/acosta/run.sumocfg",
+    ],
+)
+def test_other_peoples_demand_goes_round_its_busiest_road(
+    config: str, data_of_others: Callable[[str], Path]
+) -> None:
+    opened = open_scenario(data_of_others(config))
+    opened = replace(opened, sumo=replace(opened.sumo, warm_up_s=200.0, step_length_s=1.0))
+    with closing(InProcess(opened, seed=1, allow_unprojected=True)) as simulation:
+        world = simulation.world
+        assert world is not None
+        import libsumo
+
+        ahead = Counter(
+            edge
+            for each in libsumo.vehicle.getIDList()
+            for edge in libsumo.vehicle.getRoute(each)[libsumo.vehicle.getRouteIndex(each) + 1 : -1]
+        )
+        busiest = next(edge for edge, _ in ahead.most_common() if edge in world.network.edges)
+        world.stage(Closure(edge=busiest))
+        world.step()
+        for _ in range(15):  # who was in the junction before it comes in
+            world.step()
+        there = set(libsumo.edge.getLastStepVehicleIDs(busiest))
+        for _ in range(400):
+            world.step()
+            assert set(libsumo.edge.getLastStepVehicleIDs(busiest)) <= there, "nobody enters it any more"
+        assert ahead[busiest] > 3, "or nobody had to go round"
