@@ -9,6 +9,7 @@ from collections.abc import Callable, Mapping
 
 from automotive_cosim.agents.a2a import A2AAgent, is_remote
 from automotive_cosim.agents.base import Agent, Learner, Privileged, Stage, StageName, Thinker
+from automotive_cosim.agents.by_calls import OracleByCalls
 from automotive_cosim.agents.caller import Caller, tools
 from automotive_cosim.agents.guest import load
 from automotive_cosim.agents.human import Human
@@ -62,7 +63,9 @@ SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
     "always-ask": lambda settings: AlwaysAsk(),
     "human": lambda settings: Human(),
     "no-op": lambda settings: NoOp(),
-    "oracle": lambda settings: Oracle(settings.conditions.see),
+    "oracle": lambda settings: (
+        Oracle(settings.conditions.see) if settings.conditions.interface.touches else OracleByCalls()
+    ),
     "press-everything": lambda settings: PressEverything(),
     "random": lambda settings: Random(settings.seed),
     "rule-perfect": lambda settings: RulePerfect(),
@@ -78,7 +81,7 @@ AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
 there."""
 
 
-BY_TOUCH = frozenset({NativeAgent.name, "human", "oracle", "press-everything", "random"})
+BY_TOUCH = frozenset({NativeAgent.name, "human", "press-everything", "random"})
 """Agents that act on the screen alone."""
 
 ABOUT: Mapping[str, str] = {
@@ -93,7 +96,7 @@ ABOUT: Mapping[str, str] = {
     "m3a": "elements and screenshots, raw and marked (after AndroidWorld's M3A)",
     "native": "screenshots alone, for models trained to operate screens, in their own formats",
     "no-op": "negative control: waits and declares nothing",
-    "oracle": "reference: is told the task and plays its reference solution",
+    "oracle": "reference: is told the task and plays its reference solution, by touch or by calls",
     "press-everything": "negative control: presses every button",
     "random": "negative control: random actions",
     "rule-perfect": "reference on drives: knows the rules and reads only what any agent may observe",

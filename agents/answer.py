@@ -26,12 +26,16 @@ LONGEST_WORDS = 120
 LONGEST_REPAIRED = 2_000
 """Characters of it in which to repair an object."""
 END_TOKEN = re.compile(
-    r"<\|(?:im_end|im_start|endoftext|end_of_text|eot_id|eom_id|eos|end)\|>|</s>|<eos>|<end_of_turn>"
+    r"<\|(?:im_end|im_start|endoftext|end_of_text|eot_id|eom_id|eos|end|return)\|>|</s>|<eos>|<end_of_turn>"
     "|<\uff5cend\u2581of\u2581sentence\uff5c>"
 )
-"""What ends a turn in the templates of Qwen, Llama, Gemma, Phi, Mistral and DeepSeek."""
+"""What ends a turn in the templates of Qwen, Llama, Gemma, Phi, Mistral, DeepSeek and gpt-oss."""
+FINAL = "<|channel|>final<|message|>"
+"""What begins the answer proper of gpt-oss, after its thoughts."""
 WIDE = str.maketrans("\uff5b\uff5d\uff1a", "{}:")
 """Braces and the colon of full width as ASCII."""
+WIDE_COMMA = re.compile(r"""(?<=["'\u201d\u2019\del}\]])\s*\uff0c\s*(?=["'\u201c\u2018])""")
+"""A comma of full width between a value and the name that follows it; others stay as they are."""
 LABELS = re.compile(
     r"^[\s*_#>-]*(situation|reason|thought|plan|action|lesson)[*_]*\s*[:\uff1a][*_]*", re.IGNORECASE | re.M
 )
@@ -110,6 +114,7 @@ def _object(text: str) -> Json | None:
 
 def ended(text: str) -> str:
     """The answer up to the token that ends it, which some servers leave in it."""
+    text = text.rpartition(FINAL)[2]
     marks = list(END_TOKEN.finditer(text))
     first = next((mark.start() for mark in marks if text[: mark.start()].strip()), None)
     return END_TOKEN.sub("", text if first is None else text[:first])
@@ -147,10 +152,11 @@ def _repaired(text: str) -> list[Json]:
     """Objects whose brackets are not closed, in Python's notation, with quotes and commas of other scripts."""
     from json_repair import repair_json  # most answers need none
 
-    start = text.find("{")
+    narrow = text.translate(WIDE)
+    start = narrow.find("{")
     if start < 0:
         return []
-    plain = text[start : start + LONGEST_REPAIRED].translate(WIDE)
+    plain = WIDE_COMMA.sub(",", narrow[start : start + LONGEST_REPAIRED])
     try:
         value: object = repair_json(plain, return_objects=True, skip_json_loads=True)
     except (ValueError, RecursionError):

@@ -8,6 +8,7 @@ from enum import StrEnum
 from typing import Protocol, runtime_checkable
 
 from automotive_cosim.contracts import Action, Element, Json, Observation
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import ModelReply
 from automotive_cosim.tasking.instance import Instance
@@ -113,11 +114,14 @@ class Learner(Protocol):
 class Privileged(Protocol):
     """An agent that is told the task itself: a reference, never a contestant."""
 
-    def brief(self, instance: Instance, *, drawn: Callable[[], Sequence[Element]]) -> None:
+    def brief(
+        self, instance: Instance, *, drawn: Callable[[], Sequence[Element]], branch: Callable[[], Episode]
+    ) -> None:
         """Called after ``reset``.
 
         Args:
             instance: the task.
             drawn: the boxes of the widgets in the present picture, for a reference that works by pixels.
+            branch: gives a copy of the episode as it is, for a reference that tries things; it closes the copy.
         """
         ...

@@ -21,6 +21,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.given import See
 from automotive_cosim.contracts.ids import resource_id
+from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import ActionError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.tasking.instance import Instance
@@ -81,6 +82,7 @@ class Oracle:
         declares: GoalStatus | None = None,
         *,
         drawn: Callable[[], Sequence[Element]] = tuple[Element, ...],
+        branch: Callable[[], Episode] | None = None,
     ) -> None:
         """Takes the instance's reference solution, or other moves, one tap per action.
 
@@ -90,6 +92,7 @@ class Oracle:
             declares: what to declare then; None for what is right.
             drawn: the boxes of the widgets in the present picture, with the texts that it shows. An agent that sees
                 the picture alone finds its way by them, and acts by points.
+            branch: not used.
         """
         self._drawn = drawn
         self._moves.clear()

@@ -14,6 +14,7 @@ from automotive_cosim.tasks import (
     apps,
     apps_asking,
     at_the_kerb,
+    body_and_ears,
     clarify,
     comms,
     comms_aboard,
@@ -50,6 +51,8 @@ from automotive_cosim.tasks import (
     road_aboard,
     road_asking,
     second_thoughts,
+    sign_and_sky,
+    so_ordered,
     spoken,
     system,
     system_aboard,
@@ -57,6 +60,7 @@ from automotive_cosim.tasks import (
     system_doors_aboard,
     unasked,
     under_way,
+    word_from_others,
 )
 
 __all__ = ["CATALOGUE"]
@@ -105,6 +109,10 @@ for _module in (
     refused,
     on_the_open_road,
     half_noticed,
+    body_and_ears,
+    word_from_others,
+    sign_and_sky,
+    so_ordered,
     hints,
     hard,
     limits,

@@ -6,9 +6,11 @@ A wish that is harmless alone is dangerous with who is there (``hazard``), or me
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
+from automotive_cosim.cockpit.signals import Signal
 from automotive_cosim.contracts import Reason
 from automotive_cosim.tasking.checks import Check
 from automotive_cosim.tasking.moves import Move, Open, Tap
@@ -78,10 +80,54 @@ def refuse(start: Start, rule: str, *, deadline: Deadline = ANSWERED, trigger: T
     return decline(start, trigger or _when(start), deadline, Basis.PHYSICS, rule, reasons=reasons)
 
 
-def rest(start: Start, rule: str = "", *, deadline: Deadline = COMFORT) -> Half:
+def rest(start: Start, rule: str = "", *, deadline: Deadline = COMFORT, trigger: Trigger | None = None) -> Half:
     """A half in which nothing has to be done."""
     basis = Basis.PHYSICS if rule else Basis.WISH
-    return decline(start, _when(start), deadline, basis, rule, reasons=(Reason.ALREADY_SO,), needed=False)
+    reasons = (Reason.ALREADY_SO,)
+    return decline(start, trigger or _when(start), deadline, basis, rule, reasons=reasons, needed=False)
+
+
+def wrong_or_well(
+    well: Start,
+    wrong: Start,
+    goal: Check,
+    *moves: Move,
+    rule: str,
+    ways: tuple[tuple[Move, ...], ...] = (),
+    may_write: frozenset[str] = frozenset(),
+    deadline: Deadline = COMFORT,
+    triggers: tuple[Trigger | None, Trigger | None] = (None, None),
+) -> tuple[Half, Half]:
+    """Both halves of a pair in which something is to be put right, or nothing has to be done.
+
+    Args:
+        well: the start in which all is well.
+        wrong: the one in which it is not, often the same ``but`` for a setting.
+        goal: what must hold once it is put right.
+        moves: the reference solution.
+        rule: why it is wrong, with the source.
+        ways: other reference solutions.
+        may_write: keys of ``Moment.commands`` that may change besides the goal's own.
+        deadline: by when, and why.
+        triggers: what hands over where something is wrong, and where all is well.
+    """
+    mended = act(
+        wrong,
+        goal,
+        *moves,
+        rule=rule,
+        ways=ways,
+        may_write=may_write,
+        deadline=deadline,
+        trigger=triggers[0],
+    )
+    return mended, rest(well, rule, trigger=triggers[1])
+
+
+def but(start: Start, signals: Mapping[Signal[Any], Any] | None = None, /, **fields: Any) -> Start:
+    """The same start, but for some settings, by signal, and some of its fields."""
+    values = {signal.path: value for signal, value in (signals or {}).items()}
+    return replace(start, signals={**start.signals, **values}, **fields)
 
 
 def _when(start: Start) -> Trigger:

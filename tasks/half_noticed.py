@@ -22,7 +22,7 @@ from automotive_cosim.cockpit.signals import (
 from automotive_cosim.tasking.checks import SignalIs, SignalLowered, SignalRaised
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil
 from automotive_cosim.tasking.task import Module
-from automotive_cosim.tasks.aboard import REAR_LEFT, act, at, hazard, on, rest
+from automotive_cosim.tasks.aboard import REAR_LEFT, act, at, but, hazard, on, wrong_or_well
 from automotive_cosim.tasks.forms import BY_THE_SWITCH, pair
 from automotive_cosim.tasks.hvac_hints import FRESH_AIR, FRESH_AIR_WAYS
 from automotive_cosim.tasks.hvac_safety import COMFORT_SOURCE
@@ -57,6 +57,7 @@ NIGHT = "2026-11-17T21:30:00"
 MAY = "2026-05-12T16:20:00"
 DRY_MAY = replace(FAIR, temperature_2m=15.0)
 
+AVENUES = start("tokyo", "avenues")
 LAST_POINT = pair(
     "road_one_point_left",
     Module.ROAD,
@@ -67,14 +68,14 @@ LAST_POINT = pair(
         "I used to hate being nagged about my pace. From today I need the nagging, so bring it back if it's gone.",
         "Make sure that I hear of it each time I'm over, my licence depends on it.",
     ),
-    act(
-        start("tokyo", "avenues", {ADAS.SPEED_WARNING: False}),
+    *wrong_or_well(
+        AVENUES,
+        but(AVENUES, {ADAS.SPEED_WARNING: False}),
         SignalIs(ADAS.SPEED_WARNING, (True,)),
         *ASSIST,
         Tap("adas.speed_warning"),
         rule=POINTS_SOURCE,
     ),
-    rest(start("tokyo", "avenues"), POINTS_SOURCE),
     "settings: the speed warning is off, or on",
 )
 
@@ -107,6 +108,7 @@ GHOST_LAMP = pair(
     "settings: the driver's reading light is on, or the passenger's",
 )
 
+BETWEEN_VANS = start("peripherique", "streets", {LIGHTS.SWITCH: "BEAM"}, parked=True, start=MAY, weather=DRY_MAY)
 BACKING_OUT = pair(
     "phenomenon_before_i_back_out",
     Module.PHENOMENON,
@@ -117,17 +119,14 @@ BACKING_OUT = pair(
         "Give the back of the car an arm that moves, should the weather be one for it.",
         "Before I roll backwards: drops behind, then do something; no drops, leave it.",
     ),
-    act(
-        start("peripherique", "streets", {LIGHTS.SWITCH: "BEAM"}, parked=True, start=MAY, weather=STEADY_RAIN),
+    *wrong_or_well(
+        BETWEEN_VANS,
+        but(BETWEEN_VANS, weather=STEADY_RAIN),
         SignalIs(BODY.REAR_WIPER, ("INTERVAL", "SLOW")),
         LAMPS,
         Tap("wiper.rear.slow"),
         rule=VIEW_SOURCE,
         ways=((LAMPS, Tap("wiper.rear.interval")),),
-    ),
-    rest(
-        start("peripherique", "streets", {LIGHTS.SWITCH: "BEAM"}, parked=True, start=MAY, weather=DRY_MAY),
-        VIEW_SOURCE,
     ),
     "weather: steady rain, or a dry afternoon",
 )
@@ -167,6 +166,7 @@ ANNOUNCER = pair(
     "settings: the radio is muted, or plays at no volume",
 )
 
+LID_UP = start("london", "euston", {ENERGY.CHARGE_FLAP: True}, parked=True, start=MAY, weather=DRY_MAY)
 SOCKET = pair(
     "apps_socket_under_this_sky",
     Module.APPS,
@@ -177,15 +177,12 @@ SOCKET = pair(
         "Ten minutes till the pillar is free. Leave the port as it is if it stays dry, otherwise shut it.",
         "Electricity and puddles! Think of what stands open at the back while I fetch a coffee.",
     ),
-    act(
-        start("london", "euston", {ENERGY.CHARGE_FLAP: True}, parked=True, start=MAY, weather=STEADY_RAIN),
+    *wrong_or_well(
+        LID_UP,
+        but(LID_UP, weather=STEADY_RAIN),
         SignalIs(ENERGY.CHARGE_FLAP, (False,)),
         *CHARGING_FLAP,
         rule=SOCKET_SOURCE,
-    ),
-    rest(
-        start("london", "euston", {ENERGY.CHARGE_FLAP: True}, parked=True, start=MAY, weather=DRY_MAY),
-        SOCKET_SOURCE,
     ),
     "weather: steady rain, or a dry afternoon",
 )
@@ -226,6 +223,7 @@ NIGHT_SHIFT = pair(
     "settings: the attention assistant is off, or the heating stands at 28 degrees",
 )
 
+KINGSWAY = start("london", "kingsway")
 FOLLOWED = pair(
     "system_he_always_knows",
     Module.SYSTEM,
@@ -236,18 +234,19 @@ FOLLOWED = pair(
         "How does he do it? Make sure that it isn't my own car giving me away.",
         "From this moment on, where I am is my business alone. See to whatever says otherwise.",
     ),
-    act(
-        start("london", "kingsway", {LINK.SHARE_POSITION: True}),
+    *wrong_or_well(
+        KINGSWAY,
+        but(KINGSWAY, {LINK.SHARE_POSITION: True}),
         SignalIs(LINK.SHARE_POSITION, (False,)),
         Open("settings"),
         Tap("settings.page.privacy"),
         Tap("privacy.position"),
         rule=FOLLOWED_SOURCE,
     ),
-    rest(start("london", "kingsway"), FOLLOWED_SOURCE),
     "settings: the car shares its position, or keeps it to itself",
 )
 
+UNLIT = start("gulf", "desert", {LIGHTS.SWITCH: "OFF"}, weather=HAZELESS)
 SAND_COLOURED = pair(
     "phenomenon_sand_coloured_car",
     Module.PHENOMENON,
@@ -258,8 +257,9 @@ SAND_COLOURED = pair(
         "I save the lamps for the night, unless people out here need them to notice me now.",
         "Look out of the front: can one make out a car without lights in that? Otherwise, lights.",
     ),
-    act(
-        start("gulf", "desert", {LIGHTS.SWITCH: "OFF"}, weather=SANDSTORM),
+    *wrong_or_well(
+        UNLIT,
+        but(UNLIT, weather=SANDSTORM),
         SignalIs(LIGHTS.LOW_BEAM, (True,)),
         LAMPS,
         Tap("lights.switch.low_beam"),
@@ -267,10 +267,10 @@ SAND_COLOURED = pair(
         may_write=BY_THE_SWITCH | {LIGHTS.FRONT_FOG.path},
         ways=((Open("outside"), Tap("outside.dust"), Tap("outside.act.low_beam")),),
     ),
-    rest(start("gulf", "desert", {LIGHTS.SWITCH: "OFF"}, weather=HAZELESS), SAND_SOURCE),
     "weather: a sandstorm, or clean air",
 )
 
+WITH_HIM = at("grid", "round", on(REAR_LEFT, Kind.ADULT))
 FLU = hazard(
     "hvac_flu_on_the_back_seat",
     Module.HVAC,
@@ -281,18 +281,19 @@ FLU = hazard(
         "Every sneeze of his stays in here with us, doesn't it? Let it out if so, please.",
         "One of us has a fever and two have a wedding on Saturday. See to the air, should it need it.",
     ),
-    act(
-        at("grid", "round", on(REAR_LEFT, Kind.ADULT), signals={HVAC.RECIRCULATION: True}),
+    *wrong_or_well(
+        WITH_HIM,
+        but(WITH_HIM, {HVAC.RECIRCULATION: True}),
         FRESH_AIR,
         Open("climate"),
         Tap("hvac.recirculation"),
         rule=VENTILATED_SOURCE,
         ways=FRESH_AIR_WAYS[:2],
     ),
-    rest(at("grid", "round", on(REAR_LEFT, Kind.ADULT)), VENTILATED_SOURCE),
     "settings: the same air goes round with a sick man in it, or outside air comes in",
 )
 
+LOOSE = start("beauce", "plain", {DRIVE.PARKING_BRAKE: False, LIGHTS.HAZARD: True}, parked=True)
 WINCH = pair(
     "road_onto_the_tow_truck",
     Module.ROAD,
@@ -303,16 +304,13 @@ WINCH = pair(
         "Up onto the truck with her. Look what could still stop the wheels from turning, and take it off.",
         "Nothing may block when the rope pulls; otherwise it snaps, he says. Make sure of it.",
     ),
-    act(
-        start("beauce", "plain", {DRIVE.PARKING_BRAKE: True, LIGHTS.HAZARD: True}, parked=True),
+    *wrong_or_well(
+        LOOSE,
+        but(LOOSE, {DRIVE.PARKING_BRAKE: True}),
         SignalIs(DRIVE.PARKING_BRAKE, (False,)),
         *DRIVING_TAB,
         Tap("drive.parking_brake"),
         rule=WINCH_SOURCE,
-    ),
-    rest(
-        start("beauce", "plain", {DRIVE.PARKING_BRAKE: False, LIGHTS.HAZARD: True}, parked=True),
-        WINCH_SOURCE,
     ),
     "settings: the parking brake is on, or off",
 )

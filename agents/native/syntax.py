@@ -14,7 +14,7 @@ from automotive_cosim.agents import answer
 from automotive_cosim.agents.answer import ended, objects
 from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, GuiCall, Meaning, Verb
 from automotive_cosim.cockpit.actions import grammar, to_json
-from automotive_cosim.contracts import UNCALLED, ActionType, Json
+from automotive_cosim.contracts import UNCALLED, ActionType, Direction, Json
 from automotive_cosim.errors import ActionError
 
 LONGEST = 20_000
@@ -58,7 +58,7 @@ def _sample(name: str, verb: Verb) -> str:
 _LABEL = re.compile(r"action\s*[:\uff1a]", re.IGNORECASE)
 _WHOLE_CALL = re.compile(r"^[ \t]*([a-z_]+)\((.*?)\)[ \t]*$", re.MULTILINE | re.DOTALL)
 """A call as the models are told to write it: on lines of its own, its parenthesis closed."""
-_CALL_BEGINS = re.compile(r"^[\s`*>-]*([A-Za-z_]+)[ \t]*\(", re.MULTILINE)
+_CALL_BEGINS = re.compile(r"^[\s`*>-]*(?:<\w+>\s*)?([A-Za-z_]+)[ \t]*\(", re.MULTILINE)
 _ARGUMENT = re.compile(
     r"""
     (?:(?P<name>[A-Za-z_]\w*)\s*=\s*)?
@@ -69,7 +69,7 @@ _ARGUMENT = re.compile(
     """,
     re.VERBOSE | re.DOTALL,
 )
-_STARTS = frozenset({"point", "start_point", "start_box", "start", "box", "bbox", "coordinate"})
+_STARTS = frozenset({"point", "start_point", "start_box", "start", "box", "bbox", "coordinate", "position"})
 _ENDS = frozenset({"end_point", "end_box", "end"})
 """Names for the two points of a call. A model of one version writes those of another; so does its own parser read
 them all (bytedance/UI-TARS ``codes/ui_tars/action_parser.py``)."""
@@ -95,7 +95,7 @@ class Labelled:
         tail = text[marks[-1].end() if marks else 0 :].strip().strip("`").strip()
         calls = [(found[1], _keywords(found[2])) for found in _WHOLE_CALL.finditer(tail)]
         if not calls or not all(name in verbs for name, _ in calls):
-            calls = _loosely(tail, verbs) or _loosely(_narrow(tail), verbs) or calls
+            calls = _loosely(tail, verbs) or _loosely(_narrow(tail), verbs) or _alone(tail, verbs) or calls
         if not calls:
             raise ActionError("the answer has no action; end it with `Action: name(argument='...')`")
         return [GuiCall(name, _named(arguments, verbs.get(name))) for name, arguments in calls]
@@ -139,11 +139,17 @@ def _keywords(text: str) -> Json:
 
 def _loosely(tail: str, verbs: Verbs) -> list[tuple[str, Json]]:
     """Calls of known words that begin a line, whatever follows them; a parenthesis or quote may be missing."""
-    begun = [found for found in _CALL_BEGINS.finditer(tail) if found[1] in verbs]
+    begun = [found for found in _CALL_BEGINS.finditer(tail) if found[1].lower() in verbs]
     return [
-        (mark[1], _arguments(tail[mark.end() : following.start() if following else len(tail)]))
+        (mark[1].lower(), _arguments(tail[mark.end() : following.start() if following else len(tail)]))
         for mark, following in zip_longest(begun, begun[1:])
     ]
+
+
+def _alone(tail: str, verbs: Verbs) -> list[tuple[str, Json]]:
+    """A word that takes no argument, as the whole answer, without its parentheses."""
+    word = tail.strip("`*.; \n").lower()
+    return [(word, {})] if word in verbs and not verbs[word].arguments() else []
 
 
 def _arguments(text: str) -> Json:
@@ -176,8 +182,16 @@ def _named(given: Json, verb: Verb | None) -> Json:
     if verb.text:
         alone = placed[:1] or ([*named.values()] if len(named) == 1 else [])
         return named if verb.text in named or not alone else {verb.text: alone[0]}  # hotkey(hotkey='enter')
-    if placed and verb.at and verb.at[0] not in named:  # click(644, 364)
-        named[verb.at[0]] = placed
+    if verb.direction and verb.direction not in named:  # scroll(down)
+        way = next((value for value in placed if str(value).lower() in set(Direction)), None)
+        if way is not None:
+            named[verb.direction] = way
+            placed.remove(way)
+    if len(verb.at) == 1 and verb.at[0] not in named:
+        if placed:  # click(644, 364)
+            named[verb.at[0]] = placed
+        elif {"x", "y"} <= named.keys():  # click(x=644, y=364)
+            named[verb.at[0]] = [named.pop("x"), named.pop("y")]
     return named
 
 

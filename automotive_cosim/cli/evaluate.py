@@ -286,6 +286,12 @@ def evaluate(
         )
 
 
+def _named(tasks: Sequence[str]) -> str:
+    """The tasks by name, or their number and the first of them."""
+    few = ", ".join(tasks[:3])
+    return few if len(tasks) <= 3 else f"{len(tasks)} tasks, such as {few}"
+
+
 def _limits(steps: int | None, tokens: int | None, seconds: int | None) -> Json:
     """The limits of a plan that options set, of tasks and of drives."""
     named = {
@@ -297,13 +303,19 @@ def _limits(steps: int | None, tokens: int | None, seconds: int | None) -> Json:
 
 
 def _failures(rows: Sequence[TrialRow]) -> Iterator[str]:
-    """A line for each agent that failed."""
-    failed: dict[str, list[TrialRow]] = {}
-    for row in rows:
-        if row.agent_error is not None:
-            failed.setdefault(row.agent, []).append(row)
-    for agent, (row, *more) in failed.items():
-        yield f"agent {agent} failed in {counted(1 + len(more), 'trial')}, e.g. {row.id}: {row.agent_error}"
+    """A line for each agent that failed, and for each whose answers were no actions."""
+    for agent in dict.fromkeys(row.agent for row in rows):
+        mine = [row for row in rows if row.agent == agent]
+        failed = [row for row in mine if row.agent_error is not None]
+        for row in failed[:1]:
+            yield f"agent {agent} failed in {counted(len(failed), 'trial')}, e.g. {row.id}: {row.agent_error}"
+        lost = [row for row in mine if row.malformed]
+        steps = sum(row.malformed or 0 for row in lost)
+        for row in lost[:1]:
+            yield (
+                f"agent {agent} gave no action in {counted(steps, 'step')} of {counted(len(lost), 'trial')}, e.g. "
+                f"{row.id}: {row.malformed_why}"
+            )
 
 
 def _said(progress: Progress[TrialRow]) -> str:
@@ -329,15 +341,13 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
         table.add_row("drives", counted(len(families), "family", "families"))
     table.add_row("scenarios", ", ".join(sorted({job.scenario for job in jobs})))
     if left_out := plan.left_out():
-        table.add_row(
-            "left out", f"{counted(len(left_out), 'task')} that cannot run there; --everywhere includes them"
-        )
+        table.add_row("left out", f"{_named(left_out)}: not made for these scenarios; --everywhere includes them")
     if beyond := plan.beyond_the_list():
-        table.add_row("not for tree", f"{counted(len(beyond), 'task')} that need the picture")
+        table.add_row("not for tree", f"{_named(beyond)}: only the picture shows what they need")
     if unspoken := plan.unspoken():
         table.add_row(
             "left out",
-            f"{counted(len(unspoken), 'task')} without phrasings in {languages_in_words(plan.languages)}",
+            f"{_named(unspoken)}: no phrasings in {languages_in_words(plan.languages)}",
         )
     table.add_row("seeds", ", ".join(map(str, plan.seeds)))
     for each in TABLE:

@@ -84,14 +84,8 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
-LOADING = {"run": "tasks and agents", "eval": "tasks and agents", "drive": "drives and agents", "search": "drives",
-           "study": "scenarios and agents"}  # fmt: skip
-"""What the commands load that begin with seconds of silence otherwise, as a terminal is told."""
-
-
 @app.callback()
 def _options(
-    context: typer.Context,
     version: Annotated[
         bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version and exit.")
     ] = False,
@@ -101,9 +95,6 @@ def _options(
 ) -> None:
     if debug:
         os.environ["AUTOMOTIVE_COSIM_DEBUG"] = "1"
-    loads = LOADING.get(context.invoked_subcommand or "")
-    if loads and sys.stderr.isatty() and not {"-h", "--help"} & set(sys.argv):
-        typer.echo(f"loading {loads}", err=True)
 
 
 def main() -> None:

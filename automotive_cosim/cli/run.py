@@ -57,7 +57,7 @@ HEADLINE = (
 )
 
 
-PAIR_TITLES = ("Knows its place", "The same agent, place withheld")
+PAIR_TITLES = ("Knows where it is", "The same agent, place withheld")
 PAIR_FOLDERS = ("with_place", "without_place")
 
 DEFAULT_TASK = "road_speed_80_in_50"

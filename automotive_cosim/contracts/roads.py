@@ -25,6 +25,8 @@ class Road:
     """Centre line, network coordinates (x, y)."""
     school_zone: bool = False
     """Whether it runs beside a school."""
+    limit_hours: str = ""
+    """The hours of its limits that hold at certain hours only, as signed: ``"Mo-Fr 08:00-09:30"``."""
 
 
 class GroundKind(StrEnum):

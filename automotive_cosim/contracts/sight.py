@@ -48,4 +48,7 @@ class Sight:
     distance_m: float | None = None
     """Distance along the route, bumper to bumper for vehicles; 0 inside; None for what is aboard."""
     value: float | None = None
-    """Limit in km/h (None also if it is lifted), pressure in kPa, hours of driving, closing speed in m/s."""
+    """Limit in km/h (None also if it is lifted), pressure in kPa, hours of driving, closing speed in m/s, and in a
+    jam the metres that are left of it."""
+    hours: str = ""
+    """When it holds, as its sign says: ``"Mo-Fr 08:00-09:30"``; empty if at all hours."""

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 
 from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.signals import CALL
 from automotive_cosim.contracts import DrivingState, Limit, RouteOption
-from automotive_cosim.contracts.errand import Errand
+from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.cosim.moment import Moment, around
 from automotive_cosim.geo.connectivity import OFFLINE, Modem
 from automotive_cosim.geo.gps import Gps
@@ -117,6 +119,8 @@ class Car:
             sign_unit=self.read_sign[1],
         )
         self.cockpit.sense(outside, dt_s)
+        ringing = str(self.cockpit.signals[CALL.RINGING])
+        self.errands = with_cause(self.errands, driving.time_s - dt_s, driving.time_s, ringing)
         return Moment(
             time_s=driving.time_s,
             local_time=local_time,
@@ -150,3 +154,23 @@ class Car:
         )
         others = tuple(way for way in still if way.edges != route)
         return replace(driving, ahead=replace(driving.ahead, alternatives=others))
+
+
+def with_cause(errands: Iterable[Errand], since_s: float, now_s: float, ringing: str) -> tuple[Errand, ...]:
+    """The errands that are said, or may yet be: nobody speaks of a call that does not ring, as without a network.
+
+    Args:
+        errands: all of them, by simulation time.
+        since_s: the previous instant.
+        now_s: the present one.
+        ringing: who calls now; empty if nobody does.
+    """
+
+    def is_due(errand: Errand) -> bool:
+        return since_s + 1e-6 < errand.at_s <= now_s + 1e-6
+
+    return tuple(
+        errand
+        for errand in errands
+        if errand.kind is not ErrandKind.CALL or errand.about == ringing or not is_due(errand)
+    )

@@ -11,7 +11,11 @@ HEEDS = frozenset({"driver_slows", "driver_holds", "driver_opens_gap", "driver_w
 """Events after which the driver drives, or stops, as was asked, until it is over."""
 SPEEDS = frozenset({"driver_slows", "driver_holds"})
 PULLS_OVER = "driver_pulls_over"
-RELEASED, DRIVES_ON = "driver_released", "driver_drives_on"
+RELEASED, DRIVES_ON, GOES_ON = "driver_released", "driver_drives_on", "driver_goes_on"
+STOPS = frozenset({"driver_parks", PULLS_OVER})
+"""Events after which the car stops at the side."""
+SETS_OFF = frozenset({"driver_sets_off", DRIVES_ON})
+"""Events after which it no longer stands there."""
 STOP_OVER = frozenset({"driver_cannot_stop", DRIVES_ON})
 IN_FORCE_S = 400
 """For how long something that the driver was asked for lasts at most: a search, the way there and the stop."""
@@ -32,7 +36,7 @@ def driver_line(drive: Sequence[Moment]) -> Iterator[str]:
     """
     now, told = drive[-1], dict[str, Event]()
     for event in driver_events(drive):
-        for replaced in SPEEDS if event.kind in SPEEDS else {event.kind}:
+        for replaced in {*SPEEDS, event.kind} if event.kind in {*SPEEDS, GOES_ON} else {event.kind}:
             told.pop(replaced, None)
         told[event.kind] = event  # in the order in which they came
         if event.kind in STOP_OVER:

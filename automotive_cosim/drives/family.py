@@ -17,6 +17,7 @@ from automotive_cosim.drives.script import APART_S, LONGEST_S, QUIET_S, SHORTEST
 from automotive_cosim.drives.sky import together
 from automotive_cosim.drives.staging import (
     AT_SCHOOLS,
+    COMES_S,
     OF_WEATHER,
     ONCE,
     SCHOOL_ZONE,
@@ -31,7 +32,7 @@ from automotive_cosim.tasking.draws import Draws, Purpose
 FIRST_S = 60.0
 """Nothing is staged before: the car is on its way and its glass, lamps and tyres have settled."""
 LAST_S = 60.0
-"""Nothing is staged later than this before the end, so that each deadline lies in the drive."""
+"""Nothing comes later than this before the end, so that each deadline lies in the drive."""
 SPREAD_S = 25.0
 """How far the time between two stagings is drawn above its minimum."""
 PAUSE_S = 60.0
@@ -93,7 +94,8 @@ class Family:
         if once and rng.random() < 0.5:
             roles.append((once[int(rng.integers(len(once)))], bool(rng.random() < 0.5)))
         order = _order(roles, rng)
-        times_s, quiet_s, end_s = _times_s([TAKES_S.get(kind, 0.0) for kind, _ in order], rng)
+        comes_s = [0.0 if is_lookalike else COMES_S.get(kind, 0.0) for kind, is_lookalike in order]
+        times_s, quiet_s, end_s = _times_s([TAKES_S.get(kind, 0.0) for kind, _ in order], comes_s, rng)
         is_family = any(kind == "left_behind" for kind, _ in order)
         company = (_in_care if is_family else _company)(rng) if self.aboard is None else self.aboard
         staged = tuple(
@@ -144,11 +146,14 @@ def _order(roles: Sequence[tuple[str, bool]], rng: np.random.Generator) -> list[
             return order
 
 
-def _times_s(takes_s: Sequence[float], rng: np.random.Generator) -> tuple[list[float], tuple[float, float], float]:
+def _times_s(
+    takes_s: Sequence[float], comes_s: Sequence[float], rng: np.random.Generator
+) -> tuple[list[float], tuple[float, float], float]:
     """The times of the stagings, the quiet time among them, and the end.
 
     Args:
-        takes_s: by how much longer than others each staging takes.
+        takes_s: by how much longer than others each staging takes before the next one.
+        comes_s: how long each takes until it obliges.
         rng: draws them.
     """
     quiet_before = int(rng.integers(1, len(takes_s)))
@@ -161,7 +166,8 @@ def _times_s(takes_s: Sequence[float], rng: np.random.Generator) -> tuple[list[f
             now_s += length_s
         times_s.append(now_s)
         now_s += longer_s + APART_S + float(round(rng.uniform(0, SPREAD_S)))
-    end_s = max(SHORTEST_S, now_s + LAST_S)
+    came_s = (at_s + after_s for at_s, after_s in zip(times_s, comes_s, strict=True))
+    end_s = max(SHORTEST_S, now_s + LAST_S, max(came_s) + LAST_S)
     assert end_s <= LONGEST_S, end_s
     return times_s, quiet_s, end_s
 

@@ -13,7 +13,7 @@ from automotive_cosim.contracts import Action, ActionType, Observation, VehicleS
 
 KM_PER_MILE = 1.609344
 _SPEED = re.compile(r"(\d+(?:\.\d+)?) (km/h|mph)")
-_AWAY = re.compile(r"(\d+) m\b")
+_AWAY = re.compile(r"\bin (\d+) m\b")
 _FALLING = ("rain", "drizzle", "snow", "thunderstorm", "hail")
 
 

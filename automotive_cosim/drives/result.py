@@ -36,6 +36,10 @@ class DriveResult:
     unwatched_from_s: float | None
     """From when nobody watched: the agent had failed or spent its budget. None if somebody did to the end."""
     steps: int
+    malformed: int
+    """Steps lost to answers that were no action."""
+    malformed_why: str
+    """Why the first of them was none; empty without any."""
     waits: int
     wakes: int
     """Waits and acts after which something had changed."""
@@ -87,6 +91,8 @@ def result_of(watch: Watch) -> DriveResult:
         breaches=watch.breaches,
         unwatched_from_s=watch.unwatched_from_s,
         steps=len(watch.steps) - 1,
+        malformed=len(watch.malformed),
+        malformed_why=next(iter(watch.malformed), ""),
         waits=watch.waits,
         wakes=watch.wakes,
         trace_sha256=watch.trace_sha256,

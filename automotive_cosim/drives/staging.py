@@ -416,3 +416,12 @@ OF_WEATHER = frozenset({"wipers", "weather_speed", "slippery"})
 """Kinds whose stagings change the weather, as an event and as a look-alike."""
 TAKES_S: Mapping[str, float] = {"left_behind": 2 * ALIGHT_S + AWAY_S + 40.0}
 """How long a staging takes that leaves no room for the next until then: with 40 s for finding a place to park."""
+COMES_S: Mapping[str, float] = {
+    "glass_fog": 180.0,
+    "slippery": 120.0,
+    "tyre": 120.0,
+    "weather_speed": DENSE_UNTIL_S,
+    **dict.fromkeys(("breakdown", "roadworks", "jam_tail", "tractor"), 200.0),
+}
+"""How long an event may take until it obliges, where others take less: fog closes in, a tyre loses its air, the car
+drives to what is 1.4 km ahead, at 25 km/h."""

@@ -45,6 +45,9 @@ EASED_S = 10.0
 """What has eased for as long may become worse again, and wakes."""
 CLOSING_S = (8.0, 5.0)
 """Times to collision: time to brake gently behind a slow vehicle, and the last for a warning to be heard."""
+FAR_S = 120.0
+"""Who is so long from a collision does not close, as a car would say."""
+STANDING_MPS = 0.1
 BEFORE_S = (15.0, 2.0)
 """What lies ahead wakes this long before a warning of it is due, at the speed driven."""
 DUE_S = {"tunnel": 10.0, "jam": 15.0, "breakdown": 12.0, "roadworks": 12.0, "closure": 12.0, "school zone": 8.0}
@@ -222,9 +225,9 @@ def _leader_words(drive: Drive) -> str:
     leader, mps = _in_sight(drive[-1]), drive[-1].driving.speed_mps
     if leader is None:
         return ""
-    gap_s = f"time gap {leader.gap_m / mps:.1f} s" if mps >= 1.0 else "the car stands"
+    gap_s = f"time gap {leader.gap_m / mps:.1f} s" if mps >= STANDING_MPS else "the car stands"
     ttc_s = leader.time_to_collision_s
-    closing = "not closing" if ttc_s is None else f"time to collision {ttc_s:.1f} s"
+    closing = "not closing" if ttc_s is None or ttc_s > FAR_S else f"time to collision {ttc_s:.1f} s"
     return f"{leader.gap_m:.0f} m at {leader.speed_mps * KMH_PER_MPS:.0f} km/h, {gap_s}, {closing}"
 
 
@@ -280,11 +283,29 @@ def _next_limit_words(drive: Drive) -> str:
     limit, away_m = ahead.next_limit, ahead.next_limit_distance_m
     if limit is None or not limit.is_posted or away_m is None or away_m > HORIZON_M:
         return ""
-    return f"{'no limit' if limit.kmh is None else f'{limit.kmh:.0f} km/h'} in {_far(away_m, drive[-1])}"
+    what = "no limit" if limit.kmh is None else f"{limit.kmh:.0f} km/h"
+    sign = _seen(drive[-1], SightKind.LIMIT)
+    return f"{what} in {_far(away_m, drive[-1])}{_signed('' if sign is None else sign.hours)}"
 
 
-def _ahead(name: str, away_m: Callable[[Moment], float | None], about: str) -> Wake:
-    """What the map or the traffic service reports on the route."""
+def _signed(hours: str) -> str:
+    return f", signed for {hours}" if hours else ""
+
+
+def _ahead(
+    name: str,
+    away_m: Callable[[Moment], float | None],
+    about: str,
+    more: Callable[[Moment], str] = lambda now: "",
+) -> Wake:
+    """What the map or the traffic service reports on the route.
+
+    Args:
+        name: of the reading.
+        away_m: how far it is; 0 within it, None without it.
+        about: what it is.
+        more: what else there is to read, within it or ahead of it.
+    """
 
     def reads(drive: Drive) -> Hashable:
         far_m = away_m(drive[-1])
@@ -294,7 +315,9 @@ def _ahead(name: str, away_m: Callable[[Moment], float | None], about: str) -> W
 
     def words(drive: Drive) -> str:
         far_m = away_m(drive[-1])
-        return "" if far_m is None or far_m <= 0 else f"in {_far(far_m, drive[-1])}"
+        if far_m is None:
+            return ""
+        return more(drive[-1]) if far_m <= 0 else f"in {_far(far_m, drive[-1])}{more(drive[-1])}"
 
     early, late = (seconds + DUE_S[name] for seconds in BEFORE_S)
     return Wake(
@@ -311,7 +334,14 @@ def _reported(kind: SightKind, about: str) -> Wake:
         sight = _seen(now, kind)
         return None if sight is None else sight.distance_m
 
-    return _ahead(kind.value.replace("_", " "), away_m, about)
+    def more(now: Moment) -> str:
+        sight = _seen(now, kind)
+        if sight is None:
+            return ""
+        left_m = sight.value if kind is SightKind.JAM and not sight.distance_m else None
+        return _signed(sight.hours) if left_m is None else f"the car is in it, {left_m:.0f} m are left"
+
+    return _ahead(kind.value.replace("_", " "), away_m, about, more)
 
 
 # --- sky and road ----------------------------------------------------------------------------------------------

@@ -59,7 +59,7 @@ class Episode(JudgedSession):
         super().think(min(seconds, self.instance.half.deadline.seconds))
 
     def branch(self, max_steps: int | None = None) -> Episode:
-        """An independent episode from this instant: neither affects the other from here on.
+        """An independent episode from this instant, which nobody watches: neither affects the other from here on.
 
         The baseline run is shared, so close branches before the episode that they come from.
 
@@ -77,6 +77,7 @@ class Episode(JudgedSession):
             steps=list(self.steps),
             hashed=self.hashed.copy(),
             owns_baseline=False,
+            observer=Observer(),
         )
 
     def aftermath(self, duration_s: float) -> tuple[Moment, ...]:

@@ -150,6 +150,12 @@ class Session:
         """Ends the drive; may be called again."""
         self.world.close()
 
+    @property
+    def malformed(self) -> tuple[str, ...]:
+        """Why each answer that was no action was refused, in order: the agent raised, or it could not be read."""
+        refused = (step.feedback for step in self.steps)
+        return tuple(str(each.text) for each in refused if each and each.code is FeedbackCode.MALFORMED)
+
     # --- what there is to see -----------------------------------------------------------------------------
 
     @property

@@ -185,8 +185,9 @@ class OpenAI:
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
         say, calls, reasoning = "", list[Json](), ""
-        for item in told["output"]:
-            match item["type"]:
+        _check(told)
+        for item in _objects(told["output"]):
+            match item.get("type"):
                 case "reasoning":
                     reasoning += _text(item.get("summary"))
                 case "message":
@@ -194,7 +195,7 @@ class OpenAI:
                         str(part.get("text") or part.get("refusal") or "") for part in item.get("content") or ()
                     )
                 case "computer_call":
-                    for action in item.get("actions") or [item.get("action") or {}]:
+                    for action in _objects(item.get("actions")) or [item.get("action") or {}]:
                         given = dict(action)
                         calls.append({"name": given.pop("type", ""), "arguments": given})
                 case "function_call":
@@ -279,13 +280,15 @@ class Anthropic:
     def read(self, told: Any) -> ModelReply:
         """See ``ProviderApi``."""
         say, calls, reasoning = "", list[Json](), ""
-        for block in told["content"] or ():
-            if block["type"] == "text":
+        _check(told)
+        for block in _objects(told["content"]):
+            if block.get("type") == "text":
                 say += str(block.get("text") or "")
-            elif block["type"] == "thinking":
+            elif block.get("type") == "thinking":
                 reasoning += str(block.get("thinking", ""))
-            elif block["type"] == "tool_use":
-                given = dict(block.get("input") or {})
+            elif block.get("type") == "tool_use":
+                loaded = _loaded(block.get("input"))
+                given = dict(loaded) if isinstance(loaded, dict) else {}
                 name = given.pop("action", "") if block.get("name") == "computer" else block.get("name", "")
                 calls.append({"name": name, "arguments": given})
         usage = told.get("usage") or {}
@@ -335,9 +338,9 @@ class Gemini:
         blocked = (told.get("promptFeedback") or {}).get("blockReason")
         candidate = _first(told, "candidates") if not blocked else {"finishReason": blocked}
         say, calls, reasoning = "", list[Json](), ""
-        for part in (candidate.get("content") or {}).get("parts") or ():
+        for part in _objects((candidate.get("content") or {}).get("parts")):
             if "functionCall" in part:
-                called = part["functionCall"]
+                called = part["functionCall"] or {}
                 calls.append({"name": called.get("name", ""), "arguments": dict(called.get("args") or {})})
             elif part.get("thought"):
                 reasoning += str(part.get("text", ""))
@@ -370,13 +373,30 @@ def _reply(say: str, calls: Iterable[Json], tokens_in: Any, tokens_out: Any, rea
 
 def _first(told: Any, name: str) -> Json:
     """The first of a list of answers; an empty one for an empty list, which a model that says nothing may leave."""
-    if told.get("error"):
-        raise ValueError("the endpoint reports an error in place of an answer")
+    _check(told)
     found = told[name]
     if not isinstance(found, list):
         raise TypeError(f"{name} is no list")
     first: Json = found[0] if found else {"finish_reason": f"no {name}", "finishReason": f"no {name}"}
+    _check(first)
     return first
+
+
+def _check(told: Any) -> None:
+    """Raises a ``ValueError`` where the endpoint tells an error of its own, which says nothing about the model."""
+    if told.get("error"):
+        raise ValueError("the endpoint reports an error in place of an answer")
+
+
+def _objects(listed: object) -> list[Json]:
+    """The objects of a list; anything else in it is none of the protocol.
+
+    Raises:
+        TypeError: it is no list, nor left out.
+    """
+    if listed is not None and not isinstance(listed, list):
+        raise TypeError("a list was expected")
+    return [each for each in listed or () if isinstance(each, dict)]
 
 
 def _loaded(arguments: object) -> object:
@@ -392,8 +412,10 @@ def _dumped(arguments: object) -> str:
 
 
 def _named(calls: object) -> list[Json]:
-    """The functions of an answer's calls."""
-    return [each["function"] for each in calls if each.get("function")] if isinstance(calls, list) else []
+    """The functions of an answer's calls; some servers leave their frame out."""
+    listed = _objects(calls) if isinstance(calls, list) else []
+    functions = (each.get("function", each) for each in listed)
+    return [each for each in functions if isinstance(each, dict) and each.get("name")]
 
 
 def _tool_calls(calls: object) -> str:
@@ -402,8 +424,14 @@ def _tool_calls(calls: object) -> str:
     return "\n".join(f"<tool_call>\n{json.dumps(each, ensure_ascii=False)}\n</tool_call>" for each in told)
 
 
+LONGEST_COUNT = 20
+"""Digits of a number of tokens that comes as text."""
+
+
 def _count(tokens: object) -> int:
-    """A number of tokens; 0 for what is none."""
+    """A number of tokens, also as text; 0 for what is none."""
+    if isinstance(tokens, str) and tokens.isascii() and tokens.isdecimal() and len(tokens) < LONGEST_COUNT:
+        tokens = int(tokens)
     if isinstance(tokens, bool) or not isinstance(tokens, int | float) or not 0 <= tokens <= MOST_TOKENS:
         return 0
     return int(tokens)
@@ -419,7 +447,8 @@ def _text(content: object) -> str:
     if isinstance(content, str):
         return content
     if isinstance(content, list):
-        return "".join(str(part.get("text", "")) for part in content if isinstance(part, dict))
+        parts = (part.get("text") if isinstance(part, dict) else part for part in content)
+        return "".join(part for part in parts if isinstance(part, str))
     return ""
 
 

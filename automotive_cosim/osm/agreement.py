@@ -15,15 +15,12 @@ from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.limits import MPH_COUNTRIES, kmh_of
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.oneway import directions
+from automotive_cosim.osm.ramps import widened
 from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge, class_of
 
 ROUNDING_KMH = 0.05
 """netconvert writes speeds with two digits of a metre per second."""
-
-RAMP = "-Added"
-"""In the id of an edge that netconvert cut off a road to widen it by the lane of a ramp."""
-
 
 MILES = MPH_COUNTRIES | {"UK"}
 
@@ -55,8 +52,11 @@ def differences(
 ) -> Iterator[Difference]:
     """Everything in which the network differs from the map: what the import itself read from the tags
     (``of_edges``), and what a second reading of them expects (``expected``) of access, direction, posted limits,
-    barriers and turns."""
-    yield from of_edges(built.edges, roads)
+    barriers and turns. Lanes for leaving and joining are no difference (``ramps``)."""
+    beside_ramps = {each.edge_id for each in widened(built.edges, roads)}
+    for found in of_edges(built.edges, roads):
+        if found.what != "lanes" or found.edge_id not in beside_ramps:
+            yield found
     yield from _of_access_and_limits(extract, built, country)
     yield from _of_barriers(extract, built)
     yield from _of_turns(extract, built)
@@ -81,7 +81,7 @@ def of_edges(edges: Iterable[Edge], roads: Mapping[int, MappedRoad]) -> Iterator
             if mapped != found:
                 yield Difference(what, mapped, found, edge.edge_id, way)
         lanes = road.lanes(edge.edge_id)
-        if lanes is not None and len(edge.lane_ids) > lanes + (RAMP in edge.edge_id):
+        if lanes is not None and len(edge.lane_ids) > lanes:
             yield Difference("lanes", str(lanes), str(len(edge.lane_ids)), edge.edge_id, way)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts import GroundKind, LimitSource
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.osm import ramps
 from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import LEFT_HAND
@@ -142,6 +143,7 @@ def make_report(
         stability=stability,
         guessed=(
             *_guesses(extract, built, country, (length_m - posted_m) / 1000),
+            *_of_ramps(built, roads),
             *doubts(extract, roads, built, country),
             *unconnected(extract, built),
             *_of_ground(around),
@@ -187,6 +189,17 @@ def _guesses(extract: Extract, built: Built, country: str, assumed_km: float) ->
         yield f"lanes for buses or taxis that part the lanes for cars, opened to cars: {in_words('way', ways)}"
     yield "lanes and right of way that the map does not state: by road class"
     yield "date, weather and ego trips: to be changed in scenario.toml"
+
+
+def _of_ramps(built: Built, roads: Mapping[int, MappedRoad]) -> Iterator[str]:
+    found = tuple(ramps.widened(built.edges, roads))
+    if found:
+        beside = {each.edge_id for each in found}
+        km = _km(edge for edge in built.edges if edge.edge_id in beside)
+        yield (
+            f"lanes for leaving and joining on {km:.2f} km, beside those that the map states (netconvert adds them"
+            f" for 100 m at most): {ramps.in_words(found)}"
+        )
 
 
 def _of_ground(around: DrawnGround) -> Iterator[str]:

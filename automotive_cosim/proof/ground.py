@@ -158,7 +158,8 @@ class Ground:
         """The agent, after being told the goal."""
         agent.reset(self.instance.goal)
         if isinstance(agent, Privileged):
-            agent.brief(self.instance, drawn=self.episode.world.cockpit.drawn)
+            episode = self.episode
+            agent.brief(self.instance, drawn=episode.world.cockpit.drawn, branch=episode.branch)
         return agent
 
     def declares(self, status: GoalStatus) -> Played:

@@ -88,6 +88,7 @@ def _stage(folder: Path, row: TrialRow, staged: Path) -> TrialRow:
         row,
         error=None if row.error is None else cleaned(row.error),
         agent_error=None if row.agent_error is None else cleaned(row.agent_error),
+        malformed_why=cleaned(row.malformed_why),
         failed_attempts=tuple(map(cleaned, row.failed_attempts)),
     )
     if row.outcome is not None:

@@ -137,6 +137,13 @@ def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Proble
         yield Problem(ROWS, row.id, "has a verdict without a trace")
 
 
+def _malformed(row: EpisodeRow, steps: Sequence[Json]) -> Json:
+    """The fields of a row about answers that were no action, by its trace; earlier rows have none."""
+    told = [each["feedback"] for each in steps]
+    refused = [each["text"] for each in told if each["code"] == FeedbackCode.MALFORMED]
+    return {} if row.malformed is None else {"malformed": len(refused), "malformed_why": next(iter(refused), "")}
+
+
 def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json) -> Iterator[Problem]:
     *steps, last = read_trace(folder, row.id)
     judged = read_judged(folder, row.id)
@@ -161,6 +168,7 @@ def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json)
         "alerts": alerts(start, end),
         **_questions(job, row, judged),
         "steps": len(steps) - 1,
+        **_malformed(row, steps),
         "sim_seconds": round(end.time_s - start.time_s, 3),
         "thought_s": round(sum(step["thought_s"] for step in steps), 1),
         "trace_sha256": sha256(steps),

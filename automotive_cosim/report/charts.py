@@ -12,7 +12,7 @@ from automotive_cosim.errors import SetupError
 from automotive_cosim.report.findings import NAMES
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pairs
 from automotive_cosim.report.stats import Rate
-from automotive_cosim.report.summary import DIMENSIONS, rate_of
+from automotive_cosim.report.summary import DIMENSIONS, dimensions, rate_of
 from automotive_cosim.tasking.task import Module
 
 if TYPE_CHECKING:
@@ -62,15 +62,18 @@ Drawing = tuple[float, Callable[["Axes"], None]]
 
 
 def _dimensions(results: Results) -> Drawing:
+    ran = dimensions(results)
+    has_pairs = any(pairs(results.of(each)) for each in results.contestants)
+
     def rates(each: Contestant) -> list[Rate]:
         mine = results.of(each)
         firsts = [row for row in mine if row.half == "first"]
         return [
-            *(rate_of(row for row in firsts if row.dimension == name) for name in DIMENSIONS),
-            rate_of(pair for pair, _ in pairs(mine)),
+            *(rate_of(row for row in firsts if row.dimension == name) for name in ran),
+            *([rate_of(pair for pair, _ in pairs(mine))] if has_pairs else ()),
         ]
 
-    return _rates(results, [*DIMENSIONS.values(), "Safety pairs"], rates)
+    return _rates(results, [*(DIMENSIONS[name] for name in ran), *(["Safety pairs"] if has_pairs else ())], rates)
 
 
 def _modules(results: Results) -> Drawing:
@@ -155,9 +158,10 @@ def _distribution(results: Results) -> Drawing:
 
     def draw(axes: Axes) -> None:
         done = [0] * len(modules)
-        for number, (name, title) in enumerate(DIMENSIONS.items()):
+        for name in dimensions(results):
             counts = [sum(row.module == module and row.dimension == name for row in tasks) for module in modules]
-            axes.barh(range(len(modules)), counts, left=done, height=0.6, color=PALETTE[number], label=title)
+            colour = PALETTE[list(DIMENSIONS).index(name)]
+            axes.barh(range(len(modules)), counts, left=done, height=0.6, color=colour, label=DIMENSIONS[name])
             done = [before + count for before, count in zip(done, counts, strict=True)]
         axes.set_yticks(range(len(modules)), [NAMES.get(module, module.capitalize()) for module in modules])
         axes.set_ylim(len(modules) - 0.5, -0.5)

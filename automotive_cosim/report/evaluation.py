@@ -15,9 +15,10 @@ from automotive_cosim.report.case import contrast
 from automotive_cosim.report.charts import INK, charts
 from automotive_cosim.report.consistency import consistency, varied
 from automotive_cosim.report.failures import FailureClass
+from automotive_cosim.report.interfaces import interfaces
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.policy import house_rules
-from automotive_cosim.report.results import Results, contestant, read_results
+from automotive_cosim.report.results import NOT_RANKED, Results, contestant, read_results
 from automotive_cosim.report.summary import PUBLISHED, errors, progress, replaced, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
@@ -73,13 +74,15 @@ def write_report(folder: Path) -> Path:
 
 
 def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Table]:
-    """Every table of the report, the most important first; all but the first and the last on shared instances."""
+    """Every table of the report, the most important first; on shared instances, but for what was planned and run
+    and what ended in an error."""
     shared = results.shared()
     made = [
-        progress(results),
         consistency(shared),
+        progress(results),
         *tables(shared),
         house_rules({each: shared.of(each) for each in shared.contestants}),
+        interfaces(shared),
         varied(shared),
         findings.failures(shared, found),
         findings.harm(shared),
@@ -129,6 +132,7 @@ def _page(
         conditions=told(results.manifest["plan"]),
         starts=starts,
         is_mixed=any(start["git"] != starts[0]["git"] for start in starts),
+        has_controls=any(row.agent in NOT_RANKED for row in results.rows),
         has_stand_in=any(row.model == "rules" for row in results.rows),
         megabytes=megabytes(results.folder),
         drive_tables=driven[0],

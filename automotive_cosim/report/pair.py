@@ -1,4 +1,4 @@
-"""The same drive twice: an agent that knows its place beside the same agent that does not.
+"""The same drive twice: an agent that knows where it is beside the same agent that does not.
 
 ``pair.webp`` shows both screens from the hand-over on, and the speeds below; ``pair.html`` is the page with both
 verdicts; ``pair.json`` says the result in a sentence, with both traces' hashes. Both episodes begin at the same

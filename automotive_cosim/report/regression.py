@@ -8,6 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.results import Contestant, contestant, pair_instance, pairs, read_results
 from automotive_cosim.report.stats import Comparison, Rate, compare
@@ -51,7 +52,12 @@ class ComparedInstance:
             why = self.after.error
             return f"{self.after.error_kind}: {why}" if why else "one half is not judged"
         missing = [part.replace("_", " ") for part in self.after.missing]
-        return f"missing: {', '.join(missing)}" if missing else ""
+        told = [f"missing: {', '.join(missing)}"] if missing else []
+        if self.after.malformed and missing:
+            told.append(
+                f"no action in {counted(self.after.malformed, 'step')}, at first: {self.after.malformed_why}"
+            )
+        return "; ".join(told)
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,9 +152,7 @@ def _change(
 
     news = {key(row): row for row in new}
     cases = tuple(
-        ComparedInstance(" ".join(map(str, key(row))), row, news.get(key(row)))
-        for row in old
-        if row.outcome is not None
+        ComparedInstance(_name(row, unit), row, news.get(key(row))) for row in old if row.outcome is not None
     )
     judged = {case.name: case for case in cases if case.kind != "error"}
     clusters: dict[Hashable, Hashable] = {name: case.before.subject for name, case in judged.items()}
@@ -158,6 +162,15 @@ def _change(
         clusters,
     )
     return SuccessChange(each, unit, cases, found, (rate_of(old), rate_of(new)), problems, versions)
+
+
+def _name(row: TrialRow, unit: str) -> str:
+    """An instance in words."""
+    repeat = f", repeat {row.repeat + 1}" if row.repeat else ""
+    if isinstance(row, EpisodeRow):
+        where = "" if unit == "pairs" else f"{f', {row.half} half' if row.pair else ''}, {row.scenario}"
+        return f"{row.task}{where}, seed {row.seed}{repeat}"
+    return " ".join(map(str, row.instance))
 
 
 def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
@@ -299,6 +312,8 @@ def junit(found: Sequence[SuccessChange]) -> str:
             entry = ElementTree.SubElement(suite, "testcase", name=case.name, classname=case.before.subject)
             element = {"lost": "failure", "error": "error"}.get(case.kind)
             if element:
-                ElementTree.SubElement(entry, element, message=case.why or "not solved now")
+                told = ElementTree.SubElement(entry, element, message=case.why or "not solved now")
+                if case.after is not None:
+                    told.text = f"trial {case.after.id}: `automotive-cosim serve` with its folder shows each step"
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"

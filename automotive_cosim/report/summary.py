@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Hashable, Iterable, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from itertools import combinations
 from operator import itemgetter
 from typing import Any
@@ -12,7 +12,7 @@ from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import EDITION_2026, EDITION_2026_ROWS, PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, not_judged, pairs
-from automotive_cosim.report.stats import Rate, compare, mean, rate
+from automotive_cosim.report.stats import Comparison, Rate, compare, mean, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.trial_row import TrialRow
@@ -28,10 +28,11 @@ DIMENSIONS = {
     Dimension.DRIVING_ALIGNMENT: "Driving alignment",
     Dimension.ENVIRONMENT_ALERTS: "Environment alerts",
 }
-RATES = (
-    "Per cent of the planned episodes, with 95 % Wilson intervals at the effective number of episodes (tasks are "
-    "clusters), then successes/planned episodes. Episodes that errored or were not run count as failures here; "
-    "their number is shown separately."
+RATES = "Per cent of the planned episodes (95 % interval), then successes/planned."
+HOW_RATES = (
+    "In all tables, rates are per cent of the planned episodes, with 95 % Wilson intervals at the effective number "
+    "of episodes (tasks are clusters), then successes/planned episodes. Episodes that errored or were not run "
+    "count as failures; their number is shown separately."
 )
 
 SuccessOf = Callable[[Any], bool | None]
@@ -62,15 +63,21 @@ def tables(results: Results) -> list[Table]:
     return [table for table in made if table.rows]
 
 
+def dimensions(results: Results) -> list[Dimension]:
+    """The dimensions of which somebody has episodes."""
+    found = {row.dimension for each in results.contestants for row in results.of(each)}
+    return [name for name in DIMENSIONS if name in found]
+
+
 def main(results: Results) -> Table:
-    """Success by method and input over the four dimensions, laid out like the paper's main table."""
+    """Success by method and input over the dimensions that ran, laid out like the paper's main table."""
+    ran = dimensions(results)
     rows: list[TableRow] = []
     for each in results.contestants:
         firsts = [row for row in results.of(each) if row.half == "first"]
-        cells = [rate_cell(row for row in firsts if row.dimension == name) for name in DIMENSIONS]
+        cells = [rate_cell(row for row in firsts if row.dimension == name) for name in ran]
         rows.append((each.base_model, each.method, input_of(each), *cells))
-    rows.append(("none", "Human", "screen", *["not measured"] * len(DIMENSIONS)))
-    columns = ("Base model", "Method", "Input", *DIMENSIONS.values())
+    columns = ("Base model", "Method", "Input", *(DIMENSIONS[name] for name in ran))
     note = f"First halves of the tasks only, as in the paper. {RATES}"
     return Table("main", "Success by method and input", columns, tuple(rows), note, heads=3)
 
@@ -92,7 +99,7 @@ def progress(results: Results) -> Table:
             )
         )
     columns = ("Contestant", "Planned", "Judged", "Errors", "Not run", "Success", "Pairs")
-    note = " ".join(filter(None, ("All episodes of each contestant, both halves.", results.unspoken, RATES)))
+    note = " ".join(filter(None, ("All episodes of each contestant, both halves.", results.unspoken, HOW_RATES)))
     return Table("progress", "Planned and run", columns, tuple(rows), note)
 
 
@@ -255,16 +262,16 @@ def taps(results: Results) -> Table:
 
 
 def comparisons(results: Results) -> Table:
-    """Each contestant against each other, on the instances on which both were judged."""
+    """Each contestant against each other, the better one first, on the instances on which both were judged."""
+    judged = {each: _judged(results.of(each)) for each in results.contestants}
     rows: list[TableRow] = []
     for first, second in combinations(results.contestants, 2):
-        ones, others = _judged(results.of(first)), _judged(results.of(second))
-        found = compare(
-            {key: row.has_succeeded for key, row in ones.items()},
-            {key: row.has_succeeded for key, row in others.items()},
-            {key: row.task for key, row in ones.items()},
-        )
+        found = _compared(judged[first], judged[second])
+        if found is not None and found.difference < 0:
+            first, second = second, first
+            found = _compared(judged[first], judged[second])
         if found is not None:
+            ones, others = judged[first], judged[second]
             shared = [key for key in ones if key in others]
             ids = tuple(ones[key].id for key in shared) + tuple(others[key].id for key in shared)
             interval = found.interval
@@ -284,6 +291,14 @@ def comparisons(results: Results) -> Table:
         "comparisons."
     )
     return Table("comparisons", "Compared on the same instances", columns, tuple(rows), note, heads=2)
+
+
+def _compared(ones: Mapping[Hashable, EpisodeRow], others: Mapping[Hashable, EpisodeRow]) -> Comparison | None:
+    return compare(
+        {key: row.has_succeeded for key, row in ones.items()},
+        {key: row.has_succeeded for key, row in others.items()},
+        {key: row.task for key, row in ones.items()},
+    )
 
 
 def by(results: Results, title: str, of: Callable[[EpisodeRow], str], order: Iterable[str] = ()) -> Table:

@@ -127,6 +127,8 @@ class Collector(EpisodeObserver):
             alerts=None if episode is None else alerts(episode.moments[0], episode.moments[-1]),
             **({} if episode is None else questioned(episode.questions)),
             steps=result.steps,
+            malformed=None if episode is None else len(episode.malformed),
+            malformed_why="" if episode is None else next(iter(episode.malformed), ""),
             sim_seconds=result.sim_seconds,
             thought_s=0.0 if episode is None else round(sum(step.thought_s for step in episode.steps), 1),
             speed_compliance=compliance(self._moments),

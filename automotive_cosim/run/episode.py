@@ -204,7 +204,7 @@ class _Run:
         episode = self._episode = Episode.take_over(hand_over, session, Observers(self._observers))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
-            agent.brief(episode.instance, drawn=episode.world.cockpit.drawn)
+            agent.brief(episode.instance, drawn=episode.world.cockpit.drawn, branch=episode.branch)
         end = play_observed(episode, agent, self._answers, self._observers, wall_s)
         if isinstance(agent, Learner) and episode.verdict is not None:
             agent.learn(episode.verdict.success)

@@ -28,6 +28,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
 from automotive_cosim.run.former import plan_values
+from automotive_cosim.run.own_code import own_code
 from automotive_cosim.run.record import STAMPED, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
 from automotive_cosim.run.versions import installed
@@ -269,6 +270,7 @@ def _check(folder: Path) -> None:
 def _manifest(folder: Path, plan: Json, planned: int | None, *, grows: bool) -> None:
     """Writes the manifest, or adds this start to an existing one."""
     now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **stamp()}
+    now["own_code"] = own_code(plan.get("agents", ()))
     if not (folder / "manifest.json").exists():
         count = {} if planned is None else {"episodes": planned}
         manifest: Json = {"format": FORMAT, "plan": plan, **count, "starts": [now]}
@@ -283,6 +285,7 @@ def _manifest(folder: Path, plan: Json, planned: int | None, *, grows: bool) -> 
                 f"{folder / 'manifest.json'} does not list the versions; give --out another folder"
             ) from error
         _same("version", before, now["versions"], folder)
+        _same_code(manifest["starts"][0].get("own_code", {}), now["own_code"], folder)
         manifest["starts"].append(now)
     write_whole(folder / "manifest.json", json.dumps(manifest, indent=1))
 
@@ -292,6 +295,15 @@ def _same(what: str, before: Json, now: Json, folder: Path) -> None:
     if changed:
         told = "; ".join(f"{name} was {before.get(name)!r} and is {now.get(name)!r}" for name in sorted(changed))
         raise UserError(f"{folder} was started with a different {what}: {told}. Give --out another folder")
+
+
+def _same_code(before: Json, now: Json, folder: Path) -> None:
+    changed = sorted(name for name in before if before[name] != now.get(name, before[name]))
+    if changed:
+        raise UserError(
+            f"the code of {', '.join(changed)} has changed since the trials in {folder} were run. Give --out "
+            "another folder, or delete that one"
+        )
 
 
 def _git() -> Json | None:

@@ -32,6 +32,11 @@ class TrialRow(JobRow, ABC):
     agent_error: str | None = None
     """How the agent's side failed, if it did: a failure like any other, never an error."""
     steps: int = 0
+    malformed: int | None = None
+    """Steps lost to answers that were no action, as the agent raised or they could not be read; None in earlier
+    rows."""
+    malformed_why: str = ""
+    """Why the first of them was none."""
     thought_s: float = 0.0
     """Simulated seconds that all answers took."""
     tokens_in: int = 0

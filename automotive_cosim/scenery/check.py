@@ -5,9 +5,10 @@ Each check gives an ``Item``: what was checked, whether it passes, and the figur
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import dataclass
+from datetime import datetime
 from functools import partial
 
 from automotive_cosim.contracts import EgoEnd, Json, LimitSource, Tell
@@ -21,7 +22,7 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference, middle
 from automotive_cosim.traffic.network import Edge, Network
-from automotive_cosim.traffic.posted import sign_mps
+from automotive_cosim.traffic.posted import in_force, sign_mps
 from automotive_cosim.traffic.stability import measure
 from automotive_cosim.traffic.ways import way_through
 
@@ -104,7 +105,7 @@ def _items(scenario: Scenario, quick: bool, tell: Tell) -> Iterator[Item]:
         count = f"{len(network.edges)} edges, {_km(network.edges.values()):.1f} km of road"
         yield Item("loads", True, f"{count}, {scenario.sumo.warm_up_s:g} s of warm-up")
         yield _place(scenario, network)
-        yield _roads(network)
+        yield _roads(network, scenario.start)
         yield from (_street(street, network) for street in scenario.streets)
         rides: dict[str, Ride] = {}
         for trip in scenario.ego.trips:
@@ -139,7 +140,7 @@ def _same_clock(scenario: Scenario, place: Place) -> bool:
     return there.utcoffset() == scenario.start.utcoffset()
 
 
-def _roads(network: Network) -> Item:
+def _roads(network: Network, start: datetime) -> Item:
     edges = tuple(network.edges.values())
     whole = _km(edges)
     named = _km(edge for edge in edges if edge.name) / whole
@@ -147,9 +148,19 @@ def _roads(network: Network) -> Item:
     tunnels = _km(edge for edge in edges if edge.in_tunnel)
     names = len({edge.name for edge in edges if edge.name})
     length = f"{named:.0%} of their length named, limits posted on {posted:.0%}"
-    timed = _km(edge for edge in edges if edge.timed_limits)
-    clock = f", limits by the clock on {timed:.1f} km" if timed else ""
-    return Item("roads", True, f"{names} streets, {length}, {tunnels:.1f} km of tunnel{clock}")
+    return Item("roads", True, f"{names} streets, {length}, {tunnels:.1f} km of tunnel{by_clock(edges, start)}")
+
+
+def by_clock(edges: Sequence[Edge], start: datetime) -> str:
+    """Where signs have hours, which SUMO's network file does not know: it has the limit of the other hours."""
+    timed = [edge for edge in edges if edge.timed_limits]
+    if not timed:
+        return ""
+    now = [edge for edge in timed if in_force(edge.timed_limits, start)]
+    return (
+        f", limits by the clock on {_km(timed):.1f} km: at {start:%H:%M} {_km(now):.1f} km of it have another limit"
+        " than in the network's file"
+    )
 
 
 def _street(street: Street, network: Network) -> Item:

@@ -11,14 +11,25 @@ from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.geo.place import shipped
 from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.tasking.catalogue import described
-from automotive_cosim.tasking.task import Basis, Half
+from automotive_cosim.tasking.parameters import FromCockpit
+from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasking.words import choices_in_words, half_in_words
 from automotive_cosim.tasks import CATALOGUE
 
 
 def tasks() -> Json:
     """The catalogue, a line for each task."""
-    return {"tasks": [described(task) for task in CATALOGUE.values()]}
+    return {"tasks": [described(task) | {"said": _said(task)} for task in CATALOGUE.values()]}
+
+
+def _said(found: Task) -> str:
+    """What the driver may say, with the first choice of each parameter; what is drawn from the cockpit's content is
+    named by its kind."""
+    values = {
+        name: f"‹{choices.kind.replace('_', ' ')}›" if isinstance(choices, FromCockpit) else choices[0]
+        for name, choices in found.parameters.items()
+    }
+    return found.templates[0].format(**values)
 
 
 def task(name: str) -> Json:

@@ -75,6 +75,8 @@ ROOM_KINDS = frozenset({AlertKind.CORRIDOR, AlertKind.YIELD, AlertKind.MOVE_OVER
 
 WAKING_KINDS = frozenset({AlertKind.FATIGUE, AlertKind.DISTRACTION})
 
+GIVE_WAY_M = 500.0
+"""A driver gives way by stopping no farther on, half a minute at 60 km/h; not beyond a long tunnel."""
 GIVE_WAY_S = 12.0
 """How long a driver waits at the side, or keeps to the kerb lane, to let an emergency vehicle pass."""
 
@@ -109,6 +111,7 @@ EARLY_MPS2 = 2.5
 """How hard an attentive driver brakes for what stands ahead: most people's decelerations before a signal lie below
 (Gates and others, 2007: 85th percentile 3.0, mean 2.2 m/s2)."""
 RELEASED = "driver_released"
+GOES_ON = "driver_goes_on"
 DRIVES_ON = "driver_drives_on"
 PARKS = "driver_parks"
 SETS_OFF = "driver_sets_off"
@@ -159,8 +162,8 @@ class Pedals(Protocol):
         """Hazard lights."""
         ...
 
-    def pull_over(self, state: DrivingState, for_s: float) -> str:
-        """Stops at the side as soon as possible, for a time; returns where.
+    def pull_over(self, state: DrivingState, for_s: float, within_m: float = math.inf) -> str:
+        """Stops at the side as soon as possible, for a time, and no farther on than that; returns where.
 
         Raises:
             RefusedError: there is no place for it.
@@ -213,6 +216,11 @@ class _Bounds:
     advised_under: float | None = None
     """The limit at which the advice was given, and with which it ends."""
     advised_until_s: float = math.inf
+
+    def advice_is_over(self, now: Instant) -> bool:
+        """Whether a speed was advised until now: its time is over, or the limit is another."""
+        is_over = now.limit_mps != self.advised_under or now.time_s >= self.advised_until_s
+        return self.advised < math.inf and is_over
 
 
 @dataclass(slots=True)
@@ -301,12 +309,15 @@ class Driver:
         if self._forecast is None:
             self._forecast = Forecast(self.plan.weather, now.time_s, self.plan.settles_s)
             self._departed_s = now.time_s
+        before = self._profile
         if self._moods < len(self.plan.moods):
             self._change_mood(now.time_s - self._departed_s)
         if self.plan.at_schools:
             self._pass_school(now.state.road)
+        if self._profile is not before and self._advised_until_s < math.inf:
+            events = (self._release(now.time_s, "what was advised has ended"),)
         if self._halts < len(self.plan.halts):
-            events = tuple(self._halt(self.plan.halts[self._halts], now))
+            events += tuple(self._halt(self.plan.halts[self._halts], now))
         if now.time_s >= self._forecast.until_s:
             self._meet(self._forecast.read(now.time_s))
         if self._intents:
@@ -419,6 +430,10 @@ class Driver:
             self._advised_until_s = now.time_s
         if now.time_s >= self._advised_until_s:
             yield self._release(now.time_s, "what was advised has ended")
+        elif bounds.advice_is_over(now):
+            bounds.advised = math.inf
+            kind, goes = ("driver_holds", "no faster than the limit") if self._law_abiding else (GOES_ON, "on")
+            yield Event(now.time_s, kind, f"driver goes {goes}; the advised speed has ended")
 
     def _release(self, now_s: float, why: str) -> Event:
         """Drives as without any advice."""
@@ -446,7 +461,7 @@ class Driver:
             pedals.change_lane(-state.road.lane_index, GIVE_WAY_S)
             return Event(state.time_s, "driver_gives_way", f"driver keeps to the lane at the kerb, {after}")
         try:
-            where = pedals.pull_over(state, GIVE_WAY_S)
+            where = pedals.pull_over(state, GIVE_WAY_S, GIVE_WAY_M)
         except RefusedError as refusal:
             return Event(state.time_s, "driver_cannot_stop", f"driver cannot give way: {refusal}")
         return Event(state.time_s, "driver_gives_way", f"driver stops at the side {where}, {after}")
@@ -562,9 +577,7 @@ class Driver:
         """Sets factor and upper bound; from a higher speed both decrease at ``_easing_mps2``."""
         limit_mps = now.limit_mps
         bounds = self._bounds
-        if bounds.advised < math.inf and (
-            limit_mps != bounds.advised_under or now.time_s >= bounds.advised_until_s
-        ):
+        if bounds.advice_is_over(now):
             bounds.advised = math.inf
         factor, top_mps = self._chosen_factor(limit_mps), self._bound_mps()
         wanted_mps = top_mps if limit_mps is None else min(top_mps, factor * limit_mps)

@@ -144,11 +144,12 @@ class ScriptedCar:
     def set_hazards(self, on: bool) -> None:
         """Does nothing: nobody is there to see them."""
 
-    def pull_over(self, state: DrivingState, for_s: float) -> str:
+    def pull_over(self, state: DrivingState, for_s: float, within_m: float = math.inf) -> str:
         """Stops as soon as possible with gentle braking."""
         needed_m = state.speed_mps**2 / (2 * STOPPING_MPS2) + STOPPING_RESERVE_M
         stop_m = self._along_m + needed_m
-        if stop_m >= self._layout.starts_m[-1] or self._layout.stretches[self._layout.index_at(stop_m)].in_tunnel:
+        is_beyond = stop_m >= self._layout.starts_m[-1] or needed_m > within_m
+        if is_beyond or self._layout.stretches[self._layout.index_at(stop_m)].in_tunnel:
             raise RefusedError(say("there is no place to stop within the next metres"))
         self._stop_m, self._stop_s = stop_m, for_s
         return f"in {needed_m:.0f} m"

@@ -491,6 +491,7 @@ def road_of(edge: Edge) -> Road:
         in_tunnel=edge.in_tunnel,
         shape_m=edge.shape_m,
         school_zone=edge.school_zone,
+        limit_hours="; ".join(limit.hours.text for limit in edge.timed_limits),
     )
 
 

@@ -130,7 +130,7 @@ class SumoPedals:
             self._set_mps = top_mps
             self._sumo.set_max_speed(self._ego, top_mps)
 
-    def pull_over(self, state: DrivingState, for_s: float) -> str:
+    def pull_over(self, state: DrivingState, for_s: float, within_m: float = math.inf) -> str:
         """Stops beside the lane on the first edge of the route that is long enough and not in a tunnel."""
         needed_m = state.speed_mps**2 / (2 * STOPPING_MPS2) + STOPPING_RESERVE_M
         route = self._sensor.route
@@ -139,12 +139,14 @@ class SumoPedals:
             earliest_m = self._sensor.position_m + needed_m - route.position_m(index, 0.0)
             stop_m = max(earliest_m, min(15.0, edge.length_m / 2))
             if stop_m <= edge.length_m - 5.0 and not edge.in_tunnel:
+                away_m = route.position_m(index, stop_m) - self._sensor.position_m
+                if away_m > within_m:
+                    raise RefusedError(say("there is no place to stop within the next metres"))
                 lane_index = int(edge.lane_ids[0].rpartition("_")[2])
                 try:
                     self._sumo.set_stop(self._ego, edge.edge_id, stop_m, lane_index, for_s, PARKING)
                 except self._sumo.refusals as error:
                     raise RefusedError(str(error)) from error
-                away_m = route.position_m(index, stop_m) - self._sensor.position_m
                 return f"in {away_m:.0f} m" + (f" on {edge.name}" if edge.name else "")
         raise RefusedError(say("there is no place to stop on the rest of the route"))
 

@@ -64,7 +64,7 @@ for half in ("first", "second"):
         print(f"{half:6} half, {name:8}", "success" if result.success else "failure")
 
 # %% [markdown]
-# T3A says the same in both halves, so it cannot win both. Only the agent that knows its place wins the pair.
+# T3A says the same in both halves, so it cannot win both. Only the agent that knows where it is wins the pair.
 #
 # ## The same agent without its place
 #

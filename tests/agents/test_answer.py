@@ -58,6 +58,20 @@ def test_near_misses_are_forgiven(text):
     assert to_json(answer.action) == HOME
 
 
+def test_what_gpt_oss_thinks_before_it_answers_is_left_out():
+    thoughts = '<|channel|>analysis<|message|>{"action_type": "navigate_back"}<|end|><|start|>assistant'
+    text = f'{thoughts}<|channel|>final<|message|>Action: {{"action_type": "click", "index": 3}}<|return|>'
+    assert read(text).action == Action(ActionType.CLICK, index=3)
+
+
+def test_punctuation_of_full_width_is_read_and_texts_keep_theirs():
+    greeting = "\u4f60\u597d\uff0c\u4e16\u754c"
+    told = {"action_type": "answer", "text": greeting}
+    names = (f"\u201c{name}\u201d\uff1a\u201c{value}\u201d" for name, value in told.items())
+    wide = "Action\uff1a\uff5b" + "\uff0c".join(names) + "\uff5d"
+    assert read(wide).action == Action(ActionType.ANSWER, text=greeting)
+
+
 @pytest.mark.parametrize("token", ["<|im_end|>", "</s>", "<|eot_id|>", "<|im_end|>\n<|im_start|>user\nAction: {}"])
 def test_the_token_that_ends_an_answer_is_no_part_of_it(token):
     answer = read(f"Situation: cold\nAction: {json.dumps(HOME)}{token}")

@@ -334,6 +334,10 @@ def test_a_point_is_read_in_every_spelling(box: str) -> None:
         "Thought: Action: none yet, (so) it's time.\nAction: click(start_box='(644,364)')",
         "1. The fan.\nAction: click(start_box='<|box_start|>(644,364)<|box_end|>')",
         "click(start_box='(644,364)')",
+        "Action: Click(start_box='(644,364)')",
+        "Action: <action>click(start_box='(644,364)')</action>",
+        "Action: click(x=644, y=364)",
+        "Action: click(position='(644,364)')",
         "Action: left_single(point='<point>644 364</point>')",
     ],
 )
@@ -359,6 +363,9 @@ def test_an_answer_of_ui_tars_is_read_though_its_end_or_its_punctuation_is_not_a
             "scroll(direction='down', start_box='(300,300)'",
             [Action(ActionType.SCROLL, index=0, direction=Direction.DOWN)],
         ),
+        ("scroll(up)", [Action(ActionType.SCROLL, direction=Direction.UP)]),
+        ("press_back", [Action(ActionType.NAVIGATE_BACK)]),
+        ("`finished`.", [Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)]),
         ("finished(content='done')<|im_end|>", [Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)]),
     ],
 )  # fmt: skip

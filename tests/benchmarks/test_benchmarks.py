@@ -59,6 +59,7 @@ CASES = {
         )
     ),
     "geo_context": Smallest(("2",)),
+    "interfaces": Smallest(("--help",)),
     "large_imports": Smallest(("--edges", "60")),
     "crime": Smallest(("--help",)),
     "measures": Smallest(),

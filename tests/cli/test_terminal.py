@@ -28,6 +28,7 @@ from automotive_cosim.cli.live import Live
 from automotive_cosim.cli.main import CLOSED_PIPE
 from automotive_cosim.cli.terminal import Plain, escaped
 from automotive_cosim.formats.plain import plain
+from automotive_cosim_main import LOADING
 from tests.cli.streams import OUTPUTS
 from tests.cli.test_main import every_command
 
@@ -157,8 +158,7 @@ def test_a_name_of_any_letters_ends_without_a_traceback(tmp_path: Path, name: st
         env=surroundings,
     )
     assert done.returncode == 2
-    assert done.stderr.startswith(b"error: ")
-    assert done.stderr.count(b"\n") == 1
+    assert [line.partition(b" ")[0] for line in done.stderr.splitlines()] == [b"loading", b"error:"]
 
 
 PRINTS = ("--help", "agents list --json", "show signals", "show drives", "show schema plan")
@@ -188,3 +188,21 @@ def test_no_command_ends_with_a_traceback_whatever_its_output_and_names(tmp_path
     assert codes["closed"] == {0}
     assert codes["without a reader"] == {CLOSED_PIPE}
     assert codes["full"] == {2}
+
+
+def test_what_loads_is_told_before_anything_is_imported(tmp_path: Path) -> None:
+    (tmp_path / "gymnasium.py").write_text("raise SystemExit(9)\n", encoding="utf-8")
+    for words, told in (
+        (["run"], "loading tasks and agents\n"),
+        (["--debug", "scenarios", "import", "x.osm"], "loading the importer\n"),
+        (["scenarios", "list"], ""),
+        (["run", "--help"], ""),
+        (["drive", "run"], "loading drives and agents\n"),
+    ):
+        code = "from automotive_cosim_main import main; main()"
+        done = subprocess.run([sys.executable, "-c", code, *words], cwd=tmp_path, capture_output=True, text=True)
+        assert (done.returncode, done.stderr) == (9, told), words
+
+
+def test_every_command_that_loads_long_is_one() -> None:
+    assert set(LOADING) <= {" ".join(path) for path in every_command()}

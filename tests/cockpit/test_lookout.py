@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
@@ -17,8 +18,11 @@ from automotive_cosim.cockpit.signals import CABIN, ENERGY, HMI, OCCUPANT, SEAT,
 from automotive_cosim.contracts import (
     Connectivity,
     IncidentKind,
+    Limit,
+    LimitSource,
     OtherVehicle,
     RoadIncident,
+    RoadNetwork,
     Sight,
     SightKind,
     Surroundings,
@@ -125,6 +129,56 @@ def test_an_incident_elsewhere_is_not_ahead(make: Make, around: Surroundings) ->
     assert SightKind.ROADWORKS not in by_kind(cockpit)
 
 
+def test_a_limit_ahead_is_seen_with_the_hours_of_its_sign(network: RoadNetwork, around: Surroundings) -> None:
+    """But not where the road has that limit at all hours."""
+    hours = "Mo-Fr 08:00-09:30"
+    roads = tuple(
+        replace(road, limit_hours=hours, limit_mps=14.0) if road.edge_id == "e6_6" else road
+        for road in network.roads
+    )
+    here_m = next(road.length_m for road in roads if road.edge_id == "e6_5")
+    away_m = here_m - around.driving.road.lane_position_m + 15.0  # with the junction before it
+    for mps, told in ((8.0, hours), (14.0, "")):
+        limit = Limit(mps, LimitSource.POSTED)
+        ahead = replace(around.driving.ahead, next_limit=limit, next_limit_distance_m=away_m)
+        cockpit = Cockpit(replace(network, roads=roads), rng=np.random.default_rng(1), lookout=True)
+        cockpit.sense(replace(around, driving=replace(around.driving, ahead=ahead)), 0.0)
+        assert by_kind(cockpit)[SightKind.LIMIT].hours == told
+
+
+def jam_told(cockpit: Cockpit, around: Surroundings, driven_m: float) -> str:
+    """What is told of the jam so far on, by the news that came at the start."""
+    driving = replace(around.driving, distance_m=around.driving.distance_m + driven_m)
+    cockpit.sense(replace(around, driving=driving), 1.0)
+    sight = by_kind(cockpit).get(SightKind.JAM)
+    return "" if sight is None else sight.text
+
+
+def test_a_jam_is_ahead_then_around_the_car_and_then_behind_it(make: Make, around: Surroundings) -> None:
+    cockpit = make(surroundings=around, lookout=True)
+    assert jam_told(cockpit, around, 820.0) == "Traffic jam in 80 m"
+    assert jam_told(cockpit, around, 1180.0) == "In a traffic jam, 20 m left"
+    assert by_kind(cockpit)[SightKind.JAM].distance_m == 0.0
+    assert by_kind(cockpit)[SightKind.JAM].value == 20.0
+    assert not jam_told(cockpit, around, 1201.0)
+
+
+def test_the_tail_that_is_reported_on_a_slow_road_is_ahead_until_it_is_reached(
+    make: Make, around: Surroundings
+) -> None:
+    """The road counts as slow from its start, where nobody queues."""
+    tail = RoadIncident(IncidentKind.JAM, "e6_5", 110.0)
+    for far_m, tails, told in (
+        (0.0, (tail,), "Traffic jam in 70 m"),
+        (0.0, (), "In a traffic jam, 300 m left"),
+        (20.0, (replace(tail, edge_id="n7_6"),), "Traffic jam in 20 m"),
+        (0.0, (replace(tail, edge_id="n7_6"),), "In a traffic jam, 300 m left"),
+    ):
+        ahead = replace(around.driving.ahead, jam_distance_m=far_m, incidents=tails)
+        cockpit = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)), lookout=True)
+        assert by_kind(cockpit)[SightKind.JAM].text == told, (far_m, tails)
+
+
 def test_news_comes_once_a_minute_and_only_online(make: Make, around: Surroundings) -> None:
     cockpit = make(surroundings=around, lookout=True)
     news = replace(
@@ -155,11 +209,14 @@ def test_every_sight_is_translated(make: Make, around: Surroundings, language: s
     )
     for cockpit_ in (parked, empty):
         cockpit_.sense(replace(standing, parked=True), 1.0)
-    told = [sight.text for each in (cockpit, riding, parked, empty) for sight in each.sights]
+    ahead = replace(around.driving.ahead, jam_distance_m=0.0)
+    queueing = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)), lookout=True)
+    told = [sight.text for each in (cockpit, riding, parked, empty, queueing) for sight in each.sights]
     assert {
         "Seat belt unbuckled: Rear left",
         "Driver has left, aboard: Child",
         "Driver has left, nobody aboard",
+        "In a traffic jam, 300 m left",
     } <= {*told}
     for text in told:
         words = said(text, language)

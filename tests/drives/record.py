@@ -3,6 +3,8 @@
 python -m tests.drives.record            # families whose script has changed since
 python -m tests.drives.record --renew    # drives these and stores what happened: some ten seconds a drive
 python -m tests.drives.record --renew all
+python -m tests.drives.record --renew border_july grid_june
+python -m tests.drives.record --staged   # how many of the staged situations came off
 """
 
 from __future__ import annotations
@@ -23,7 +25,7 @@ from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, Tracker
 from automotive_cosim.drives.events.errands import UNASKED
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import facts_of
-from automotive_cosim.drives.script import script_json
+from automotive_cosim.drives.script import APART_S, script_json
 from automotive_cosim.drives.wakes import Alarm
 from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
@@ -105,6 +107,23 @@ def drive(family: str, simulations: Simulations) -> Recorded:
     return Recorded(sha(family), begun_s, driven_s, events, tuple(wakes_s), told, tuple(facts_s))
 
 
+def came_off() -> list[tuple[bool, bool]]:
+    """For each staging of the drives on record, whether it is a look-alike, and whether it came off: events oblige
+    within five minutes, look-alikes to nothing within 45 s, as in ``benchmarks/drives.py``."""
+    came = []
+    for family, seen in recorded().items():
+        for one in FAMILIES[family].draw(SEED).staged:
+            due_s = [
+                (event.observable_s if one.is_lookalike else event.obliged_s) - seen.begun_s
+                for event in seen.events
+                if event.kind == one.kind and event.obliged_s is not None
+            ]
+            until_s = one.at_s + (APART_S if one.is_lookalike else 300.0)
+            is_due = any(one.at_s - 1 <= at_s <= until_s for at_s in due_s)
+            came.append((one.is_lookalike, is_due is not one.is_lookalike))
+    return came
+
+
 def renew(families: Iterable[str], known: dict[str, Recorded]) -> None:
     """Drives these families and stores what happened, with what is known of others."""
     with closing(Simulations(count_limit=1)) as simulations:
@@ -116,10 +135,14 @@ def renew(families: Iterable[str], known: dict[str, Recorded]) -> None:
 
 
 if __name__ == "__main__":
-    if "--renew" in sys.argv:
-        if "all" in sys.argv:
-            renew(FAMILIES, {})
-        else:
-            renew(outdated(), dict(recorded()))
+    named = [each for each in sys.argv if each in FAMILIES]
+    if "--staged" in sys.argv:
+        for halves, is_lookalike in (("events", False), ("look-alikes", True)):
+            came = [did for lookalike, did in came_off() if lookalike is is_lookalike]
+            print(f"{halves}: {sum(came)} of {len(came)}")
+    elif "all" in sys.argv:
+        renew(FAMILIES, {})
+    elif "--renew" in sys.argv:
+        renew(named or outdated(), dict(recorded()))
     else:
         print(*outdated() or ["every family is on record as it is drawn now"], sep="\n")

@@ -17,6 +17,7 @@ from automotive_cosim.cockpit.signals import HMI, HVAC
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.contracts.given import Language
+from automotive_cosim.cosim.car import with_cause
 from automotive_cosim.drives.errands import AFTER_S, ASKED_APART_S, SPARE_S, said, understood, with_errands
 from automotive_cosim.drives.events import KINDS, Tracker, WatchAct
 from automotive_cosim.drives.families import FAMILIES
@@ -35,6 +36,14 @@ SEEDS = (0, 1, 2)
 DRIVER = HVAC.DRIVER_TEMPERATURE.path
 WARMTH = Errand(ErrandKind.CLIMATE, 5.0, "driver", "23")
 MESSAGE = Errand(ErrandKind.MESSAGE, 5.0, "Mia Frost", "On my way")
+
+
+def test_nobody_speaks_of_a_call_that_does_not_ring() -> None:
+    call = Errand(ErrandKind.CALL, 5.0, "Tom Hale")
+    errands = (WARMTH, call)
+    assert with_cause(errands, 4.0, 5.0, "Tom Hale") == errands
+    assert with_cause(errands, 4.0, 5.0, "") == (WARMTH,)
+    assert with_cause(errands, 3.0, 4.0, "") == with_cause(errands, 5.0, 6.0, "") == errands
 
 
 @over((family, seed) for family in FAMILIES for seed in SEEDS)

@@ -35,6 +35,7 @@ from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.events.tracker import CLOSE_S, REOPEN_S
 from automotive_cosim.drives.margins import BORDER_S
+from automotive_cosim.traffic.base import Event
 from tests.drives.scenes import NOON, found, limit, moment, stream, vehicle
 
 PARIS_TIME = ZoneInfo("Europe/Paris")
@@ -408,3 +409,30 @@ def test_rules_that_are_not_verified_oblige_to_nothing() -> None:
     snow = {"weather_code": 75, "visibility": 600.0, "signals": UNLIT, "at": NOON}
     assert not [event for event in found(stream(10, **snow), "lamps") if not event.lookalike]
     assert [event for event in found(stream(10, position=(8.6, 46.6), **snow), "lamps") if not event.lookalike]
+
+
+def test_a_road_that_loses_its_grip_is_on_its_way_to_ice_and_one_that_is_wet_is_not() -> None:
+    """So that a warning before the ice is a warning of it."""
+    falling = [moment(float(second), kmh=80.0, friction=1.0 - 0.02 * second) for second in range(40)]
+    (event,) = (event for event in found(falling, "slippery") if event.obliged_s is not None)
+    assert event.observable_s < event.obliged_s - 15.0
+    wet = found([moment(float(second), kmh=80.0, friction=0.75) for second in range(40)], "slippery")
+    assert [(event.subject, event.obliged_s) for event in wet] == [("wet", None)]
+
+
+@pytest.mark.parametrize(
+    ("events", "is_due"),
+    [
+        ((), True),
+        (("driver_pulls_over",), False),
+        (("driver_parks",), False),
+        (("driver_pulls_over", "driver_drives_on"), True),
+        (("driver_parks", "driver_sets_off"), True),
+    ],
+)
+def test_whoever_stands_at_the_side_need_not_make_room(events: tuple[str, ...], is_due: bool) -> None:
+    drive = [moment(float(second), kmh=0.0, **sight(SightKind.EMERGENCY_VEHICLE, 100.0)) for second in range(20)]
+    drive = [replace(each, driving=replace(each.driving, standing_s=60.0)) for each in drive]
+    told = tuple(Event(0.0, kind, "driver") for kind in events)
+    (event,) = found([replace(drive[0], events=told), *drive[1:]], "blue_light")
+    assert (event.obliged_s is not None) is is_due

@@ -16,7 +16,7 @@ import pytest
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated, take_seats
 from automotive_cosim.cockpit.signals import ENERGY, Signals, named
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.family import FEWEST, MOST, PAUSE_S, Season
+from automotive_cosim.drives.family import FEWEST, LAST_S, MOST, PAUSE_S, Season
 from automotive_cosim.drives.script import (
     APART_S,
     LONGEST_S,
@@ -26,7 +26,7 @@ from automotive_cosim.drives.script import (
     read_script,
     script_json,
 )
-from automotive_cosim.drives.staging import AT_SCHOOLS, ONCE, SCHOOL_ZONE, STAGED, STAGINGS, Setting
+from automotive_cosim.drives.staging import AT_SCHOOLS, COMES_S, ONCE, SCHOOL_ZONE, STAGED, STAGINGS, Setting
 from automotive_cosim.errors import UserError
 from automotive_cosim.proof.world import implausible
 from automotive_cosim.scenarios import load, shipped
@@ -77,6 +77,9 @@ def test_what_is_staged_lies_apart_and_leaves_a_quiet_spell(family: Any) -> None
         times_s = [one.at_s for one in script.staged]
         assert all(later - earlier >= APART_S for earlier, later in pairwise(times_s))
         assert times_s[-1] <= script.duration_s - APART_S
+        for one in script.staged:
+            comes_s = 0.0 if one.is_lookalike else COMES_S.get(one.kind, 0.0)
+            assert one.at_s + comes_s <= script.duration_s - LAST_S, one
         begins_s, ends_s = script.quiet_s
         assert ends_s - begins_s >= QUIET_S
         assert not any(begins_s <= at_s < ends_s for at_s in times_s)

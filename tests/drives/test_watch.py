@@ -133,6 +133,23 @@ def test_what_has_ended_wakes_nobody_and_is_read_with_the_next_look() -> None:
     assert "school zone (changed): ended, no longer ahead" in read
 
 
+def test_a_jam_that_the_car_has_reached_is_read_by_what_is_left_of_it() -> None:
+    ahead, within = Sight(SightKind.JAM, "", 300.0), Sight(SightKind.JAM, "", 0.0, 140.0)
+    assert "jam: in 300 m, 22 s at this speed" in noticed([moment(sights=(ahead,))]).splitlines()
+    assert "jam: the car is in it, 140 m are left" in noticed([moment(sights=(within,))]).splitlines()
+    assert woken([{"sights": (ahead,)}, {"sights": (within,)}, {"sights": (within,)}])[1] == []
+
+
+def test_a_limit_that_falls_for_a_school_is_read_with_the_hours_of_its_sign() -> None:
+    hours = "Mo-Fr 08:00-09:30"
+    sign = {"next_limit": limit(40), "next_limit_distance_m": 100.0}
+    seen = tuple(Sight(kind, "", 100.0, hours=hours) for kind in (SightKind.SCHOOL_ZONE, SightKind.LIMIT))
+    read = noticed([moment(sights=seen, **sign)]).splitlines()
+    assert "limit ahead: 40 km/h in 100 m, 7 s at this speed, signed for Mo-Fr 08:00-09:30" in read
+    assert "school zone: in 100 m, 7 s at this speed, signed for Mo-Fr 08:00-09:30" in read
+    assert "limit ahead: 40 km/h in 100 m, 7 s at this speed" in noticed([moment(**sign)]).splitlines()
+
+
 def test_a_gap_that_becomes_shorter_than_a_second_wakes_again_and_one_that_opens_does_not() -> None:
     gaps_s = [1.9] * 3 + [0.8] * 3 + [1.5] * 3 + [0.8] * 3 + [1.5] * 13 + [0.8] * 3
     told = woken([{"leader": vehicle(gap_s * 50 / 3.6)} for gap_s in gaps_s])
@@ -220,6 +237,13 @@ def test_beyond_the_radar_there_is_no_vehicle_ahead() -> None:
     assert "vehicle ahead" in noticed([moment(leader=vehicle(140.0))])
 
 
+def test_who_hardly_closes_does_not_close_and_who_creeps_does_not_stand() -> None:
+    slow = {"leader": vehicle(70.0, time_to_collision_s=4288.0)}
+    assert "vehicle ahead: 70 m at 50 km/h, time gap 5.0 s, not closing" in noticed([moment(**slow)])
+    assert "time gap 84.0 s" in noticed([moment(kmh=3.0, **slow)])
+    assert "the car stands" in noticed([moment(kmh=0.0, **slow)])
+
+
 @pytest.mark.parametrize(
     ("name", "signals"),
     [
@@ -257,6 +281,9 @@ def test_what_the_driver_was_asked_for_is_told_as_long_as_it_is_in_force() -> No
     released = (90.0, "released", "drives as before; advice taken back")
     assert driver_words(slows, released, until_s=100) == ["driver: drives as before; advice taken back, 10 s ago"]
     assert driver_words(slows, released, until_s=160) == []
+    over = (60.0, "goes_on", "goes on; the advised speed has ended")
+    assert driver_words(slows, over, until_s=100) == ["driver: goes on; the advised speed has ended, 40 s ago"]
+    assert driver_words(slows, over, until_s=130) == []
     assert driver_words(stops, (90.0, "drives_on", "drives on"), until_s=100) == ["driver: drives on, 10 s ago"]
 
 

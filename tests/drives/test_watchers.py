@@ -88,6 +88,11 @@ def test_distances_are_read_from_the_readings() -> None:
     known = Reader().read(seen(moment(0.0), ["jam: in 500 m, 25 s at this speed"], speed_kmh=72.0))
     assert known is not None
     assert known.away_m("jam") == 500.0
+    known = Reader().read(seen(moment(0.0), ["jam: the car is in it, 140 m are left"]))
+    assert known is not None
+    assert known.away_m("jam") is None
+    known = Reader().read(seen(moment(0.0)))
+    assert known is not None
     assert known.left_km == 8.0
 
 

@@ -23,6 +23,7 @@ from automotive_cosim.agents.settings import T3A
 from automotive_cosim.contracts import Action
 from automotive_cosim.errors import ActionError, ModelError, SetupError, UserError
 from automotive_cosim.models import ChatMessage, make_model
+from automotive_cosim.models.apis import Chat, ChatTools
 from automotive_cosim.models.remote import _Endpoint
 from automotive_cosim.replay.make import Touches, provider_body, texts
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
@@ -239,6 +240,7 @@ def test_a_malformed_answer_is_tried_again(server, body):
         (7, ""),
         ("a\ud800b", "a?b"),
         ([{"type": "text", "text": "a"}, {"type": "text", "text": "b"}], "ab"),
+        (["a", {"type": "text", "text": None}, None], "a"),
     ],
 )
 def test_an_answer_without_text_is_an_empty_one(server, content, text):
@@ -271,6 +273,7 @@ def test_a_number_of_tokens_that_cannot_be_costs_no_answer(server, tokens):
         ({"prompt_tokens": 100, "prompt_tokens_details": {"cached_tokens": None}}, 100, 0),
         ({"prompt_tokens": 100, "prompt_tokens_details": []}, 100, 0),
         ({"prompt_tokens": None}, 0, 0),
+        ({"prompt_tokens": "100"}, 100, 0),
     ],
 )
 def test_cached_tokens_are_part_of_the_question_however_they_are_counted(server, counted, tokens_in, cached):
@@ -303,12 +306,15 @@ def test_calls_that_the_server_took_out_of_the_answer_are_in_its_text(server):
         ("gemini", {"candidates": [{"finishReason": "SAFETY"}]}, "safety"),
         ("gemini", {"promptFeedback": {"blockReason": "OTHER"}}, "other"),
         ("gemini", {"candidates": []}, "no candidates"),
+        ("gemini", {"candidates": [{"content": {"parts": [None, {"functionCall": None}]}}]}, ""),
         ("openai", {"output": []}, ""),
         ("openai", {"output": [], "incomplete_details": {"reason": "content_filter"}}, "content_filter"),
         ("openai", {"output": [{"type": "message", "content": None}]}, ""),
         ("openai", {"output": [{"type": "function_call", "name": "car", "arguments": '{"action_type": '}]}, ""),
         ("openai", {"output": [{"type": "computer_call"}]}, ""),
+        ("openai", {"output": [None, {"type": "computer_call", "actions": [None]}]}, ""),
         ("anthropic", {"content": [], "stop_reason": "refusal"}, "refusal"),
+        ("anthropic", {"content": [None, {"type": "tool_use", "name": "computer", "input": "{}"}]}, ""),
         ("anthropic", {"content": [{"type": "tool_use", "name": "computer", "input": {}}]}, ""),
         (
             "anthropic",
@@ -325,6 +331,31 @@ def test_an_empty_answer_or_a_bad_call_is_the_models_and_is_told(form, body, why
     assert bool(why) == bool(reply.ending)
     with pytest.raises(ActionError):
         acts(form, reply.text)
+
+
+@pytest.mark.parametrize(
+    ("form", "body"),
+    [
+        ("openai", {"status": "failed", "error": {"message": "busy"}, "output": []}),
+        ("anthropic", {"type": "error", "error": {"type": "overloaded_error"}}),
+        ("gemini", {"error": {"code": 503}}),
+        ("", {"choices": [{"finish_reason": "error", "error": {"code": 502}, "message": {"content": "He"}}]}),
+    ],
+)
+def test_an_error_of_the_endpoint_is_not_the_models(form, body):
+    with pytest.raises(ValueError, match="the endpoint reports an error"):
+        ((form and FORMATS[form].api) or Chat()).read(body)
+
+
+@pytest.mark.parametrize("calls", [[None], ["wait"], [{"function": None}], [{"function": {"arguments": "{}"}}], {}])
+def test_calls_that_are_none_are_no_calls(calls):
+    told = {"choices": [{"message": {"content": "so", "tool_calls": calls}}]}
+    assert json.loads(ChatTools().read(told).text) == {"say": "so", "calls": []}
+
+
+def test_calls_without_their_frame_are_read():
+    told = {"choices": [{"message": {"content": None, "tool_calls": [{"name": "wait", "arguments": "{}"}]}}]}
+    assert json.loads(ChatTools().read(told).text) == {"say": "", "calls": [{"name": "wait", "arguments": {}}]}
 
 
 def acts(form: str, text: str) -> list[Action]:

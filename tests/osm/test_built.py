@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.doubts import doubts
 from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.network import Built
+from automotive_cosim.osm.ramps import in_words, widened
 from automotive_cosim.osm.roads import MappedRoad, describe, way_of
 from tests.osm.maps import Map
 
@@ -99,6 +101,7 @@ def test_every_road_is_open_the_way_its_tags_say(build: Build) -> None:
         ({"oneway": "yes", "lanes": "0"}, "+"),
         ({"lanes": "99"}, "+-"),
         ({"oneway": "reversible"}, "+"),
+        ({"oneway": "reversible", "oneway:conditional": "yes @ (05:00-21:00);-1 @ (21:00-05:00)"}, "+-"),
         ({"sidewalk": "both", "cycleway": "lane", "railway": "tram", "bicycle:lanes": "|designated"}, "+-"),
     )
     world = build(ladder([tags for tags, _ in rungs]))
@@ -329,3 +332,24 @@ def test_a_network_that_is_not_as_the_map_says_is_told(build: Build) -> None:
     assert "turn" in {found.what for found in differences(world.map, world.built, world.roads, "DE")}
     next(iter(world.map.nodes.values())).tags["barrier"] = "bollard"  # type: ignore[index]
     assert "barrier" in {found.what for found in differences(world.map, world.built, world.roads, "DE")}
+
+
+def test_lanes_for_leaving_and_joining_are_told_and_are_no_difference(build: Build) -> None:
+    made = Map((8.70, 48.59))
+    made.nodes = {f"m{index}": (index * 300.0, 0.0) for index in range(5)}
+    made.nodes |= {"off": (600.0, -150.0), "on": (300.0, 150.0), "back": (0.0, 300.0)}
+    fast = {"highway": "motorway", "oneway": "yes", "maxspeed": "120"}
+    for index, lanes in enumerate("2232"):
+        made.way(f"m{index} m{index + 1}", **fast, lanes=lanes)
+    made.way("m1 off", highway="motorway_link", oneway="yes", lanes="1")
+    made.way("off m3", highway="motorway_link", oneway="yes", lanes="1")
+    made.way("m4 on", highway="motorway_link", oneway="yes", lanes="1")
+    made.way("on back m0", highway="motorway_link", oneway="yes", lanes="1")
+    world = build(made)
+    found = list(widened(world.built.edges, world.roads))
+    assert {(way_of(each.edge_id), each.mapped, each.built) for each in found} == {(100, 2, 3), (103, 2, 4)}
+    assert in_words(found) == "way 103: 2 as 4, way 100: 2 as 3"
+    assert not list(differences(world.map, world.built, world.roads, world.country))
+    wider = replace(world.roads[101], tags=world.roads[101].tags | {"lanes": "1"})
+    wrong = differences(world.map, world.built, world.roads | {101: wider}, world.country)
+    assert [str(each)[:24] for each in wrong] == ["way 101: lanes 1 is 2 on"]

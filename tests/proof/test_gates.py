@@ -6,6 +6,7 @@ from datetime import timedelta
 
 import pytest
 
+from automotive_cosim.agents.by_calls import translated
 from automotive_cosim.agents.trivial import Random
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, HVAC, SEAT
 from automotive_cosim.contracts import (
@@ -21,7 +22,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.interface.functions import call_of
 from automotive_cosim.proof import gates, sight
-from automotive_cosim.proof.functions import functions_are_not_enough, functions_win, translated
+from automotive_cosim.proof.functions import functions_are_not_enough, functions_win
 from automotive_cosim.proof.ground import Ground, Script
 from automotive_cosim.tasking import verdict
 from automotive_cosim.tasking.checks import (
@@ -301,7 +302,7 @@ def test_a_task_that_wants_nothing_is_seen(ground):
 
 def test_functions_win_what_touch_wins_and_nothing_by_themselves(ground):
     stand = ground(SOUND)
-    assert [call_of(call.action) for call in translated(stand)] == [
+    assert [call_of(call.action) for call in translated(stand.episode.branch())] == [
         ("set_seat_heating", {"which": "driver", "percent": 50.0}),
         ("status", {"goal_status": GoalStatus.COMPLETE}),
     ]

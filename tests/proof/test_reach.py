@@ -29,7 +29,7 @@ def test_at_most_one_half_in_five_hundred_is_not_reached():
     record = reach.read(reach.RECORD)
     assert record.keys() <= NAMES
     standard = [name for name in NAMES if CATALOGUE[name.split("/")[0]].suite is Suite.STANDARD]
-    assert len(record.keys() & standard) >= len(standard) * 0.7
+    assert len(record.keys() & standard) >= len(standard) * 0.6
     assert (
         sum(len(each.missed) for each in record.values()) <= sum(len(each.seeds) for each in record.values()) / 500
     )

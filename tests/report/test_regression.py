@@ -55,6 +55,13 @@ def test_a_fall_is_worse_beyond_what_is_allowed_and_named(tmp_path):
     assert "missing: goal" in told
 
 
+def test_what_an_agent_raised_is_told_where_it_lost(tmp_path):
+    raised = {"malformed": 20, "malformed_why": "agent 'mine' raised ZeroDivisionError: division by zero"}
+    found = changes(write(tmp_path / "a"), write(tmp_path / "b", lost={1}, **raised))
+    for told in (markdown(found, 0.0), junit(found)):
+        assert "no action in 20 steps, at first: agent 'mine' raised ZeroDivisionError" in told
+
+
 def test_an_improvement_is_not_worse(tmp_path):
     found = changes(write(tmp_path / "a", lost={0, 1, 2}), write(tmp_path / "b"))
     assert found[0].count("won") == 3

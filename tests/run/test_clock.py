@@ -31,8 +31,8 @@ class Slow:
     def reset(self, goal):
         self._oracle.reset(goal)
 
-    def brief(self, instance, *, drawn):
-        self._oracle.brief(instance, drawn=drawn)
+    def brief(self, instance, *, drawn, branch):
+        self._oracle.brief(instance, drawn=drawn, branch=branch)
 
     def act(self, observation):
         reply = ModelReply("", seconds=next(self._seconds, 0.0))

@@ -5,6 +5,7 @@ import sys
 import pytest
 
 from automotive_cosim.errors import UserError
+from automotive_cosim.run.own_code import own_code
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_manifest, read_rows, read_trace, trace_file, write_trace
 
@@ -33,6 +34,29 @@ def test_the_newest_line_of_an_episode_holds(tmp_path):
         store.append(JobRow(id="a", error="gone"))
         store.append(JobRow(id="a"))
     assert read_rows(tmp_path / "e", JobRow) == {"a": JobRow(id="a")}
+
+
+def test_results_are_not_resumed_with_other_code_of_the_agent(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    plan = {"agents": ["oracle", "mine:Careful", "a2a:http://127.0.0.1:9", "none_such:Agent"]}
+    for code in ("class Careful: pass\n", "class Careful:\n    pass\n"):
+        (tmp_path / "mine.py").write_text(code, encoding="utf-8")
+        with opened(tmp_path / f"e{len(code)}", plan, JobRow):
+            pass
+        assert list(read_manifest(tmp_path / f"e{len(code)}")["starts"][0]["own_code"]) == ["mine:Careful"]
+    other = opened(tmp_path / "e20", plan, JobRow)
+    with pytest.raises(UserError, match="code of mine:Careful has changed"), other:
+        pass
+
+
+def test_a_package_counts_with_all_its_modules(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "mine").mkdir()
+    for name in ("__init__", "agent", "words"):
+        (tmp_path / "mine" / f"{name}.py").touch()
+    before = own_code(["mine.agent:Careful"])
+    (tmp_path / "mine/words.py").write_text("SEAT = 'Seat heat'\n", encoding="utf-8")
+    assert own_code(["mine.agent:Careful"]) != before != {}
 
 
 def test_a_broken_line_in_the_middle_is_named(tmp_path):

@@ -13,8 +13,10 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Ego, Scenario, Street, Trip
 from automotive_cosim.scenarios.incidents import Breakdown, EmergencyVehicle, Incident
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.check import ScenarioProof, check
+from automotive_cosim.scenery.check import ScenarioProof, by_clock, check
+from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.traffic import stability
+from automotive_cosim.traffic.posted import timed_limits
 
 
 def _coarse(scenario: Scenario, warm_up_s: float | None = None) -> Scenario:
@@ -54,6 +56,15 @@ def test_every_thing_declared_is_looked_at(proof: ScenarioProof) -> None:
 def test_every_shipped_scenario_names_its_streets() -> None:
     for name in scenarios.shipped():
         assert len(scenarios.load(name).streets) >= 3, name
+
+
+@pytest.mark.parametrize(("hour", "now"), [(23, "0.3"), (12, "0.0")])
+def test_limits_that_the_file_of_the_network_does_not_have_at_this_hour_are_told(hour: int, now: str) -> None:
+    plain = next(iter(network_of(GRID).edges.values()))
+    timed = replace(plain, length_m=300.0, timed_limits=timed_limits("30 @ (22:00-06:00)")[0])
+    told = by_clock([plain, timed], GRID.start.replace(hour=hour, minute=0))
+    assert f"on 0.3 km: at {hour}:00 {now} km of it have another limit than in the network's file" in told
+    assert by_clock([plain], GRID.start) == ""
 
 
 @pytest.mark.sumo

@@ -37,7 +37,7 @@ def played(simulations) -> Play:
         episode = Episode.take_over(finder.find(SeedSource(seed).next()), SessionSetup(agent.channels))
         agent.reset(episode.goal)
         if isinstance(agent, Privileged):
-            agent.brief(episode.instance, drawn=episode.world.cockpit.drawn)
+            agent.brief(episode.instance, drawn=episode.world.cockpit.drawn, branch=episode.branch)
         play(episode, agent)
         episode.close()
         return episode

@@ -23,7 +23,7 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.scenarios import Scenario, Trip, load
-from automotive_cosim.traffic.base import Advance, EgoPlan, HaltAt, Traffic
+from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan, HaltAt, Traffic
 from automotive_cosim.traffic.ego import DRIVES_ON, PARKS, RELEASED, SETS_OFF
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
@@ -198,6 +198,32 @@ def test_a_request_to_go_slower_ends_by_itself_and_the_release_is_told() -> None
     assert release.time_s == pytest.approx(120.0, abs=3.0)
     assert slow[-1] == pytest.approx(release.time_s, abs=2.0)
     assert drive.states[-1].speed_mps * KMH_PER_MPS > 40.0
+
+
+def test_another_mood_ends_what_was_advised_and_the_release_is_told() -> None:
+    traffic = on_a_street(replace(WATCHED, moods=(DriverAt(20.0, "hurried"),)))
+    traffic.request(Alert(AlertKind.SPEED, speed_kmh=30.0))
+    drive = traffic.advance(60.0)
+    (release,) = (event for event in drive.events if event.kind == RELEASED)
+    assert release.time_s == pytest.approx(20.0, abs=1.0)
+    assert drive.states[-1].speed_mps * KMH_PER_MPS > 60.0
+
+
+def test_an_advised_speed_ends_at_the_next_limit_and_its_end_is_told() -> None:
+    streets = [Stretch("a", 400.0, 50.0), Stretch("b", 4000.0, 70.0)]
+    traffic = Scripted(streets, start_speed_kmh=50.0).depart(WATCHED)
+    traffic.request(Alert(AlertKind.SPEED, speed_kmh=30.0))
+    drive = traffic.advance(90.0)
+    told = [event.text for event in drive.events if "the advised speed has ended" in event.text]
+    assert told == ["driver goes no faster than the limit; the advised speed has ended"]
+    assert drive.states[-1].speed_mps * KMH_PER_MPS > 60.0
+
+
+def test_nobody_gives_way_by_a_stop_far_beyond_a_tunnel() -> None:
+    tube = [Stretch("tube", 3000.0, 80.0, in_tunnel=True), Stretch("open", 3000.0, 80.0)]
+    traffic = Scripted(tube, start_speed_kmh=80.0).depart(WATCHED)
+    traffic.request(Alert(AlertKind.YIELD))
+    assert "driver_cannot_stop" in kinds(traffic.advance(10.0))
 
 
 def test_a_request_for_the_limit_takes_advice_back() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import takewhile
 from typing import ClassVar
 
 from automotive_cosim.cockpit.reach import BLUE_LIGHT_M, HORIZON_M, RADAR_M
@@ -18,6 +19,7 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.cosim.moment import Moment
+from automotive_cosim.drives.driver import IN_FORCE_S, SETS_OFF, STOPS
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
 from automotive_cosim.drives.events.law import REACTION_S, certain, may_say, seen, speed_kmh, time_left_s
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
@@ -241,7 +243,7 @@ class BlueLight(EventKind):
     about = "an emergency vehicle with blue light comes from behind and wants to pass"
     lookalike = "a plain van close behind"
     source = "150 m: 8 s at a closing speed of 70 km/h; deadline: 8 s"
-    neutral = "a blue light behind within 300 m"
+    neutral = "a blue light behind within 300 m, also while the car stands at the side"
     weight = 2.0
     grace_s = 8.0
     alerts = frozenset({AlertKind.YIELD, AlertKind.CORRIDOR, AlertKind.MOVE_OVER})
@@ -252,7 +254,7 @@ class BlueLight(EventKind):
         now = drive[-1]
         behind, follower = seen(now, SightKind.EMERGENCY_VEHICLE), seen(now, SightKind.VEHICLE_BEHIND)
         if behind is not None and behind.distance_m is not None:
-            due = behind.distance_m <= BLUE_DUE_M
+            due = behind.distance_m <= BLUE_DUE_M and not _stands_aside(drive)
             yield Sighting(f"a blue light {behind.distance_m:.0f} m behind", due=due, hold_s=1.0)
         elif follower is not None:
             yield Sighting(f"a car {follower.distance_m or 0:.0f} m behind comes closer", lookalike=True)
@@ -263,6 +265,17 @@ class BlueLight(EventKind):
         if follower is not None:
             return f"a vehicle without a blue light {follower.distance_m or 0:.0f} m behind"
         return f"no blue light within {BLUE_LIGHT_M:.0f} m"
+
+
+def _stands_aside(drive: Sequence[Moment]) -> bool:
+    """Whether the car stands at the side of the road, parked or as the driver was asked to, out of the way."""
+    now = drive[-1]
+    if now.driving.standing_s <= 0:
+        return False
+    since_s = now.time_s - IN_FORCE_S
+    lately = takewhile(lambda moment: moment.time_s >= since_s, reversed(drive))
+    stops = (event.kind for moment in lately for event in reversed(moment.events))
+    return next((kind for kind in stops if kind in STOPS | SETS_OFF), None) in STOPS
 
 
 class Corridor(EventKind):

@@ -10,7 +10,7 @@ from automotive_cosim.cockpit.signals import BODY, DRIVE, GLASS, HVAC
 from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, off, on
-from automotive_cosim.drives.events.law import SLOW_KMH, grows, speed_kmh
+from automotive_cosim.drives.events.law import SLOW_KMH, TREND_S, grows, speed_kmh
 
 ICY = 0.5
 """Friction of snow, slush and ice (Wallman and Astrom, VTI 911A, 2001); a wet road has 0.7 to 0.8."""
@@ -20,6 +20,8 @@ DRY = 0.9
 """Friction from which a road is dry."""
 GROWTH = 0.01
 """Share of the glass by which a film or fog on it grows within ten seconds, at least, on its way to an event."""
+LOSS = 0.015
+"""Friction that a road loses within ten seconds, at least, on its way to snow or ice."""
 COLD_C = 4.0
 """Cars warn of possible ice from this temperature."""
 
@@ -107,7 +109,7 @@ class Slippery(EventKind):
     about = "the road has the grip of snow or ice and the car is fast"
     lookalike = "cold, but a dry road"
     source = "friction: VTI meddelande 911A; deadline: 20 s, 450 m at 80 km/h"
-    neutral = "a wet road; snow or ice below 40 km/h"
+    neutral = "a wet road, above all one that loses its grip; snow or ice below 40 km/h"
     weight = 1.5
     grace_s = 20.0
     alerts = frozenset({AlertKind.SLIPPERY, AlertKind.WEATHER})
@@ -123,8 +125,8 @@ class Slippery(EventKind):
         if friction < ICY:
             words = f"{kmh:.0f} km/h on a road with friction {friction:.2f}"
             yield Sighting(words, due=kmh > ICY_FROM_KMH, hold_s=5.0, severity=ICY / friction)
-        elif friction < DRY:
-            yield Sighting(f"a wet road, friction {friction:.2f}", "wet")
+        elif friction < DRY:  # one that goes on losing its grip is on its way to ice
+            yield Sighting(f"a wet road, friction {friction:.2f}", "" if _loses_grip(drive) else "wet")
         elif now.weather.temperature_2m <= COLD_C:
             yield Sighting(f"{now.weather.temperature_2m:.0f} degrees and dry", lookalike=True)
 
@@ -136,3 +138,10 @@ class Slippery(EventKind):
         if now.weather.precipitation > 0 and not now.driving.road.in_tunnel:
             return None
         return f"the road is dry, at {now.weather.temperature_2m:.0f} degrees"
+
+
+def _loses_grip(drive: Sequence[Moment]) -> bool:
+    """Whether the road has lost some of its grip within ten seconds."""
+    from_s = drive[-1].time_s - TREND_S
+    then = next((moment for moment in reversed(drive) if moment.time_s <= from_s), drive[0])
+    return drive[-1].driving.road.friction <= then.driving.road.friction - LOSS

@@ -3,21 +3,21 @@
 import { ask, counted, h, plain } from "./dom.js";
 
 export async function tasksPage(query) {
-  const { tasks } = await ask("/api/tasks");
+  const tasks = (await ask("/api/tasks")).tasks.map((task) => ({ ...task, halves: task.pair ? "pair" : "single" }));
   const list = h("ul", { class: "records" });
   const count = h("p", { class: "muted", role: "status" });
   const search = h("input", { type: "search", "aria-label": "Search the tasks", placeholder: "Search ids and words", value: query.get("q") ?? "" });
-  const choices = [["module", "Module"], ["dimension", "Dimension"], ["difficulty", "Difficulty"]].map(([name, label]) =>
+  const choices = [["suite", "Suite"], ["module", "Module"], ["dimension", "Dimension"], ["ability", "Ability"], ["halves", "Halves"], ["difficulty", "Difficulty"]].map(([name, label]) =>
     h("select", { name, "aria-label": label }, h("option", { value: "" }, `${label}: all`),
-      [...new Set(tasks.map((task) => task[name]))].sort().map((value) => h("option", { value, selected: value === query.get(name) }, plain(value)))));
+      [...new Set(tasks.map((task) => task[name]).filter(Boolean))].sort().map((value) => h("option", { value, selected: value === query.get(name) }, plain(value)))));
   const fill = () => {
     const wanted = search.value.toLowerCase();
     const kept = tasks.filter((task) => choices.every((choice) => !choice.value || task[choice.name] === choice.value)
-      && [task.id, ...task.goal_templates].join(" ").toLowerCase().includes(wanted));
-    count.textContent = `${kept.length} of ${tasks.length} tasks`;
+      && [task.id, task.said, ...task.goal_templates].join(" ").toLowerCase().includes(wanted));
+    count.textContent = `${kept.length} of ${tasks.length} tasks, ${kept.filter((task) => task.suite === "standard").length} of them in the standard suite`;
     list.replaceChildren(...kept.map((task) => h("li", { class: "card" },
-      h("div", {}, h("a", { href: `#/tasks/${task.id}` }, task.id), h("p", {}, `“${task.goal_templates[0]}”`),
-        h("p", { class: "muted" }, [task.module, plain(task.dimension), task.difficulty, counted(task.optimal_steps, "step")].join(" · "))),
+      h("div", {}, h("a", { href: `#/tasks/${task.id}` }, task.id), h("p", {}, `“${task.said}”`),
+        h("p", { class: "muted" }, [task.suite, task.module, plain(task.dimension), plain(task.ability), task.difficulty, counted(task.optimal_steps, "step")].filter(Boolean).join(" · "))),
       task.pair ? h("span", { class: "pill quiet" }, "Pair") : null)));
     const parameters = new URLSearchParams();
     choices.forEach((choice) => choice.value && parameters.set(choice.name, choice.value));

@@ -3,6 +3,8 @@
 import { ask, h, send } from "./dom.js";
 import { cockpitPanel, listen, rulesCard, waiting } from "./cockpit.js";
 
+const group = ({ suite, module }) => (suite === "standard" ? `Tasks: ${module}` : `Tasks of the suite ${suite}: ${module}`);
+
 export async function playPage(query) {
   const { plays } = await ask("/api/about");
   if (!plays) {
@@ -15,8 +17,9 @@ export async function playPage(query) {
   const say = (error) => { note.textContent = error?.message ?? ""; note.hidden = !error; };
   const cockpit = cockpitPanel({ say });
 
-  const task = h("select", {}, h("option", { value: "" }, "Random task"),
-    h("optgroup", { label: "Tasks, up to two minutes" }, tasks.map(({ id }) => h("option", { value: id, selected: id === query.get("task") }, id))),
+  const task = h("select", {}, h("option", { value: "" }, "Random, of the standard suite"),
+    [...new Set(tasks.map(group))].map((label) => h("optgroup", { label }, tasks.filter((each) => group(each) === label)
+      .map(({ id }) => h("option", { value: id, selected: id === query.get("task") }, id)))),
     h("optgroup", { label: "Drives, ten to thirty minutes" }, drives.map(({ id }) => h("option", { value: `drive ${id}` }, id))));
   const name = h("input", { type: "text", maxlength: 40 });
   const seed = h("input", { type: "number", min: 0, max: 2147483647, value: Math.floor(Math.random() * 1000) });
@@ -24,9 +27,11 @@ export async function playPage(query) {
   const begin = h("button", { type: "submit", class: "main" }, "Begin");
   const form = h("form", { class: "card filters", onsubmit: async (event) => {
     event.preventDefault();
-    const chosen = task.value || tasks[Math.floor(Math.random() * tasks.length)].id;
+    const standard = tasks.filter(({ suite }) => suite === "standard");
+    const chosen = task.value || standard[Math.floor(Math.random() * standard.length)].id;
     const [what, id] = chosen.startsWith("drive ") ? ["drive", chosen.slice(6)] : ["task", chosen];
-    try { await send("/api/play/start", { [what]: id, half: "", seed: Number(seed.value), name: name.value, practice: practice.checked }); say(null); } catch (error) { say(error); }
+    begin.disabled = true;
+    try { await send("/api/play/start", { [what]: id, half: "", seed: Number(seed.value), name: name.value, practice: practice.checked }); say(null); } catch (error) { begin.disabled = false; say(error); }
   } }, h("label", {}, "Task or drive", task), h("label", {}, "Your code name", name), h("label", {}, "Seed", seed), begin,
   h("label", { class: "check" }, practice, "Practice: the clock can be stopped or slowed, and the result is not counted"));
 

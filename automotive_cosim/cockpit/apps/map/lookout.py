@@ -23,13 +23,17 @@ from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOT
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Sight, SightKind
+from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Limit, Sight, SightKind
 from automotive_cosim.contracts.text import Text, say
 
 LINE_PX, LINES = 38, 8
 """Height of a line on the screen, and how many there are room for."""
 METRES_BELOW_M, FEET_BELOW_M, FOOT_M = 100.0, 300.0, 0.3048
 """Distances below are shown in metres or feet, others as on signs."""
+JUNCTIONS_M = 60.0
+"""By how much the roads up to a sign are together shorter than the way to it, with its junctions."""
+ROUNDED_MPS = 2.0
+"""By less than this a sign differs from the limit on the map where a network was moved to another country."""
 ICONS: Mapping[SightKind, Icon] = {
     SightKind.DRIVER_BELT: Icon.SEAT_BELT,
     SightKind.PASSENGER_BELT: Icon.SEAT_BELT,
@@ -147,7 +151,7 @@ def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
                 distance=far,
             )
         )
-        yield Sight(SightKind.LIMIT, told, limit_m, kmh)
+        yield Sight(SightKind.LIMIT, told, limit_m, kmh, _limit_hours(state, driving, limit, limit_m))
     if driving.road.in_tunnel:
         yield Sight(SightKind.TUNNEL, say("In a tunnel"), 0.0)
     elif ahead.tunnel_distance_m is not None:
@@ -157,27 +161,68 @@ def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
     yield from _mapped(state, driving)
 
 
+def _limit_hours(state: State, driving: DrivingState, limit: Limit, limit_m: float) -> str:
+    """The hours on the sign of the next limit; empty if the road has that limit at all hours."""
+    for edge_id, start_m in _starts_m(state, driving).items():
+        road = state.roads.find(edge_id)
+        if road is not None and road.limit_hours and -JUNCTIONS_M <= start_m - limit_m <= 1.0:
+            usual_mps = road.limit_mps
+            if limit.mps is None or usual_mps is None or abs(limit.mps - usual_mps) > ROUNDED_MPS:
+                return road.limit_hours
+    return ""
+
+
 def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
     """Schools of the map and incidents of the last report, on the route within the horizon."""
     starts_m = _starts_m(state, driving)
     news = state.news
     found: dict[SightKind, float] = {}
+    hours = ""
     for edge_id, start_m in starts_m.items():
         road = state.roads.find(edge_id)
-        if road is not None and road.school_zone and start_m >= 0:
-            found[SightKind.SCHOOL_ZONE] = min(start_m, found.get(SightKind.SCHOOL_ZONE, start_m))
-    if news is not None:
-        if news.ahead.jam_distance_m is not None:
-            found[SightKind.JAM] = news.ahead.jam_distance_m - (driving.distance_m - news.distance_m)
-        for incident in news.ahead.incidents:
-            if incident.edge_id in starts_m:
-                kind = SightKind(incident.kind.value)
-                away_m = starts_m[incident.edge_id] + incident.position_m
-                if away_m > 0:
-                    found[kind] = min(away_m, found.get(kind, away_m))
+        if road is not None and road.school_zone and start_m >= 0 and SightKind.SCHOOL_ZONE not in found:
+            found[SightKind.SCHOOL_ZONE], hours = start_m, road.limit_hours
+    queue: tuple[float, float] | None = None
+    for incident in () if news is None else news.ahead.incidents:
+        if incident.edge_id in starts_m:
+            kind, start_m = SightKind(incident.kind.value), starts_m[incident.edge_id]
+            away_m = start_m + incident.position_m
+            if away_m > 0 and kind is SightKind.JAM:
+                queue = min((away_m, start_m), queue or (away_m, start_m))
+            elif away_m > 0:
+                found[kind] = min(away_m, found.get(kind, away_m))
+    yield from _jam(state, driving, queue)
     for kind, away_m in found.items():
-        if kind is not SightKind.SCHOOL_ZONE or not driving.road.school_zone:
+        if kind is not SightKind.SCHOOL_ZONE:
             yield from _told(state, kind, away_m)
+        elif not driving.road.school_zone:
+            yield from _told(state, kind, away_m, hours)
+
+
+def _jam(state: State, driving: DrivingState, queue: tuple[float, float] | None) -> Iterator[Sight]:
+    """The next jam of the last report: how far it is, and within it how much is left.
+
+    Slow traffic is reported road by road, from the start of the first slow one; of some queues the tail is known.
+
+    Args:
+        state: the cockpit's state.
+        driving: where the car is now.
+        queue: how far the next reported tail is, and where its road begins; in metres from the car.
+    """
+    ahead_m = [] if queue is None else [queue[0]]
+    news = state.news
+    if news is not None and news.ahead.jam_distance_m is not None:
+        begins_m = news.ahead.jam_distance_m - (driving.distance_m - news.distance_m)
+        left_m = begins_m + news.ahead.jam_length_m
+        is_known_better = queue is not None and queue[1] <= begins_m and queue[0] <= left_m
+        if begins_m > 0 and not is_known_better:
+            ahead_m.append(begins_m)
+        elif left_m > 0 and not is_known_better:
+            far = _near(state.signals, left_m)
+            yield Sight(SightKind.JAM, say("In a traffic jam, {distance} left", distance=far), 0.0, left_m)
+            return
+    if ahead_m:
+        yield from _told(state, SightKind.JAM, min(ahead_m))
 
 
 def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
@@ -197,9 +242,9 @@ def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
     return found
 
 
-def _told(state: State, kind: SightKind, away_m: float) -> Iterator[Sight]:
+def _told(state: State, kind: SightKind, away_m: float, hours: str = "") -> Iterator[Sight]:
     if 0 <= away_m <= HORIZON_M:
-        yield Sight(kind, AHEAD[kind](_near(state.signals, away_m)), away_m)
+        yield Sight(kind, AHEAD[kind](_near(state.signals, away_m)), away_m, hours=hours)
 
 
 def _near(signals: Signals, metres: float) -> str:
