@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
+    from automotive_cosim.run.forecast import CostForecast, Range
     from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.row import JobRow
     from automotive_cosim.scenarios import Scenario
@@ -86,7 +88,9 @@ def executor_of(name: str, workers: int | None, ray_address: str | None, ray_sen
 class ProgressView(Generic[R]):
     """Shows the progress of a run: a bar in a terminal, else occasional lines."""
 
-    EVERY_S = 15.0
+    EVERY_S, UNCHANGED_S = 15.0, 120.0
+    """A line at most as often, and one that says nothing new."""
+    OVERDUE_S = 5.0
 
     def __init__(self, console: Console, what: str, said: Callable[[Progress[R]], str]) -> None:
         """``what`` is being run; ``said`` gives the text next to its count."""
@@ -100,6 +104,9 @@ class ProgressView(Generic[R]):
         self._bar = Bar(*columns, console=console) if console.is_terminal else None
         self._task = self._bar.add_task("", total=None, said="") if self._bar else None
         self._said_s = -self.EVERY_S
+        self._said = ""
+        self._known = -1, 0.0
+        """How many runs had ended when the time left was first told, and when it would have been up."""
 
     def __enter__(self) -> ProgressView[R]:
         if self._bar:
@@ -112,12 +119,28 @@ class ProgressView(Generic[R]):
 
     def tell(self, progress: Progress[R]) -> None:
         """Shows the current progress."""
-        said = ", ".join(part for part in (self._words(progress), _warming(progress), time_left(progress)) if part)
+        progress, overdue = self._overdue(progress)
+        told = ", ".join(filter(None, (self._words(progress), time_left(progress))))
+        said = "; ".join(filter(None, (told, overdue or _warming(progress))))
         if self._bar and self._task is not None:
             self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
-        elif progress.seconds - self._said_s >= self.EVERY_S or progress.done == progress.planned:
-            self._said_s = progress.seconds
-            self._console.print(f"{progress.done} of {progress.planned} {self._what}{said and f'; {said}'}")
+            return
+        line = f"{progress.done} of {progress.planned} {self._what}{said and f'; {said}'}"
+        every_s = self.UNCHANGED_S if line == self._said else self.EVERY_S
+        if progress.seconds - self._said_s >= every_s or progress.done == progress.planned:
+            self._said_s, self._said = progress.seconds, line
+            self._console.print(line)
+
+    def _overdue(self, progress: Progress[R]) -> tuple[Progress[R], str]:
+        """Without the time left, and words instead, while a run takes longer than was expected of it: each second
+        would otherwise add one to the estimate."""
+        if progress.left_s is None:
+            return progress, ""
+        up_s, (done, was_s) = progress.seconds + progress.left_s, self._known
+        if progress.done == done and up_s > was_s + self.OVERDUE_S:
+            return replace(progress, left_s=None), "it takes longer than expected"
+        self._known = progress.done, up_s if progress.done != done else min(up_s, was_s)
+        return progress, ""
 
 
 def check_prices(models: Iterable[str], budget: Budget) -> None:
@@ -134,6 +157,26 @@ def check_prices(models: Iterable[str], budget: Budget) -> None:
                 f"a budget in dollars needs the price of {name}; add "
                 "?usd_per_million_in=...&usd_per_million_out=... to it"
             )
+
+
+def forecast_in_words(told: CostForecast, workers: int) -> Iterator[str]:
+    """Lines on what a plan will take."""
+    slow = ", plus the time that the models take to answer" if told.asks_models else ""
+    yield f"time: {minutes_in_words(told.wall_s)} with {counted(workers, 'worker')} on an idle machine{slow}"
+    if told.asks_models:
+        yield f"tokens: {told.tokens.low / 1e6:,.2f} to {told.tokens.high / 1e6:,.2f} million"
+        if told.usd.high:
+            yield f"cost: ${told.usd.low:,.2f} to ${told.usd.high:,.2f}"
+        else:
+            yield "cost: unknown; a model's name takes ?usd_per_million_in=...&usd_per_million_out=..."
+
+
+def minutes_in_words(seconds: Range) -> str:
+    """A span of time to a minute."""
+    low, high = seconds.low / 60, seconds.high / 60
+    if high < 1:
+        return "less than a minute"
+    return f"{f'{low:.0f} to' if low >= 1 else 'up to'} {counted(round(high), 'minute')}"
 
 
 def tell_stopped(end: Progress[Any]) -> None:

@@ -69,7 +69,8 @@ def calibrate_scenario(
     and nothing is written.
     """
     from automotive_cosim.calibration import CalibrationOptions, calibrate
-    from automotive_cosim.report.calibration import require_plots, write_page
+    from automotive_cosim.report.calibration import write_page
+    from automotive_cosim.report.charts import require_plots
     from automotive_cosim.scenery import open_scenario
 
     require_plots()

@@ -69,7 +69,7 @@ EXTRAS = {
     "ray": Extra("ray", "eval and study on a cluster"),
     "report": Extra("matplotlib", "report"),
     "rl": Extra("stable_baselines3", "training in Flat-v0"),
-    "search": Extra("optuna", "search by samplers other than random"),
+    "search": Extra("optuna", "search, but for --sampler random and grid"),
     "verifiers": Extra("verifiers", "doors.verifiers"),
 }
 

@@ -108,16 +108,21 @@ def drives(as_json: AsJson = False) -> None:
     """List the families of drives, with their season and what can happen in them."""
     from automotive_cosim.drives.families import FAMILIES
 
-    listed = [{"id": family.id, "season": family.season, "about": family.about} for family in FAMILIES.values()]
+    listed = [
+        {"id": family.id, "season": family.season, "about": family.about, "stages": list(family.cast)}
+        for family in FAMILIES.values()
+    ]
     if as_json:
         print_json({"drives": listed})
         return
     for family in listed:
         typer.echo(f"{family['id']:24} {family['season']:7} {family['about']}")
+        typer.echo(f"{'':34} stages {', '.join(family['stages'])}")
 
 
 def _tell(console: Console, row: DriveTrialRow) -> None:
-    """The drive's events and acts in chronological order, and its score."""
+    """The drive's events and acts in chronological order, what went wrong and why, and its score."""
+    from automotive_cosim.drives.faults import clock, faults
     from automotive_cosim.drives.judge import Worth
 
     lines = [
@@ -137,6 +142,10 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         console.print(
             f"{int(time_s) // 60:3}:{int(time_s) % 60:02}  {words}  [{became}]", markup=False, soft_wrap=True
         )
+    if wrong := faults(row.events, row.acts):
+        console.print("Missed, late and needless:", soft_wrap=True)
+    for fault in wrong:
+        console.print(f"  {fault.line}", markup=False, soft_wrap=True)
     found = row.score
     assert found is not None
     recall = "no events" if found.recall is None else f"{found.met} of {found.events} events met"
@@ -150,7 +159,6 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         near_s, nobodys_s = row.harm.short_ttc_s, row.baseline_harm.short_ttc_s
         console.print(f"Near-collision time {near_s:.0f} s; without the agent {nobodys_s:.0f} s", soft_wrap=True)
     if row.unwatched_from_s is not None:
-        minutes, seconds = divmod(int(row.unwatched_from_s), 60)
         console.print(
-            f"Nobody watched from {minutes}:{seconds:02d} on: {row.agent_error or row.end}", soft_wrap=True
+            f"Nobody watched from {clock(row.unwatched_from_s)} on: {row.agent_error or row.end}", soft_wrap=True
         )

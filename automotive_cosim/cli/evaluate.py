@@ -18,6 +18,7 @@ from automotive_cosim.cli.batches import (
     Workers,
     check_prices,
     executor_of,
+    forecast_in_words,
     seeds_in,
     tell_notes,
     tell_stopped,
@@ -46,7 +47,6 @@ from automotive_cosim.errors import InfrastructureError
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
-    from automotive_cosim.run.forecast import CostForecast
     from automotive_cosim.run.plan import Plan
     from automotive_cosim.run.trial_row import TrialRow
 
@@ -191,6 +191,7 @@ def evaluate(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.errors import UnknownNameError, UserError
     from automotive_cosim.report.answer import answer
+    from automotive_cosim.report.charts import is_installed
     from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
@@ -233,7 +234,7 @@ def evaluate(
     if dry_run:
         needs = forecast(plan.jobs(), workers or 1, known.values())
         lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
-        for line in _forecast_in_words(needs, workers or 1):
+        for line in (*forecast_in_words(needs, workers or 1), "nothing was run"):
             console.print(line, soft_wrap=True)
         for lack in lacks:
             console.print(f"to fix before it can run: {lack}", soft_wrap=True, markup=False)
@@ -243,6 +244,9 @@ def evaluate(
     left = [job for job in plan.jobs() if job.id not in known or known[job.id].error is not None]
     if unfit := tuple(misfits(left)):
         raise UserError("; ".join(unfit))
+    if left:
+        for line in forecast_in_words(forecast(plan.jobs(), workers or 1, known.values()), workers or 1):
+            console.print(line, soft_wrap=True)
     with where, ProgressView(console, f"{unit}s", _said) as view:
         try:
             end = run_plan(
@@ -273,9 +277,10 @@ def evaluate(
             console.print(f"  {line}", soft_wrap=True, markup=False)
         for row in errors:
             console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)
+        extra = "" if is_installed() else ", which needs pip install 'automotive-cosim[report]'"
         console.print(
             f"Results in {folder} ({megabytes_in_words(size_mb)}); "
-            f"write report.html with `automotive-cosim report {folder}`",
+            f"write report.html with `automotive-cosim report {folder}`{extra}",
             soft_wrap=True,
         )
     tell_stopped(end)
@@ -374,21 +379,6 @@ def _announce(console: Console, plan: Plan, folder: Path) -> None:
     console.print(table)
     if any(job.setup.model == "rules" for job in jobs):
         console.print("rules is a deterministic stand-in: its results say nothing about a language model.")
-
-
-def _forecast_in_words(told: CostForecast, workers: int) -> Iterator[str]:
-    """Lines on what a plan will take."""
-    minutes = [seconds / 60 for seconds in (told.wall_s.low, told.wall_s.high)]
-    time = "less than a minute" if minutes[1] < 1 else f"{minutes[0]:.0f} to {counted(round(minutes[1]), 'minute')}"
-    slow = ", plus the time that the models take to answer" if told.asks_models else ""
-    yield f"time: {time} with {counted(workers, 'worker')} on an idle machine{slow}"
-    if told.asks_models:
-        yield f"tokens: {told.tokens.low / 1e6:,.2f} to {told.tokens.high / 1e6:,.2f} million"
-        if told.usd.high:
-            yield f"cost: ${told.usd.low:,.2f} to ${told.usd.high:,.2f}"
-        else:
-            yield "cost: unknown; a model's name takes ?usd_per_million_in=...&usd_per_million_out=..."
-    yield "nothing was run"
 
 
 def _folder(plan: Plan) -> Path:

@@ -36,6 +36,7 @@ def export(
     out: Annotated[Path | None, typer.Option(help="Folder for the files.", show_default="TRIAL/exchange")] = None,
 ) -> None:
     """Write a kept trial in the formats of others: OpenSCENARIO XML, OpenDRIVE, OSI, SUMO's FCD, CSV, Parquet."""
+    from automotive_cosim.exchange.needs import check_formats
     from automotive_cosim.exchange.opendrive import write_opendrive
     from automotive_cosim.exchange.openscenario import write_openscenario
     from automotive_cosim.exchange.osi import write_osi
@@ -47,6 +48,7 @@ def export(
 
     if not (openscenario or opendrive or osi or fcd or table or parquet):
         raise UserError("nothing to write; give --openscenario 1.3, --opendrive, --osi, --fcd, --csv or --parquet")
+    check_formats(openscenario=openscenario, opendrive=opendrive, osi=osi, parquet=parquet)
     recording = read_recording(trial)
     folder = out or trial / "exchange"
     written = []

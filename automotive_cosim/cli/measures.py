@@ -50,6 +50,7 @@ def measures(
     ] = None,
 ) -> None:
     """Print the encounters of a recorded trial with their surrogate measures of safety, as CSV or Parquet."""
+    from automotive_cosim.exchange.needs import check_formats
     from automotive_cosim.exchange.trajectories import write_frame
     from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
     from automotive_cosim.measures.encounters import as_csv, as_frame
@@ -59,6 +60,7 @@ def measures(
     path = record / NAME if record.is_dir() else record
     if not path.is_file():
         raise UserError(f"{record} has no {NAME}; `drive --out` and `eval --pictures all` record the road")
+    check_formats(parquet=out is not None and out.suffix == ".parquet")
     scenes = [(second.at_s, second.vehicles) for second in read_record(path).seconds]
     thresholds = Thresholds(ttc, drac, DEFAULT_THRESHOLDS.mdrac_mps2, pet, reach)
     ego = None if everyone else "ego"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -15,15 +16,21 @@ from automotive_cosim.cli.batches import (
     Workers,
     check_prices,
     executor_of,
+    forecast_in_words,
+    minutes_in_words,
 )
 from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 
 if TYPE_CHECKING:
+    from automotive_cosim.cli.console import Console as Output
     from automotive_cosim.contracts import Json
+    from automotive_cosim.run.plan import Plan
     from automotive_cosim.run.trial_row import TrialRow
+    from automotive_cosim.safety.budget import SearchBudget
     from automotive_cosim.safety.hunt import Hunt
+    from automotive_cosim.safety.space import Space
 
 CAREFUL = ("rule-perfect", "oracle")
 """The references on drives and on tasks."""
@@ -48,7 +55,7 @@ def search(
         typer.Option(
             help="What to use in all, with earlier starts: points to sample (64), wall time (2h, 90min), money for "
             "the model (5usd), or several with commas, of which the first that is spent ends it. A failure that is "
-            "made small takes some thirty runs beyond the points.",
+            "reduced takes some thirty runs beyond the points.",
             metavar="N",
             show_default=False,
         ),
@@ -61,7 +68,10 @@ def search(
         int, typer.Option(help="Seed of the sampler.", metavar="N", parser=whole_number(0, 2**31 - 1))
     ] = 0,
     failures: Annotated[
-        int, typer.Option(help="How many failures are made small.", metavar="N", parser=whole_number(0, 1000))
+        int,
+        typer.Option(
+            help="How many failures are reduced to what they need.", metavar="N", parser=whole_number(0, 1000)
+        ),
     ] = 5,
     workers: Workers = None,
     executor: ExecutorName = "processes",
@@ -78,12 +88,16 @@ def search(
             show_default=False,
         ),
     ] = None,
+    dry_run: Annotated[
+        bool, typer.Option("--dry-run", help="Say how long it will take, and what is missing, and exit.")
+    ] = False,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
     """Search a space of situations and conditions for failures of an agent. Rerun the command to resume.
 
     Points that are spread evenly run in parallel, or on a cluster; what is learnt from them runs here, one by one.
+    After Ctrl-C the page has what was found by then.
     """
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.meter import Budget
@@ -91,7 +105,6 @@ def search(
     from automotive_cosim.run.record import write_whole
     from automotive_cosim.safety.budget import LAID, SearchBudget
     from automotive_cosim.safety.findings import as_json as findings_json
-    from automotive_cosim.safety.findings import sentence
     from automotive_cosim.safety.hunt import hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import even_points, make_sampler
@@ -124,14 +137,27 @@ def search(
     chooses = make_sampler(sampler, space, laid, seed)
     where = executor_of(executor, workers, ray_address, ray_send)
     is_parallel = executor != "processes" or (workers or 1) > 1
+    for line in _told_before(space, plan, may_use, failures, (workers or 1) if is_parallel else 1, folder):
+        console.print(line, soft_wrap=True)
+    if dry_run:
+        console.print("nothing was run")
+        if as_json:
+            typer.echo(json.dumps({"out": str(folder), "dry_run": True}))
+        return
 
     def tell(found: Hunt) -> None:
-        last = found.samples[-1]
-        if last.outcome.is_unrunnable:
+        last = found.samples[-1].outcome
+        if last.is_unrunnable:
             return
-        margin = "not judged" if last.outcome.margin is None else f"margin {last.outcome.margin:+.2f}"
-        count = f"{found.run} of {may_use.points}" if may_use.points else f"{found.run}"
-        console.print(f"{count}; {margin}; {counted(len(found.minimal), 'minimal failure')}", soft_wrap=True)
+        margin = "nothing was due" if last.nothing_due else "not judged"
+        margin = margin if last.margin is None else f"margin {last.margin:+.2f}"
+        count, left = f"{found.run}", ""
+        if may_use.points:
+            each_s = (run.limit.used_s() - used_s) / run.ran if run.ran else 0.0
+            left_s = each_s * (may_use.points - found.run)
+            count += f" of {may_use.points}"
+            left = f"; about {counted(round(left_s / 60), 'minute')} left for the points" if left_s >= 60 else ""
+        console.print(f"{count}; {margin}; {counted(len(found.minimal), 'minimal failure')}{left}", soft_wrap=True)
 
     with where, trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s) as run:
 
@@ -141,8 +167,11 @@ def search(
 
         note()
         run.tell = note
-        if is_parallel and run(space.nominal, 0).passed:
-            run.ahead(even_points(make_sampler(sampler, space, laid, seed), min(laid, may_use.most_points)))
+        if is_parallel and run(space.nominal, 0).held:
+            try:
+                run.ahead(even_points(make_sampler(sampler, space, laid, seed), min(laid, may_use.most_points)))
+            except KeyboardInterrupt:
+                run.stop = "interrupted"
         found = hunt(
             space,
             run,
@@ -151,24 +180,66 @@ def search(
             most_failures=failures,
             tell=tell,
         )
-        if found.minimal and agent not in CAREFUL:
+        found.interrupted |= bool(run.stop)
+        if found.minimal and agent not in CAREFUL and not found.interrupted:
             careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})
-            with trying(space, careful, folder / CAREFUL_FOLDER) as watcher:
-                try_carefully(found, watcher)
+            try:
+                with trying(space, careful, folder / CAREFUL_FOLDER) as watcher:
+                    try_carefully(found, watcher)
+            except KeyboardInterrupt:
+                found.interrupted = True
         note()
         page = write_findings(folder, found, agent, model, about)
     if save is not None:
         write_whole(save, suite(found, agent, model))
     if as_json:
         typer.echo(json.dumps(findings_json(found) | {"out": str(folder)}))
-        return
+    else:
+        _tell_found(console, found, agent, page)
+    if found.interrupted:
+        raise KeyboardInterrupt
+
+
+def _tell_found(console: Output, found: Hunt, agent: str, page: Path) -> None:
+    from automotive_cosim.safety.findings import sentence
+
     console.print(sentence(found, agent), soft_wrap=True)
-    if found.stopped:
+    if found.interrupted:
+        console.print("Interrupted; rerun the command to go on.", soft_wrap=True)
+    elif found.stopped:
         console.print(f"Stopped: {found.stopped}; rerun with a larger --budget to go on.", soft_wrap=True)
     for count, each in enumerate(found.minimal, 1):
-        near = "" if each.neighbour is None else f"; passes with {each.differs} {each.neighbour[each.differs]}"
-        console.print(f"{count}. fails with {each.words(space)}{near} [{each.why}]", markup=False, soft_wrap=True)
+        near = f"; {each.beside}" if each.beside else ""
+        console.print(
+            f"{count}. fails with {each.words(found.space)}{near} [{each.why}]", markup=False, soft_wrap=True
+        )
     console.print(f"Report: {page}", soft_wrap=True)
+
+
+def _told_before(
+    space: Space, plan: Plan, may_use: SearchBudget, failures: int, workers: int, folder: Path
+) -> Iterator[str]:
+    """What the search will take, as far as it is known before it starts."""
+    from automotive_cosim.report.charts import NEEDS, is_installed
+    from automotive_cosim.run.rows import read_trials
+    from automotive_cosim.safety.forecast import RUNS_A_FAILURE, of_a_failure, search_forecast
+
+    if may_use.points is None:
+        yield f"until the budget is spent; results in {folder}"
+    else:
+        known = len(read_trials(folder)) if (folder / "manifest.json").is_file() else 0
+        needs = search_forecast(space, plan, max(0, may_use.points - known), workers)
+        yield f"{counted(may_use.points, 'point')} to sample; results in {folder}" + (
+            f", where {counted(known, 'trial')} are" if known else ""
+        )
+        yield from forecast_in_words(needs, workers)
+        if failures:
+            yield (
+                f"in addition, for each of up to {counted(failures, 'failure')}: some {RUNS_A_FAILURE} runs, "
+                f"{minutes_in_words(of_a_failure(needs))}; --failures 0 leaves them as they are"
+            )
+    if not is_installed():
+        yield f"the page will have no response curves: {NEEDS}"
 
 
 def _before(folder: Path, about: Json, points: int) -> tuple[int, float]:

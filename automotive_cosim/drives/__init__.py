@@ -11,6 +11,7 @@ watch      an agent's session on a drive
 timeline   the drive second by second, as data
 judge      what became of each event, and what each act was
 score      what that comes to
+faults     what was missed, late or needless, one by one
 watchers   the rule-perfect watcher, and trivial ones
 reading    what the rule-perfect watcher reads from an observation
 looks      what it then looks at

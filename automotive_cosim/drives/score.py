@@ -90,6 +90,11 @@ class Score:
         return median(self.delays_s) if self.delays_s else None
 
     @property
+    def median_due_s(self) -> float | None:
+        """Median of ``delays_due_s``."""
+        return median(self.delays_due_s) if self.delays_due_s else None
+
+    @property
     def value(self) -> float:
         """0 is doing nothing, 100 the rule-perfect watcher."""
         cost = self.cost + STOP_PER_MIN * self.held_s / 60

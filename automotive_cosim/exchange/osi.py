@@ -28,6 +28,7 @@ from automotive_cosim.exchange.openscenario import FULL, KELVIN, OKTAS
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.run.road import Second
 
+NEEDS = "OSI traces need the extra osi: pip install 'automotive-cosim[osi]'"
 AROUND_M = 200.0
 """Lanes and traffic lights within this distance of the car are in a message: our choice, as each repeats them."""
 SHARPEST = 0.25
@@ -75,7 +76,7 @@ def write_osi(recording: Recording, target: Path, road: Path | None = None) -> N
 
         messages = _Messages(recording, "" if road is None else road.name)
     except ImportError as error:
-        raise SetupError("OSI traces need the extra osi: pip install 'automotive-cosim[osi]'") from error
+        raise SetupError(NEEDS) from error
     with SingleTraceWriter() as trace:
         if not trace.open(target):
             raise OSError(f"cannot open {target}")

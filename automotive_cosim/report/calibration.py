@@ -64,15 +64,6 @@ def write_page(folder: Path) -> Path:
     return page
 
 
-def require_plots() -> None:
-    """Checks that matplotlib is installed before any long work starts.
-
-    Raises:
-        SetupError: it is not installed.
-    """
-    drawn("nothing", (1.0, lambda _: None), NARROW_IN)
-
-
 def findings(found: Calibration) -> Iterator[str]:
     """The results in sentences, including the bad ones."""
     sites = {row.site for row in found.rows if not row.held_out}

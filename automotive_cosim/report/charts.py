@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import warnings
 from collections.abc import Callable, Sequence
+from importlib.util import find_spec
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
@@ -57,6 +58,22 @@ def charts(results: Results) -> dict[str, tuple[str, str, str]]:
     }
 
 
+def is_installed() -> bool:
+    """Whether plots can be drawn."""
+    return find_spec("matplotlib") is not None
+
+
+def require_plots() -> None:
+    """Checks that matplotlib is installed before any work starts.
+
+    Raises:
+        SetupError: it is not installed.
+    """
+    if not is_installed():
+        raise SetupError(NEEDS)
+
+
+NEEDS = "plots need matplotlib: pip install 'automotive-cosim[report]'"
 Drawing = tuple[float, Callable[["Axes"], None]]
 """A plot: its height in inches, and the function that draws it."""
 
@@ -189,7 +206,7 @@ def drawn(name: str, drawing: Drawing, width_in: float) -> str:
         import matplotlib as mpl
         from matplotlib.figure import Figure
     except ImportError as error:
-        raise SetupError("plots need matplotlib: pip install 'automotive-cosim[report]'") from error
+        raise SetupError(NEEDS) from error
     height_in, draw = drawing
     style: Any = {
         "svg.fonttype": "none",

@@ -7,9 +7,11 @@ force; time to collision and time gap; visibility and grip; lamps; and what each
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.drives.faults import clock
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -17,12 +19,14 @@ from automotive_cosim.run.drive_row import DriveTrialRow
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-BLUE, RED, GREEN, PURPLE, ORANGE, SKY, _, GREY = PALETTE
+BLUE, VERMILION, GREEN, PURPLE, AMBER, SKY, _, GREY = PALETTE
+RED = "#b5121b"
+"""What was missed, or wrong: darker than the others, and no orange, which is what is late."""
 COLOURS = {
     EventOutcome.HIT: GREEN,
     EventOutcome.PREPARED: GREEN,
     EventOutcome.PREVENTED: SKY,
-    EventOutcome.LATE: ORANGE,
+    EventOutcome.LATE: AMBER,
     EventOutcome.MISSED: RED,
     EventOutcome.CAUSED: PURPLE,
     EventOutcome.EVADED: PURPLE,
@@ -33,9 +37,9 @@ COLOURS = {
 """Colour of a bar by the outcome of the event."""
 MARKS = {
     Worth.RIGHT: ("o", GREEN),
-    Worth.LATE: ("o", ORANGE),
+    Worth.LATE: ("o", AMBER),
     Worth.NEUTRAL: ("o", GREY),
-    Worth.REPEAT: ("s", ORANGE),
+    Worth.REPEAT: ("s", AMBER),
     Worth.FALSE: ("X", RED),
     Worth.WRONG: ("P", RED),
     Worth.LOOKALIKE: ("D", RED),
@@ -43,7 +47,11 @@ MARKS = {
 """Marker of an act by how it was judged."""
 LEAST_S = 6.0
 """Shortest bar that can be seen."""
-ROW_IN, SPEED_IN, PANEL_IN, LAMPS_IN, LINE_IN, GAP_IN = 0.24, 1.5, 0.9, 0.55, 0.17, 0.28
+ROW_IN, SPEED_IN, PANEL_IN, LAMPS_IN, LINE_IN, GAP_IN = 0.24, 1.5, 0.9, 0.55, 0.132, 0.28
+AXIS_IN = 0.5
+"""For the minutes below the panels."""
+NUMBER_IN = 0.14
+"""Numbers of acts that are nearer to each other take turns above and below the marks."""
 LAMPS = ("dipped", "high", "front_fog", "rear_fog", "hazard")
 MOST_ACTS = 40
 """Acts of which the chart says what came; all of them are in the results."""
@@ -63,13 +71,15 @@ def timeline_chart(row: DriveTrialRow, timeline: Json) -> tuple[str, str]:
     Raises:
         SetupError: matplotlib is not installed.
     """
-    drawing = _drawing(row, timeline)
-    return drawn(f"{row.id}", drawing, WIDE_IN), drawn(f"{row.id}", drawing, NARROW_IN)
+    wide, narrow = (drawn(row.id, _drawing(row, timeline, width_in), width_in) for width_in in (WIDE_IN, NARROW_IN))
+    return wide, narrow
 
 
-def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
-    kinds = _kinds(row.events)
-    told = row.acts[:MOST_ACTS]
+def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:
+    kinds = _kinds(row.events, row.acts)
+    told = [_told(number, act, row.events, timeline) for number, act in enumerate(row.acts[:MOST_ACTS], 1)]
+    room = round((width_in - LABELS_IN) * CHARACTERS_AN_INCH)
+    lines = [part for line in (*KEY, "", *told) for part in wrap(line, room, subsequent_indent="    ") or [""]]
     panels: list[tuple[float, Callable[[Axes], None]]] = [(SPEED_IN, lambda axes: _speeds(axes, timeline))]
     if "ttc_s" in timeline:  # a drive of an earlier version has speeds alone
         panels += [
@@ -78,7 +88,7 @@ def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
             (LAMPS_IN, lambda axes: _lamps(axes, timeline)),
         ]
     rows_in = ROW_IN * (len(kinds) + 3)
-    below_in = sum(height + GAP_IN for height, _ in panels) + 0.35 + LINE_IN * (len(told) + 3)
+    below_in = sum(height + GAP_IN for height, _ in panels) + AXIS_IN + LINE_IN * len(lines)
     height_in = rows_in + below_in
 
     def draw(axes: Axes) -> None:
@@ -87,8 +97,8 @@ def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
         rows = len(kinds) + 2
         axes.set_ylim(rows - 0.3 + below_in / ROW_IN, -0.7)
         axes.set_yticks(range(rows), ["acts", "wakes", *(kind.replace("_", " ") for kind in kinds)])
-        _events(axes, row.events, kinds)
-        _acts(axes, row)
+        _events(axes, row.events, kinds, end_s)
+        _acts(axes, row, end_s * NUMBER_IN / width_in)
         _say_unwatched(axes, timeline, rows)
         for time_s, _ in timeline.get("wakes", ()):
             axes.plot(time_s, 1, "|", color=GREY, markersize=6, alpha=0.6)
@@ -109,10 +119,9 @@ def _drawing(row: DriveTrialRow, timeline: Json) -> Drawing:
         axes.set_xlim(0, end_s)
         axes.set_xticks(list(ticks), [])
         axes.spines["bottom"].set_visible(False)
-        lines = [KEY, *(_told(number, act, timeline) for number, act in enumerate(told, 1))]
         words = axes.text(
             0.0,
-            max(0.0, top - 0.45 / height_in),
+            max(0.0, top - AXIS_IN / height_in),
             "\n".join(lines),
             transform=axes.transAxes,
             va="top",
@@ -137,7 +146,7 @@ def _say_unwatched(axes: Axes, timeline: Json, rows: int) -> None:
     if from_s is None:
         return
     axes.fill_betweenx((-0.7, rows - 0.4), from_s, end_s, color=GREY, alpha=0.2, linewidth=0)
-    words = f"nobody watches from {int(from_s) // 60}:{int(from_s) % 60:02d} on"
+    words = f"nobody watches from {clock(from_s)} on"
     left = from_s > 0.6 * end_s
     axes.annotate(
         words,
@@ -151,34 +160,54 @@ def _say_unwatched(axes: Axes, timeline: Json, rows: int) -> None:
     )
 
 
-def _told(number: int, act: JudgedAct, timeline: Json) -> str:
+def _told(number: int, act: JudgedAct, events: Sequence[JudgedEvent], timeline: Json) -> str:
     """What an act said, what it was, and what the driver did."""
     answers = [
         text.removeprefix("driver ")
         for time_s, text in timeline.get("driver", ())
         if act.time_s <= time_s <= act.time_s + ANSWER_S
     ]
-    what = f"{act.worth}" + (f": {act.about}" if act.about else "") + (f" ({act.reason})" if act.reason else "")
-    at = f"{int(act.time_s) // 60}:{int(act.time_s) % 60:02d}"
-    line = f"{number}  {at}  {act.words}: {what}" + (f"; {answers[0]}" if answers else "")
-    return line if len(line) <= LONGEST else f"{line[: LONGEST - 1]}…"
+    what = f"{act.worth}" + (f": {act.about.replace('_', ' ')}" if act.about else "")
+    what += f" ({act.reason})" if act.reason else ""
+    if act.worth is Worth.RIGHT and _came_to_nothing(act, events):
+        what += ", which was never due: no point"
+    return f"{number}. {clock(act.time_s)} {act.words}: {what}" + (f"; {answers[0]}" if answers else "")
+
+
+def _came_to_nothing(act: JudgedAct, events: Sequence[JudgedEvent]) -> bool:
+    """Whether what an act told of required nothing in the end."""
+    settled = [event for event in events if event.acted_s == act.time_s and not event.lookalike]
+    return bool(settled) and not any(event.outcome.counts for event in settled)
 
 
 KEY = (
-    "Bars: green met, blue prevented, orange late, red missed, grey void, hatched look-alike; | due, > too late.\n"
-    "Acts: dot right, X false, + wrong, diamond look-alike, square repeat."
+    "Bars: green met, light blue prevented, amber late, red missed (or a look-alike taken), purple caused or "
+    "evaded, grey nothing was due, hatched look-alike; | when due, > deadline, dot the act.",
+    "Acts: green dot right, amber dot late, grey dot neither, X false alarm, + false alarm while something else "
+    "was due, diamond look-alike, amber square repeat.",
 )
-LONGEST = 150
-"""Characters of a line of the chart."""
+LABELS_IN, CHARACTERS_AN_INCH = 1.3, 19.0
+"""The room left of the plot, and the characters of the list of acts, so that its lines end within the plot."""
 
 
-def _kinds(events: Sequence[JudgedEvent]) -> list[str]:
-    """Kinds with an event that required an act, or with a look-alike that was acted on, in order of time."""
-    shown = [event for event in events if event.outcome.counts or event.outcome is EventOutcome.TAKEN]
+def _kinds(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct]) -> list[str]:
+    """Kinds with an event that required an act or was acted on, or with a look-alike that was, in order of time."""
+    told = {act.about for act in acts if act.worth is Worth.RIGHT}
+    shown = [
+        event
+        for event in events
+        if event.outcome.counts or event.outcome is EventOutcome.TAKEN or (event.kind in told and event.acted_s)
+    ]
     return list(dict.fromkeys(event.kind for event in shown))
 
 
-def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> None:
+NAMED = frozenset(
+    {EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED, EventOutcome.EVADED, EventOutcome.TAKEN}
+)
+"""Outcomes that stand beside their bars, in words."""
+
+
+def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str], end_s: float) -> None:
     for event in events:
         if event.kind not in kinds:
             continue
@@ -202,27 +231,45 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str]) -> 
                     axes.plot(time_s, place, mark, color=INK, markersize=7 if mark == "|" else 4, clip_on=False)
             if event.acted_s is not None:
                 axes.plot(event.acted_s, place, "o", color=INK, markersize=3.5)
+        if event.outcome in NAMED:
+            right = event.observable_s + length_s < 0.85 * end_s
+            at_s = event.observable_s + (length_s if right else 0.0)
+            axes.annotate(
+                str(event.outcome),
+                (at_s, place),
+                (5 if right else -5, 0),
+                textcoords="offset points",
+                fontsize=7.5,
+                ha="left" if right else "right",
+                va="center",
+                annotation_clip=False,
+            )
 
 
-def _acts(axes: Axes, row: DriveTrialRow) -> None:
+def _acts(axes: Axes, row: DriveTrialRow, near_s: float) -> None:
+    """Marks with numbers; of two numbers less than ``near_s`` apart, one is below the marks."""
+    before_s, is_below = -near_s, False
     for number, act in enumerate(row.acts, 1):
         mark, colour = MARKS[act.worth]
         size = 4 if act.worth is Worth.NEUTRAL else 6
         axes.plot(act.time_s, 0, mark, color=colour, markersize=size, clip_on=False)
         if number <= MOST_ACTS:
-            axes.annotate(f"{number}", (act.time_s, -0.45), ha="center", fontsize=6.5, annotation_clip=False)
+            is_below = act.time_s - before_s < near_s and not is_below
+            before_s = act.time_s
+            at = act.time_s, 0.85 if is_below else -0.45
+            axes.annotate(f"{number}", at, ha="center", fontsize=6.5, annotation_clip=False)
 
 
 def _gaps(axes: Axes, timeline: Json) -> None:
     """Time to collision, and time gap, up to ten seconds."""
-    for key, colour, words in (("gap_s", SKY, "gap"), ("ttc_s", RED, "TTC")):
+    for key, colour, words in (("gap_s", SKY, "time gap"), ("ttc_s", VERMILION, "time to collision")):
         values = [float("nan") if value is None or value > 10 else value for value in timeline[key]]
         axes.plot(timeline["time_s"], values, color=colour, linewidth=1.0, label=words)
     axes.axhline(NEAR_S, color=INK, linewidth=0.6, linestyle=(0, (1, 2)))
     axes.set_ylim(0, 10)
     axes.set_yticks([0, 3, 10])
     axes.set_ylabel("s")
-    axes.legend(loc="upper right", ncols=2, frameon=False, fontsize=8)
+    axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, frameon=False, fontsize=7.5, borderpad=0)
 
 
 def _sky(axes: Axes, timeline: Json) -> None:
@@ -233,8 +280,8 @@ def _sky(axes: Axes, timeline: Json) -> None:
     axes.set_yticks([10, 100, 1000, 10_000], ["10 m", "100 m", "1 km", "10 km"])
     axes.minorticks_off()
     grip = axes.twinx()
-    axes.plot([], [], color=ORANGE, linewidth=1.0, label="grip, from 0 at the bottom to 1 at the top")
-    grip.plot(timeline["time_s"], timeline["grip"], color=ORANGE, linewidth=1.0)
+    axes.plot([], [], color=AMBER, linewidth=1.0, label="grip, from 0 at the bottom to 1 at the top")
+    grip.plot(timeline["time_s"], timeline["grip"], color=AMBER, linewidth=1.0)
     grip.set_ylim(0, 1.05)
     grip.axis("off")
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=2, frameon=False, fontsize=7.5, borderpad=0)
@@ -244,7 +291,7 @@ def _lamps(axes: Axes, timeline: Json) -> None:
     """A line for each lamp while it is on."""
     for place, lamp in enumerate(LAMPS):
         lit = [place if lamp in on else float("nan") for on in timeline["lamps"]]
-        axes.plot(timeline["time_s"], lit, color=ORANGE, linewidth=2.5, solid_capstyle="butt")
+        axes.plot(timeline["time_s"], lit, color=AMBER, linewidth=2.5, solid_capstyle="butt")
     axes.set_ylim(len(LAMPS) - 0.4, -0.6)
     axes.set_yticks(range(len(LAMPS)), [lamp.replace("_", " ") for lamp in LAMPS], fontsize=7)
 
@@ -253,7 +300,7 @@ def _speeds(axes: Axes, timeline: Json) -> None:
     times_s, speeds = timeline["time_s"], timeline["speed_kmh"]
     nobodys = timeline["baseline_kmh"][: len(times_s)]
     limits = [float("nan") if limit is None else limit for limit in timeline["limit_kmh"]]
-    axes.plot(times_s, limits, color=RED, linewidth=1.0, drawstyle="steps-post", alpha=0.8, label="limit")
+    axes.plot(times_s, limits, color=VERMILION, linewidth=1.0, drawstyle="steps-post", alpha=0.8, label="limit")
     alone_s = times_s[: len(nobodys)]
     axes.plot(alone_s, nobodys, color=GREY, linewidth=1.0, linestyle=(0, (3, 2)), label="without the agent")
     axes.plot(times_s, speeds, color=BLUE, linewidth=1.3, label="speed")

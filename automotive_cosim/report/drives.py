@@ -9,8 +9,11 @@ from typing import Any
 import numpy as np
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.contracts.given import ToldPolicy
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.faults import clock, faults
+from automotive_cosim.drives.judge import FULL_S
 from automotive_cosim.drives.score import Score, together
 from automotive_cosim.measures.exposure import summed
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
@@ -53,7 +56,8 @@ def whole(rows: Sequence[DriveTrialRow]) -> Score:
 def standings(rows: Iterable[DriveTrialRow]) -> list[str]:
     """A line for each watcher."""
     lines = []
-    for each, mine in grouped(rows).items():
+    groups = grouped(rows)
+    for each, mine in groups.items():
         total = whole(mine)
         recall = "no events" if total.recall is None else f"{total.recall:.0%} of {total.events} events met"
         lines.append(
@@ -61,7 +65,14 @@ def standings(rows: Iterable[DriveTrialRow]) -> list[str]:
             f"{total.false_alarms_per_h:.1f} false alarms and {total.nuisances_per_h:.1f} nuisances an hour, "
             f"{counted(len(mine), 'drive')}"
         )
+    if len({whole(mine).events for mine in groups.values()}) > 1:
+        lines.append(DIVERGE)
     return lines
+
+
+DIVERGE = (
+    "Watchers meet different events on the same drive: after the first act, driver and traffic go another way."
+)
 
 
 # --- figures of several drives ----------------------------------------------------------------------------------
@@ -116,8 +127,14 @@ FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("Precision %", _share(lambda score: score.precision), ".0f"),
     ("False alarms/h", lambda rows: whole(rows).false_alarms_per_h, ".1f"),
     ("Nuisances/h", lambda rows: whole(rows).nuisances_per_h, ".1f"),
-    ("Median delay s", lambda rows: whole(rows).median_delay_s, ".1f"),
+    ("Known to act s", lambda rows: whole(rows).median_delay_s, ".1f"),
+    ("Due to act s", lambda rows: whole(rows).median_due_s, ".1f"),
     ("Watched %", _watched_share, ".0f"),
+)
+"""Columns of the first table: name, figure, format."""
+WITH_INTERVAL = 5
+"""The first of them have intervals."""
+EFFECTS: tuple[tuple[str, Figure, str], ...] = (
     ("Overspeed saved %", _saved(lambda harm: float(harm.over_limit_m)), ".0f"),
     ("Near collision s/h", _per_hour(lambda row: row.harm.short_ttc_s if row.harm else 0.0), ".1f"),
     (
@@ -131,9 +148,7 @@ FIGURES: tuple[tuple[str, Figure, str], ...] = (
     ("Tokens/h", _per_hour(lambda row: row.tokens_in + row.tokens_out), ".0f"),
     ("Model s/h", _per_hour(lambda row: row.model_seconds), ".0f"),
 )
-"""Columns of the first table: name, figure, format."""
-WITH_INTERVAL = 5
-"""The first of them have intervals."""
+"""Columns of the table of what watching did and took."""
 
 
 def interval(rows: Sequence[DriveTrialRow], figure: Figure) -> Interval | None:
@@ -179,16 +194,22 @@ def tables(rows: Sequence[DriveTrialRow]) -> list[Table]:
         table
         for table in (
             _watchers(groups),
+            _faults(groups),
             _kinds(groups),
             _families(groups),
+            _effects(groups),
             _measures(groups),
             _exposed(groups),
             _unwatched(rows),
-            house_rules(groups, "policy_of_drives"),
+            *([house_rules(groups, "policy_of_drives")] if any(map(_is_ruled, rows)) else []),
             _errors(rows),
         )
         if table.rows
     ]
+
+
+def _is_ruled(row: DriveTrialRow) -> bool:
+    return row.conditions.policy is not ToldPolicy.NONE or bool(row.breaches)
 
 
 def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
@@ -209,10 +230,51 @@ def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         "Watchers",
         ("Watcher", "Drives", "Hours", *(name for name, _, _ in FIGURES)),
         lines,
-        "Score: 0 is doing nothing, 100 is the rule-perfect watcher; a nuisance costs as much as "
-        "a miss. In brackets: 95 % intervals from resampling whole drives. Saved: compared with the "
-        "do-nothing run of the same drive. Near collision: below 3 s to the vehicle ahead while only hard braking "
-        "avoids it, and the same without the agent.",
+        "Score: 0 is doing nothing, 100 is the rule-perfect watcher; a nuisance costs as much as a miss of weight "
+        f"1, a look-alike taken for an event twice its weight. {DIVERGE} Known to act: median from when an event "
+        "could be known to the act that met it; due to act: from when it was due, of events met after that, where "
+        f"up to {FULL_S:g} s cost nothing. {_intervals_told(groups)}",
+    )
+
+
+def _intervals_told(groups: dict[Contestant, list[DriveTrialRow]]) -> str:
+    if all(interval(mine, _value) is None for mine in groups.values()):
+        return f"Fewer than {LEAST_DRIVES} drives give no intervals."
+    return f"In brackets: 95 % intervals from resampling whole drives, from {LEAST_DRIVES} drives on."
+
+
+def _effects(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
+    """What watching did on the road, and what it took."""
+    lines = tuple(
+        (each.label, *(told(mine, figure, form, bounded=False) for _, figure, form in EFFECTS))
+        for each, mine in groups.items()
+    )
+    return Table(
+        "effects",
+        "What watching did, and what it took",
+        ("Watcher", *(name for name, _, _ in EFFECTS)),
+        lines,
+        "Saved: compared with the do-nothing run of the same drive. Near collision: below 3 s to the vehicle ahead "
+        "while only hard braking avoids it, and the same without the agent.",
+    )
+
+
+def _faults(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
+    """What every watcher missed, met too late, or did needlessly."""
+    lines = tuple(
+        (each.label, f"{row.family}, seed {row.seed}", clock(fault.time_s), fault.what, fault.about, fault.why)
+        for each, mine in groups.items()
+        for row in mine
+        for fault in faults(row.events, row.acts)
+    )
+    return Table(
+        "faults",
+        "Missed, late and needless",
+        ("Watcher", "Drive", "When", "What", "Event or act", "Why"),
+        lines,
+        "When: minutes and seconds since departure at which something was due, or the agent acted. Why: what was "
+        "there, and until when there was time; of a needless act, what speaks against it of what could be known.",
+        heads=6,
     )
 
 
@@ -234,7 +296,9 @@ def _kinds(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         "Kinds of events",
         ("Kind", "Situation", *(each.label for each in groups)),
         tuple(lines),
-        "Events met, out of those that required an act; then look-alikes (which only resemble one) left alone.",
+        "Events met, out of those that required an act; then look-alikes (which only resemble one) left alone. "
+        "0/0: there was one, but it passed, or was settled, before anything was due, which is no point, also where "
+        "an act told of it. –: none on this watcher's drives, which go another way after its first act.",
         heads=2,
     )
 
@@ -270,7 +334,11 @@ def _measures(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         "TET s/h",
         "TIT s2/h",
     )
-    note = f"TET and TIT: below {DEFAULT_THRESHOLDS.ttc_s:g} s to the vehicle in front."
+    note = (
+        f"TET and TIT: below {DEFAULT_THRESHOLDS.ttc_s:g} s to the vehicle in front. They measure the driver and "
+        "the traffic, which go another way after the first act: on few drives, a difference says nothing about a "
+        "watcher."
+    )
     return Table("measures", "Surrogate measures of safety", ("Watcher", *heads), tuple(lines), note)
 
 
@@ -301,7 +369,7 @@ LEAST_HOURS = 0.005
 def _unwatched(rows: Sequence[DriveTrialRow]) -> Table:
     """Drives that were not watched to their end, and from when."""
     lines = tuple(
-        (row.id, f"{int(row.unwatched_from_s) // 60}:{int(row.unwatched_from_s) % 60:02d}", _why_unwatched(row))
+        (row.id, clock(row.unwatched_from_s), _why_unwatched(row))
         for row in rows
         if row.unwatched_from_s is not None
     )

@@ -12,7 +12,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.report import drives, findings
 from automotive_cosim.report.answer import answer
 from automotive_cosim.report.case import contrast
-from automotive_cosim.report.charts import INK, charts
+from automotive_cosim.report.charts import INK, charts, require_plots
 from automotive_cosim.report.consistency import consistency, varied
 from automotive_cosim.report.failures import FailureClass
 from automotive_cosim.report.interfaces import interfaces
@@ -49,6 +49,7 @@ def write_report(folder: Path) -> Path:
         UserError: the folder is not an evaluation's, has no episodes yet, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
+    require_plots()
     results = read_results(folder)
     if not results.rows and not results.drives:
         raise UserError(f"{folder} has no episodes yet ({results.coverage}); rerun its `eval` command to resume")

@@ -11,10 +11,10 @@ from automotive_cosim.report.summary import NONE, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
 
-Value = Callable[[EpisodeRow], float | None]
+FigureOf = Callable[[EpisodeRow], float | None]
 Instances = Mapping[tuple[Hashable, ...], EpisodeRow]
 
-FIGURES: tuple[tuple[str, int, Value], ...] = (
+FIGURES: tuple[tuple[str, int, FigureOf], ...] = (
     ("Steps", 1, lambda row: row.steps),
     ("Time, s", 1, lambda row: row.sim_seconds),
     ("Driver's interaction, s", 1, lambda row: row.interaction_s),
@@ -69,7 +69,7 @@ def interfaces(results: Results) -> Table:
     return Table("interfaces", "Touch, functions and both", columns, tuple(rows), note, heads=2)
 
 
-def _mean(rows: Sequence[EpisodeRow], digits: int, of: Value) -> str:
+def _mean(rows: Sequence[EpisodeRow], digits: int, of: FigureOf) -> str:
     value = mean(map(of, rows))
     return NONE if value is None else f"{value:.{digits}f}"
 

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
+
 import jinja2
+from markupsafe import Markup, escape
 
 _ENVIRONMENT = jinja2.Environment(
     loader=jinja2.PackageLoader("automotive_cosim", ""),
@@ -11,6 +14,14 @@ _ENVIRONMENT = jinja2.Environment(
     trim_blocks=True,
     lstrip_blocks=True,
 )
+
+
+def _ticked(text: str) -> Markup:
+    """A text whose words in backticks, as in Markdown, are code."""
+    return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
+
+
+_ENVIRONMENT.filters["ticked"] = _ticked
 
 
 def render(template: str, **values: object) -> str:

@@ -61,6 +61,11 @@ class DriveTrialRow(TrialRow):
         return None if self.score is None else self.score.met == self.score.events and not self.score.nuisances
 
     @property
+    def has_nothing_due(self) -> bool:
+        """Whether nothing required an act and the agent did nothing wrong: it says nothing about the agent."""
+        return self.score is not None and not self.score.events and not self.score.nuisances
+
+    @property
     def missing(self) -> tuple[str, ...]:
         """Events that were not met, and whether something was a nuisance."""
         if self.score is None:

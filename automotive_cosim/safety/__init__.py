@@ -3,8 +3,9 @@
 space      factors and their values, from a TOML file
 samplers   what to try next
 objective  by how much a trial passed or failed
-hunt       tries, repeats failures and makes them small
+hunt       tries, repeats failures and reduces them
 findings   what a search has found: rates, bounds, coverage, failures in words
+forecast   what a search will take before it runs
 trying     runs points as trials of an evaluation that grows
 page       report and regression suite
 """

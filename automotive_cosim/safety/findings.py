@@ -24,6 +24,8 @@ POINTS_A_PART, MOST_PARTS = 8, 16
 """Points for each of the finer parts into which a range is cut to see what it explains, and how many at most."""
 MOST_MAPS, MOST_COLUMNS = 3, 12
 """Maps of two factors, and levels of the second that fit beside each other."""
+MOST_EMPTY = 40
+"""Trials with nothing due that are listed; all of them are in tried.jsonl."""
 MOST_PAIRS = 30
 """Rows of the table of two factors."""
 
@@ -51,6 +53,11 @@ def percent(share: float) -> str:
 def judged(tried: Sequence[Tried]) -> list[Tried]:
     """Those with a margin."""
     return [each for each in tried if each.outcome.margin is not None]
+
+
+def nothing_due(tried: Sequence[Tried]) -> list[Tried]:
+    """Those in which nothing required an act: neither passes nor failures."""
+    return [each for each in tried if each.outcome.nothing_due]
 
 
 def unseen(found: Hunt) -> UnseenBound:
@@ -97,6 +104,7 @@ def tables(found: Hunt) -> list[Table]:
         _pairs(found),
         *_maps(found),
         _unsteady(found),
+        _nothing_due(found),
         _errors(found),
     )
     return [table for table in every if table.rows]
@@ -108,23 +116,26 @@ def _failures(found: Hunt) -> Table:
     for number, each in enumerate(found.minimal, 1):
         count = sum(tried.outcome.failed and each.covers(found.space, tried.point) for tried in samples)
         careful = {None: "not tried", True: "prevents it", False: "fails too"}[each.prevented]
-        lines.append((str(number), each.words(found.space), each.why, _passes(each), careful, str(count)))
+        lines.append(
+            (
+                str(number),
+                each.words(found.space),
+                each.why,
+                each.beside or "no neighbour found",
+                careful,
+                str(count),
+            )
+        )
     return Table(
         "failures",
         "Minimal failures",
-        ("No.", "Fails with", "What is missing", "Passes with", "A careful watcher", "Samples it explains"),
+        ("No.", "Fails with", "What is missing", "Beside it", "A careful watcher", "Samples it explains"),
         tuple(lines),
         f"Each failed {REPEATS} times of {REPEATS}. Factors that are not named are nominal; numbers are bisected. "
         "The careful watcher is the reference: rule-perfect on drives, oracle on tasks. failures/NN.toml replays "
-        "the failure and the nearest passing neighbour: automotive-cosim eval --plan.",
+        "the failure and what is beside it, the nearest point that does not fail: automotive-cosim eval --plan.",
         heads=5,
     )
-
-
-def _passes(each: MinimalFailure) -> str:
-    if each.neighbour is None:
-        return "no neighbour found"
-    return f"{each.differs} {told(each.neighbour[each.differs])}"
 
 
 def _unseen(found: Hunt) -> Table:
@@ -139,9 +150,10 @@ def _unseen(found: Hunt) -> Table:
         "What the search leaves unknown",
         ("Figure", "Value"),
         (
-            ("Points sampled and judged", str(len(samples))),
+            ("Points sampled in which something was due", str(len(samples))),
+            ("Points sampled in which nothing was due", str(len(nothing_due(found.samples)))),
             ("Runs in total, with repeats and reductions", str(len(found.tried))),
-            ("Points that represent the whole space", str(bound.even)),
+            ("Points that represent the whole space, something due", str(bound.even)),
             ("Failures among them", str(bound.failed)),
             (f"Failure rate in the space at most ({CONFIDENCE_WORDS})", share(bound.upper)),
             ("Failures among them that no minimal failure explains", str(bound.unexplained)),
@@ -157,8 +169,8 @@ def _unseen(found: Hunt) -> Table:
             *([("Minimal failures that a careful watcher prevents", f"{averted} of {tried}")] if tried else []),
         ),
         "Bounds are one-sided, by Clopper and Pearson (3/n if none was seen), over the points that were drawn from "
-        "the whole space; points to which a search was drawn by failures do not count. They hold for this space "
-        "and its values, not for the road.",
+        "the whole space and in which something was due; points to which a search was drawn by failures do not "
+        "count. They hold for this space and its values, not for the road.",
     )
 
 
@@ -166,11 +178,25 @@ def _rates(found: Hunt) -> Table:
     lines = []
     for factor in _varied(found):
         for level in dict.fromkeys(factor.levels):
-            mine = [each for each in judged(found.samples) if factor.level(each.point[factor.name]) == level]
-            if mine:
-                lines.append((factor.name, level, *_rate(mine), *_rate([each for each in mine if each.even])))
-    heads = "Factor", "Value", "Samples", "Pass % (interval)", "Of the whole space", "Pass % (interval)"
-    note = "Intervals: Wilson, 95 %. Points beyond those of the whole space are drawn to failures by their margins."
+            here = [each for each in found.samples if factor.level(each.point[factor.name]) == level]
+            mine, empty = judged(here), len(nothing_due(here))
+            if mine or empty:
+                even = [each for each in mine if each.even]
+                lines.append((factor.name, level, *_rate(mine), str(empty), *_rate(even)))
+    heads = (
+        "Factor",
+        "Value",
+        "Samples",
+        "Pass % (interval)",
+        "Nothing due",
+        "Of the whole space",
+        "Pass % (interval)",
+    )
+    note = (
+        "Samples are those in which something was due; the others, in which nothing was, are neither passes nor "
+        "failures. Intervals: Wilson, 95 %. Points beyond those of the whole space are drawn to failures by their "
+        "margins."
+    )
     return Table("rates", "Passed by factor", heads, tuple(lines), note, heads=2)
 
 
@@ -307,12 +333,27 @@ def _cell(
 
 def _unsteady(found: Hunt) -> Table:
     lines = [("passed when repeated", _point(each), each.outcome.trial) for each in found.unsteady]
-    lines += [("not made small", _point(each), each.outcome.trial) for each in found.not_reduced]
+    lines += [("not reduced", _point(each), each.outcome.trial) for each in found.not_reduced]
     return Table("other", "Other failures", ("What", "Where", "Trial"), tuple(lines), heads=3)
 
 
+def _nothing_due(found: Hunt) -> Table:
+    empty = nothing_due(found.tried)
+    more = f" {len(empty) - MOST_EMPTY} more are in tried.jsonl." if len(empty) > MOST_EMPTY else ""
+    return Table(
+        "nothing_due",
+        "Trials in which nothing was due",
+        ("Where", "Why", "Trial"),
+        tuple((_point(each), each.outcome.nothing_due, each.outcome.trial) for each in empty[:MOST_EMPTY]),
+        "Nothing that the space's rule judges required an act, and the agent did nothing wrong: whoever does "
+        "nothing gets the same. They are neither passes nor failures, no rate counts them, and samplers are drawn "
+        "elsewhere. If there are many, stage more, or widen `events` in the space's [failure]." + more,
+        heads=3,
+    )
+
+
 def _errors(found: Hunt) -> Table:
-    wrong = [each for each in found.tried if each.outcome.margin is None]
+    wrong = [each for each in found.tried if each.outcome.margin is None and not each.outcome.nothing_due]
     return Table(
         "search_errors",
         "Not judged",
@@ -331,15 +372,23 @@ def _point(each: Tried) -> str:
 def sentence(found: Hunt, agent: str) -> str:
     """What was found, in a sentence or two."""
     samples, bound = judged(found.samples), unseen(found)
-    failed = sum(each.outcome.failed for each in samples)
+    failed, empty = sum(each.outcome.failed for each in samples), len(nothing_due(found.samples))
+    if empty and not samples:
+        return f"Nothing was due in {_all_of(empty)}, so that nothing is known about {agent}."
     if not failed:
-        told_first = f"{agent} failed in none of {counted(len(samples), 'sample')}."
+        told_first = f"{agent} failed in none of {counted(len(samples), 'sample')}"
     else:
-        causes = counted(len(found.minimal), "minimal failure")
-        told_first = f"{agent} failed in {failed} of {counted(len(samples), 'sample')}, from {causes}."
+        causes = f", from {counted(len(found.minimal), 'minimal failure')}" if found.minimal else ", none reduced"
+        told_first = f"{agent} failed in {failed} of {counted(len(samples), 'sample')}{causes}"
+    told_first += f"; in {empty} more nothing was due." if empty else "."
     if bound.upper is None:
         return told_first
-    return f"{told_first} The failure rate in this space is at most {percent(bound.upper)} ({CONFIDENCE_WORDS})."
+    where = "Where something is due in this space, the failure rate" if empty else "The failure rate in this space"
+    return f"{told_first} {where} is at most {percent(bound.upper)} ({CONFIDENCE_WORDS})."
+
+
+def _all_of(samples: int) -> str:
+    return "the only sample" if samples == 1 else f"all {samples:,} samples"
 
 
 def as_json(found: Hunt) -> Json:
@@ -351,7 +400,8 @@ def as_json(found: Hunt) -> Json:
         "samples": len(samples),
         "failed": sum(each.outcome.failed for each in samples),
         "runs": len(found.tried),
-        "not_judged": len(found.tried) - len(judged(found.tried)),
+        "nothing_due": len(nothing_due(found.samples)),
+        "not_judged": len(found.tried) - len(judged(found.tried)) - len(nothing_due(found.tried)),
         "failure_rate_upper": bound.upper,
         "unseen_rate_upper": bound.unseen_upper,
         "pairs_covered": covered,
@@ -368,6 +418,7 @@ def as_json(found: Hunt) -> Json:
                 "point": dict(each.point),
                 "neighbour": None if each.neighbour is None else dict(each.neighbour),
                 "differs": each.differs,
+                "beside": each.beside,
                 "trial": each.trial,
                 "neighbour_trial": each.neighbour_trial,
                 "careful_prevents": each.prevented,

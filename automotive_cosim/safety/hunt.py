@@ -1,4 +1,4 @@
-"""Tries points, repeats what fails, and makes each failure small, with its nearest passing neighbour."""
+"""Tries points, repeats what fails, and reduces each failure, with its nearest passing neighbour."""
 
 from __future__ import annotations
 
@@ -18,6 +18,9 @@ BISECTIONS = 4
 
 MOST_STALE = 1000
 """Points in a row that were all known, after which a space of few points is taken to be used up."""
+UNTOLD = 2.0
+"""What a sampler is told of a point without a margin: further from failing than any pass, so that it is drawn
+elsewhere. A trial in which nothing was due is no success."""
 MOST_ASKED = 20
 """Points that a sampler is asked for at most, for each that is run."""
 
@@ -57,14 +60,16 @@ class MinimalFailure:
     changed: tuple[str, ...]
     """The factors that it needs; empty if the nominal point fails."""
     neighbour: SearchPoint | None
-    """The nearest point found that passes; None if there is none."""
+    """The nearest point found that does not fail; None if there is none."""
     differs: str
     """The one factor in which the two differ."""
     why: str
     trial: str
     neighbour_trial: str
+    neighbour_passes: bool = True
+    """Whether the neighbour passes; otherwise nothing is due there."""
     prevented: bool | None = None
-    """Whether a careful watcher passes there; None if it was not tried or judged."""
+    """Whether a careful watcher does not fail there; None if it was not tried or judged."""
 
     def covers(self, space: Space, point: SearchPoint) -> bool:
         """Whether a point has all that this failure needs, and perhaps more of it."""
@@ -77,6 +82,14 @@ class MinimalFailure:
             elif mine != theirs:
                 return False
         return True
+
+    @property
+    def beside(self) -> str:
+        """What holds at the neighbour, in words; empty without one."""
+        if self.neighbour is None:
+            return ""
+        what = "passes" if self.neighbour_passes else "nothing is due"
+        return f"{what} with {self.differs} {told(self.neighbour[self.differs])}"
 
     def words(self, space: Space) -> str:
         """The conditions that trigger it."""
@@ -103,9 +116,11 @@ class Hunt:
     unsteady: list[Tried] = field(default_factory=list)
     """Failures that passed when repeated."""
     not_reduced: list[Tried] = field(default_factory=list)
-    """Failures beyond the number that are made small."""
+    """Failures beyond the number that are reduced."""
     stopped: str = ""
     """Why it ended before its budget; empty if it did not."""
+    interrupted: bool = False
+    """Whether it was interrupted: by Ctrl-C, or by SIGTERM."""
 
     @property
     def samples(self) -> list[Tried]:
@@ -135,17 +150,21 @@ def hunt(
         sampler: chooses the points.
         budget: how many points of its choice are run; combinations that cannot be run are passed over. Repeats and
             reductions come in addition: about thirty runs a failure.
-        most_failures: how many failures are made small; those that one of them explains are not.
+        most_failures: how many failures are reduced; those that one of them explains are not.
         tell: called after each point.
+
+    Returns:
+        What it found; after an interruption, what it had found by then.
 
     Raises:
         UserError: the nominal point fails, or cannot be run.
         BudgetSpentError: ``evaluate`` refused the nominal point; a later refusal ends the search.
+        KeyboardInterrupt: interrupted in the nominal point; a later interruption ends the search.
     """
     found = Hunt(space)
     run = _Runner(found, evaluate)
     nominal = run(Phase.NOMINAL, space.nominal).outcome
-    if not nominal.passed:
+    if not nominal.held:
         why = f"fails ({nominal.why})" if nominal.failed else f"is not judged ({nominal.error})"
         raise UserError(
             f"the nominal point {why}; give nominal values, the first of each list, under which the agent passes"
@@ -162,13 +181,16 @@ def hunt(
         try:
             tried = run(Phase.SAMPLE, point, even=even)
             margin = tried.outcome.margin
-            sampler.tell(point, 1.0 if margin is None else margin)
+            sampler.tell(point, UNTOLD if margin is None else margin)
             if tried.outcome.failed and not any(each.covers(space, point) for each in found.minimal):
                 _reduce(run, tried, most_failures)
+            tell(found)
         except BudgetSpentError as spent:
             found.stopped = str(spent)
             break
-        tell(found)
+        except KeyboardInterrupt:
+            found.stopped, found.interrupted = "interrupted", True
+            break
     return found
 
 
@@ -181,7 +203,7 @@ def try_carefully(found: Hunt, careful: Evaluate) -> None:
     """
     for number, each in enumerate(found.minimal):
         outcome = careful(each.point, 0)
-        found.minimal[number] = replace(each, prevented=None if outcome.margin is None else outcome.passed)
+        found.minimal[number] = replace(each, prevented=outcome.held if outcome.failed or outcome.held else None)
 
 
 class _Runner:
@@ -214,7 +236,7 @@ class _Runner:
 def _reduce(run: _Runner, first: Tried, most: int) -> None:
     try:
         _sort_out(run, first, most)
-    except BudgetSpentError:
+    except (BudgetSpentError, KeyboardInterrupt):
         run.found.not_reduced.append(first)
         raise
 
@@ -245,7 +267,7 @@ def minimise(run: _Runner, first: Tried) -> MinimalFailure:
         tried = run(Phase.MINIMISE, point | {factor.name: factor.nominal})
         if tried.outcome.failed:
             point, last = dict(tried.point), tried
-        elif tried.outcome.margin is not None:
+        elif tried.outcome.held:
             passing.append(tried)
     for factor in space.factors:
         if not isinstance(factor, FactorRange) or not factor.is_ordered:
@@ -259,7 +281,7 @@ def minimise(run: _Runner, first: Tried) -> MinimalFailure:
                 tried = run(Phase.MINIMISE, point | {factor.name: middle})
                 if tried.outcome.failed:
                     point, last, bad = dict(tried.point), tried, factor.unit(middle)
-                elif tried.outcome.margin is not None:
+                elif tried.outcome.held:
                     passing.append(tried)
                     good = factor.unit(middle)
                 else:
@@ -275,19 +297,21 @@ def minimise(run: _Runner, first: Tried) -> MinimalFailure:
         last.outcome.why,
         last.outcome.trial,
         "" if neighbour is None else neighbour.outcome.trial,
+        neighbour is None or neighbour.outcome.passed,
     )
 
 
 def _neighbour(run: _Runner, point: SearchPoint, passing: Sequence[Tried]) -> tuple[Tried | None, str]:
-    """The nearest passing point that differs in one factor: known, or made of those that nearly do."""
+    """The nearest point that differs in one factor and passes, or else has nothing due: known, or made of those
+    that nearly do."""
     space = run.found.space
     made: list[Tried] = []
     for tried in passing:
         for name in _differing(tried.point, point):
             near = run(Phase.MINIMISE, {**point, name: tried.point[name]})
-            if near.outcome.margin is not None and not near.outcome.failed:
+            if near.outcome.held:
                 made.append(near)
-    nearest = min(made, key=lambda each: space.distance(each.point, point), default=None)
+    nearest = min(made, key=lambda each: (not each.outcome.passed, space.distance(each.point, point)), default=None)
     return nearest, "" if nearest is None else next(_differing(nearest.point, point))
 
 

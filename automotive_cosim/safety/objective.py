@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.drives.judge import EventOutcome, JudgedEvent
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
@@ -21,7 +23,7 @@ class TriedOutcome:
     """What came of one run at a point."""
 
     margin: float | None
-    """From -1 (all was wrong) over 0 to 1 (all was right at once); None if it could not be run."""
+    """From -1 (all was wrong) to 1 (all was right at once), a failure below 0; None if not run, or nothing due."""
     failed: bool
     why: str = ""
     """What was missing."""
@@ -31,11 +33,19 @@ class TriedOutcome:
     """Why it could not be run, or its situation did not arise."""
     seconds: float = 0.0
     """Wall time."""
+    nothing_due: str = ""
+    """Why it says nothing about the agent: nothing required an act, and the agent did nothing wrong. It is neither
+    a pass nor a failure."""
 
     @property
     def passed(self) -> bool:
-        """Whether it was judged and did not fail."""
+        """Whether something was due and it did not fail."""
         return self.margin is not None and not self.failed
+
+    @property
+    def held(self) -> bool:
+        """Whether it ran to its end without a failure: it passed, or nothing was due."""
+        return self.passed or bool(self.nothing_due)
 
     @property
     def is_unrunnable(self) -> bool:
@@ -50,11 +60,13 @@ def outcome_of(row: TrialRow, rule: FailureRule) -> TriedOutcome:
     of its verdict's parts that do not hold. A drive's is the least such share of its events, counted from when they
     could be known; if it failed, minus the share of its events and acts that were wrong. With ``drive_value_below``
     it is the distance to that value, in hundreds. ``ttc_below_s`` takes the lower of both.
+    A drive on which no event of the rule required an act, with nothing done wrong, has no margin.
     """
     if row.error is not None or row.outcome is None:
         return TriedOutcome(
             None, False, trial=row.id, error=row.error or "it was not judged", seconds=row.wall_seconds
         )
+    margin: float | None
     if isinstance(row, DriveTrialRow):
         margin, why = _of_drive(row, rule)
     else:
@@ -62,9 +74,11 @@ def outcome_of(row: TrialRow, rule: FailureRule) -> TriedOutcome:
         margin, why = _of_task(row)
     nearest_s = None if row.measures is None else row.measures.min_ttc_s
     if rule.ttc_below_s is not None and nearest_s is not None:
-        left = (nearest_s - rule.ttc_below_s) / TTC_SCALE_S
-        if left < margin:
-            margin, why = max(-1.0, left), f"{nearest_s:.1f} s to collision"
+        left = max(-1.0, min(1.0, (nearest_s - rule.ttc_below_s) / TTC_SCALE_S))
+        if margin is None or left < margin:
+            margin, why = left, f"{nearest_s:.1f} s to collision"
+    if margin is None:
+        return TriedOutcome(None, False, trial=row.id, seconds=row.wall_seconds, nothing_due=why)
     failed = margin < 0
     return TriedOutcome(round(margin, 6), failed, why if failed else "", row.id, seconds=row.wall_seconds)
 
@@ -78,22 +92,32 @@ def _of_task(row: EpisodeRow) -> tuple[float, str]:
     return max(0.0, min(1.0, (deadline_s - goal_s) / deadline_s)), ""
 
 
-def _of_drive(row: DriveTrialRow, rule: FailureRule) -> tuple[float, str]:
+def _of_drive(row: DriveTrialRow, rule: FailureRule) -> tuple[float | None, str]:
+    """The margin and what was missing; without a margin, why nothing was due."""
+    of_rule = [event for event in row.events if not rule.events or event.kind in rule.events]
+    events = [event for event in of_rule if event.outcome.counts or event.lookalike]
+    wrong = [event for event in events if _is_wrong(event)]
+    nuisances = 0 if rule.events else sum(act.worth.is_nuisance for act in row.acts)
+    if not wrong and not nuisances and all(event.lookalike for event in events):
+        return None, _nothing_due(of_rule, rule)
     if rule.drive_value_below is not None:
         value = row.value or 0.0
         return max(-1.0, min(1.0, (value - rule.drive_value_below) / 100)), f"value {value:.0f}"
-    events = [
-        event
-        for event in row.events
-        if (not rule.events or event.kind in rule.events) and (event.outcome.counts or event.lookalike)
-    ]
-    wrong = [event for event in events if _is_wrong(event)]
-    nuisances = 0 if rule.events else sum(act.worth.is_nuisance for act in row.acts)
     if wrong or nuisances:
         share = (len(wrong) + nuisances) / max(1, len(events) + nuisances)
         told = [f"{event.kind} {event.outcome}" for event in wrong]
         return -share, ", ".join(dict.fromkeys([*told, *(["nuisances"] if nuisances else [])]))
-    return min((_left(event) for event in events if not event.lookalike), default=1.0), ""
+    return min(_left(event) for event in events if not event.lookalike), ""
+
+
+def _nothing_due(events: Sequence[JudgedEvent], rule: FailureRule) -> str:
+    """In words: what there was of the rule's kinds, none of which required an act."""
+    alike = sum(event.lookalike for event in events)
+    void = len(events) - alike
+    what = f"no {' or '.join(rule.events)}".replace("_", " ") if rule.events else "no event"
+    there = [f"{void} passed without, or came too suddenly for anybody"] if void else []
+    there += [counted(alike, "look-alike was", "look-alikes were") + " left alone"] if alike else []
+    return f"{what} required an act" + (f": {', '.join(there)}" if there else "")
 
 
 def _is_wrong(event: JudgedEvent) -> bool:

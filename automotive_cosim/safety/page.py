@@ -8,14 +8,15 @@ from dataclasses import asdict
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.report.charts import is_installed
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.plan import PlannedTrial
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write, read_manifest
 from automotive_cosim.safety.curves import curves
-from automotive_cosim.safety.findings import as_json, sentence, tables
+from automotive_cosim.safety.findings import as_json, judged, nothing_due, sentence, tables
 from automotive_cosim.safety.hunt import Hunt, MinimalFailure, Tried
-from automotive_cosim.safety.space import SearchPoint, told
+from automotive_cosim.safety.space import SearchPoint
 from automotive_cosim.safety.trying import trial_of
 
 ROWS, FINDINGS, PAGE, PLANS = "tried.jsonl", "findings.json", "search.html", "failures"
@@ -68,7 +69,7 @@ def suite(found: Hunt, agent: str, model: str, failures: list[MinimalFailure] | 
         if each.neighbour is not None:
             lines += [
                 "",
-                f"# passes with {each.differs} {told(each.neighbour[each.differs])}",
+                f"# {each.beside}",
                 *_entry(each.neighbour),
             ]
     return "\n".join(lines) + "\n"
@@ -99,9 +100,12 @@ def _page(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> str
         found=found,
         sentence=sentence(found, agent),
         failures=len(found.minimal),
-        errors=sum(each.outcome.margin is None for each in found.tried),
+        failed=sum(each.outcome.failed for each in found.samples),
+        empty=len(nothing_due(found.samples)),
+        judged=len(judged(found.samples)),
         tables=made,
         curves=curves(found),
+        has_curves=is_installed(),
         starts=read_manifest(folder)["starts"],
         stand_in=model == "rules",
     )

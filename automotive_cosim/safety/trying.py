@@ -86,6 +86,8 @@ class Trying:
     executor: Executor
     ran: int = 0
     """Trials since this start."""
+    stop: str = ""
+    """Why nothing more is run, although the budget lasts; empty while it may be."""
     tell: Callable[[TrialRow], None] = lambda row: None
 
     def __call__(self, point: SearchPoint, repeat: int) -> TriedOutcome:
@@ -113,9 +115,10 @@ class Trying:
         return outcome_of(row, self.space.rule)
 
     def _run(self, job: TrialJob) -> TrialRow:
-        if refusal := self.limit.refusal():
+        if refusal := self.stop or self.limit.refusal():
             raise BudgetSpentError(refusal)
-        row = self.runner(job, self.store.folder)
+        since_s = time.monotonic()
+        row = replace(self.runner(job, self.store.folder), wall_seconds=round(time.monotonic() - since_s, 3))
         note_spent(self.store, self.limit)
         if row.error_kind == BudgetSpentError.__name__:
             raise BudgetSpentError(str(row.error))

@@ -84,6 +84,9 @@ def test_figures_are_those_of_the_rows(tmp_path: Path) -> None:
     assert events["tunnel"]["Met % (interval)"].startswith("67 (")
     assert events["blue_light"]["Look-alikes left"] == "6 of 6"
     assert len(table(folder, "failures")) == 2
+    listed = [(row["When"], row["What"], row["Event or act"]) for row in table(folder, "faults")]
+    assert listed == [("0:12", "missed", "tunnel")] * 2
+    assert "too late after 0:20" in table(folder, "faults")[0]["Why"]
     measures = {row["Measure"]: row for row in table(folder, "measures")}
     assert measures["Min TTC ahead, s"]["Critical trials, or interval"].startswith("≤ 3: 2 of 6")
     assert measures["TET ahead, s/h"]["Median or rate"] == "2.50"
@@ -108,6 +111,20 @@ def test_claims_follow_from_the_rows(tmp_path: Path, missed: int, root: str, act
     bad, total, upper = failing(subject)
     assert (bad, total) == (missed, 6)
     assert 0.3 < upper < 0.6
+
+
+def test_drives_with_nothing_due_neither_pass_nor_fail(tmp_path: Path) -> None:
+    """Of six drives, one fails and five have nothing due."""
+    subject = read_subject(run(tmp_path / "runs", 1))
+    empty = replace(NOTHING, driven_s=1440.0)
+    rows = tuple(row if row.missing else replace(row, score=empty, events=()) for row in subject.drives)
+    subject = replace(subject, rows=rows)
+    assert (len(subject.passed), len(subject.failed), len(subject.nothing_due)) == (0, 1, 5)
+    assert failing(subject)[:2] == (1, 1)
+    assert dossier(subject).sentence.endswith("In 5 of them nothing was due.")
+    nothing = replace(subject, rows=tuple(row for row in rows if not row.missing))
+    assert failing(nothing) == (0, 0, 1.0)
+    assert claims(nothing).status == "limited"
 
 
 def test_an_agent_must_be_named_if_there_are_several(tmp_path: Path) -> None:

@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from numpy.random import default_rng
 
+from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
+from automotive_cosim.drives.score import together
 from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.report.stats import upper_bound
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.meter import Budget, Meter, Spent
 from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit
 from automotive_cosim.safety.curves import curves, means
-from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, tables, unseen
+from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, sentence, tables, unseen
 from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_carefully
-from automotive_cosim.safety.objective import TriedOutcome
+from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.page import suite
-from automotive_cosim.safety.samplers import SAMPLERS, even_points, make_sampler
-from automotive_cosim.safety.space import FactorChoices, FactorRange, SearchPoint, Space, read_space
+from automotive_cosim.safety.samplers import SAMPLERS, RandomSampler, even_points, make_sampler
+from automotive_cosim.safety.space import FactorChoices, FactorRange, FailureRule, SearchPoint, Space, read_space
 
 SPACE = Space(
     (
@@ -115,7 +120,93 @@ def test_combinations_that_cannot_be_run_cost_nothing() -> None:
 
     found = hunt(SPACE, evaluate, make_sampler("random", SPACE, 20, 0), 20)
     assert found.run == 20 < len(found.samples)
-    assert dict(tables(found)[-1].rows)
+    assert tables(found)[-1].name == "search_errors"
+
+
+def test_what_has_nothing_due_is_neither_a_pass_nor_a_failure() -> None:
+    """It fails in the afternoon, unless the driver is calm; before that, and then, nothing is due."""
+
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        if float(point["hour"]) < 14 or point["driver"] == "calm":
+            return TriedOutcome(None, False, trial="t", nothing_due="no event required an act")
+        return TriedOutcome(-0.5, True, "late", "t")
+
+    found = hunt(SPACE, evaluate, make_sampler("random", SPACE, 30, 0), 30)
+    empty, told = [each for each in found.samples if each.outcome.nothing_due], as_json(found)
+    assert 0 < len(empty) == told["nothing_due"] < 30
+    assert (told["samples"], told["not_judged"]) == (30 - len(empty), 0)
+    assert f"in {len(empty)} more nothing was due" in sentence(found, "me")
+    assert any(table.name == "nothing_due" for table in tables(found))
+    rates = next(each for each in tables(found) if each.name == "rates")
+    calm = next(row for row in rates.rows if row[1] == "calm")
+    assert (calm[2], calm[3]) == ("0", "–")
+    (minimal,) = found.minimal
+    assert 14 <= float(minimal.point["hour"]) < 15
+    assert minimal.beside.startswith("nothing is due with hour 13")
+
+
+def test_where_nothing_is_ever_due_nothing_is_known() -> None:
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        return TriedOutcome(None, False, trial="t", nothing_due="no event required an act")
+
+    class Listener(RandomSampler):
+        def tell(self, point: SearchPoint, margin: float) -> None:
+            told.append(margin)
+
+    told: list[float] = []
+    found = hunt(SPACE, evaluate, Listener(SPACE, 9, default_rng(0)), 9)
+    assert min(told) > 1, "further from failing than any pass"
+    assert (as_json(found)["samples"], unseen(found).upper) == (0, None)
+    assert sentence(found, "me") == "Nothing was due in all 9 samples, so that nothing is known about me."
+
+
+def test_an_interrupted_search_keeps_what_it_has() -> None:
+    def evaluate(point: SearchPoint, repeat: int) -> TriedOutcome:
+        nonlocal asked
+        asked += 1
+        if asked > 5:
+            raise KeyboardInterrupt
+        return TriedOutcome(0.5, False, trial="t")
+
+    asked = 0
+    found = hunt(SPACE, evaluate, make_sampler("random", SPACE, 9, 0), 9)
+    assert (found.run, found.stopped, found.interrupted) == (4, "interrupted", True)
+    with pytest.raises(KeyboardInterrupt):
+        hunt(SPACE, evaluate, make_sampler("random", SPACE, 9, 0), 9)
+
+
+@pytest.mark.parametrize(
+    ("events", "acts", "rule", "margin"),
+    [
+        ((), (), FailureRule(), None),
+        ((EventOutcome.VOID, EventOutcome.AVOIDED), (), FailureRule(), None),
+        ((EventOutcome.VOID, EventOutcome.AVOIDED), (), FailureRule(drive_value_below=60), None),
+        ((), (Worth.FALSE,), FailureRule(), -1.0),
+        ((), (Worth.FALSE,), FailureRule(events=("tunnel",)), None),
+        ((EventOutcome.TAKEN,), (), FailureRule(events=("tunnel",)), -1.0),
+        ((EventOutcome.MISSED, EventOutcome.AVOIDED), (), FailureRule(events=("tunnel",)), -0.5),
+        ((EventOutcome.MISSED,), (), FailureRule(events=("belt",)), None),
+        ((EventOutcome.HIT, EventOutcome.VOID), (), FailureRule(), 0.5),
+    ],
+)
+def test_a_drive_with_nothing_due_has_no_margin(
+    events: tuple[EventOutcome, ...], acts: tuple[Worth, ...], rule: FailureRule, margin: float | None
+) -> None:
+    planned = make_plan({"agents": ["silent"], "drives": ["grid_june"]}).jobs()[0].planned()
+    assert isinstance(planned, DriveTrialRow)
+    alike = EventOutcome.AVOIDED, EventOutcome.TAKEN
+    row = replace(
+        planned,
+        score=together([]),
+        events=tuple(
+            JudgedEvent("tunnel", "", each in alike, 1.0, each, 10.0, 12.0, 20.0, 30.0, 15.0) for each in events
+        ),
+        acts=tuple(JudgedAct(3.0, "alert tunnel", each, "") for each in acts),
+    )
+    found = outcome_of(row, rule)
+    assert found.margin == margin
+    assert bool(found.nothing_due) is (margin is None)
+    assert found.failed is (margin is not None and margin < 0)
 
 
 def test_a_search_whose_budget_is_spent_keeps_what_it_has() -> None:

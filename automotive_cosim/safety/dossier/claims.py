@@ -89,7 +89,7 @@ def _known_hazards(subject: Subject) -> Claim:
     failed = counted(len(subject.failed), "failing trial")
     if subject.findings is None:
         status = "not examined" if subject.failed else "limited"
-        return Claim(text, status, f"{failed}; no search made them small.", "failures")
+        return Claim(text, status, f"{failed}; no search has found what triggers them.", "failures")
     words = "; ".join(each["words"] for each in subject.findings["failures"])
     return Claim(text, "limited", f"{failed}. Triggering conditions: {words or 'none found'}.", "failures")
 
@@ -126,8 +126,9 @@ def _covered(subject: Subject) -> Claim:
 def _traced(subject: Subject) -> Claim:
     traced = sum(row.trace_sha256 is not None for row in subject.judged)
     total = len(subject.judged)
+    have = "has a hash of its" if total == 1 else "have a hash of their"
     return Claim(
         "The evidence can be checked and repeated.", "supported" if traced == total else "limited",
-        f"{traced} of {counted(total, 'trial')} have a hash of their trace; the files' hashes are listed.",
+        f"{traced} of {counted(total, 'trial')} {have} trace; the files' hashes are listed.",
         "versions",
     )  # fmt: skip

@@ -50,7 +50,7 @@ def item(subject: Subject) -> Section:
         ("Model", ", ".join(sorted({row.model for row in subject.rows}))),
         ("Conditions", "; ".join(conditions)),
         ("Run with", f"automotive-cosim {subject.results.version}"),
-        ("Not part of it", "the driver, who is SUMO's, with a profile; the road; the car's sensors"),
+        ("Not part of it", "the driver (a model of SUMO, with a profile), the road and the car's sensors"),
     ]
     return Section("item", "Item and agent", tables=(fact_table("item", "The item", lines),))
 

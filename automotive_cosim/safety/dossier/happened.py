@@ -9,15 +9,19 @@ from statistics import median
 import numpy as np
 
 from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.faults import clock, faults
 from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.measures import DEFAULT_THRESHOLDS
 from automotive_cosim.report.stats import CONFIDENCE
 from automotive_cosim.report.tables import Table
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.safety.dossier.subject import CONFIDENCE_WORDS, Section, Subject, hours_of, share_told
 
 MOST_FAILURES = 40
 """Failing trials that are listed; all of them are in the data."""
+MOST_FAULTS = 200
+"""Single faults that are listed, likewise."""
 DRAWS = 2000
 """Bootstrap samples, at which the second digit of a bound is stable."""
 LEAST_CLUSTERS = 5
@@ -86,17 +90,49 @@ def failures(subject: Subject) -> Section:
         if cases:
             made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=5))
     else:
-        told.append("No search was made: failures were not made small. automotive-cosim search does that.")
+        told.append(
+            "No search was made, so that the conditions which each failure needs are not known. automotive-cosim "
+            "search finds them."
+        )
     lines = tuple(
         (row.id, ", ".join(row.missing).replace("_", " ") or "–") for row in subject.failed[:MOST_FAILURES]
     )
     if lines:
         more = len(subject.failed) - len(lines)
-        note = "Replay: automotive-cosim replay FOLDER TRIAL." + (f" {more} more are in the data." if more else "")
+        note = (
+            "automotive-cosim replay FOLDER TRIAL runs a trial again and says whether every step is the same, bit "
+            "for bit." + (f" {more} more are in the data." if more else "")
+        )
         made.append(Table("failures", "Failing trials", ("Trial", "What is missing"), lines, note, heads=2))
     else:
         told.append("No judged trial failed.")
+    if (listed := _faults(subject.drives)).rows:
+        made.append(listed)
     return Section("failures", "Failures", tuple(told), tuple(made))
+
+
+def _faults(drives: Sequence[DriveTrialRow]) -> Table:
+    """What was missed, late or needless in each drive, one by one, and why."""
+    every = [(row, fault) for row in drives for fault in faults(row.events, row.acts)]
+    several = len({(row.repeat, row.settings, row.conditions) for row in drives}) > 1
+    lines = tuple(
+        (
+            row.id if several else f"{row.family}, seed {row.seed}",
+            clock(fault.time_s),
+            fault.what,
+            fault.about,
+            fault.why,
+        )
+        for row, fault in every[:MOST_FAULTS]
+    )
+    more = len(every) - len(lines)
+    note = (
+        "When: minutes and seconds since departure at which something was due, or the agent acted. Why: what was "
+        "there, and until when there was time; of a needless act, what speaks against it of what could be known."
+        + (f" {more} more are in the trials of the data." if more else "")
+    )
+    heads = "Drive", "When", "What", "Event or act", "Why"
+    return Table("faults", "Missed, late and needless", heads, lines, note, heads=5)
 
 
 def _told(value: object) -> str:

@@ -40,7 +40,7 @@ def provenance(subject: Subject) -> Section:
         Table(
             "hashes", "Files", ("File", "SHA-256"), files,
             "Of all traces: of the lines that sha256sum prints for them, by name. automotive-cosim replay "
-            "repeats a trial bit for bit; verify checks a folder.", heads=2,
+            "repeats a trial bit for bit; automotive-cosim publish verify checks a folder.", heads=2,
         ),
     )  # fmt: skip
     return Section("versions", "Versions and hashes", tables=tables)

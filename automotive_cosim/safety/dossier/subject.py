@@ -74,6 +74,17 @@ class Subject:
         return [row for row in self.judged if not row.has_succeeded]
 
     @property
+    def nothing_due(self) -> list[TrialRow]:
+        """Those in which nothing required an act, with nothing done wrong: neither passes nor failures."""
+        return [row for row in self.judged if isinstance(row, DriveTrialRow) and row.has_nothing_due]
+
+    @property
+    def passed(self) -> list[TrialRow]:
+        """Those that did what was due, and nothing needless."""
+        empty = {row.id for row in self.nothing_due}
+        return [row for row in self.judged if row.has_succeeded and row.id not in empty]
+
+    @property
     def drives(self) -> list[DriveTrialRow]:
         """The judged drives."""
         return [row for row in self.judged if isinstance(row, DriveTrialRow)]
@@ -90,9 +101,10 @@ class Subject:
 
     @property
     def clusters(self) -> dict[Hashable, list[TrialRow]]:
-        """The independent units: drives of one family and seed, and episodes of one task, depend on each other."""
+        """The independent units in which something was due: drives of one family and seed, and episodes of one
+        task, depend on each other."""
         found: dict[Hashable, list[TrialRow]] = {}
-        for row in self.judged:
+        for row in (*self.passed, *self.failed):
             key = (row.subject, row.seed) if isinstance(row, DriveTrialRow) else (row.subject,)
             found.setdefault(key, []).append(row)
         return found
@@ -143,17 +155,18 @@ def failing(subject: Subject) -> tuple[int, int, float]:
     """Independent units that failed, all of them, and the upper bound of their share."""
     groups = subject.clusters
     bad = sum(any(not row.has_succeeded for row in rows) for rows in groups.values())
-    return bad, len(groups), upper_bound(bad, len(groups))
+    return bad, len(groups), upper_bound(bad, len(groups)) if groups else 1.0
 
 
 def sentence(subject: Subject) -> str:
     """The result in a sentence."""
-    failed, judged = len(subject.failed), len(subject.judged)
+    failed, judged, empty = len(subject.failed), len(subject.judged), len(subject.nothing_due)
     hours = f"{subject.hours:.2f} h driven"
+    more = f" In {empty} of them nothing was due." if empty else ""
     if subject.findings is not None:
         minimal = counted(len(subject.findings["failures"]), "minimal failure")
-        return f"A search with {counted(judged, 'judged trial')} ({hours}) found {minimal}."
-    return f"{failed} of {counted(judged, 'judged trial')} failed ({hours})."
+        return f"A search with {counted(judged, 'judged trial')} ({hours}) found {minimal}.{more}"
+    return f"{failed} of {counted(judged, 'judged trial')} failed ({hours}).{more}"
 
 
 def share_told(count: int, total: int) -> str:

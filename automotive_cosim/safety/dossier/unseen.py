@@ -62,7 +62,7 @@ def unseen(subject: Subject) -> Section:
                 lines.append((name, f"{found[part]} of {found[whole]}", how))
     else:
         bad, total, upper = failing(subject)
-        three = f"; rule of three: {percent(min(1.0, 3 / total))}" if not bad else ""
+        three = f"; rule of three: {percent(min(1.0, 3 / total))}" if total and not bad else ""
         units = counted(total, "independent unit")
         lines.append(
             (
@@ -78,14 +78,16 @@ def unseen(subject: Subject) -> Section:
         (
             f"Next situation of a kind not seen ({len(kinds)} kinds in "
             f"{counted(sum(kinds.values()), 'situation')})",
-            f"about {percent(share)}, at most {percent(upper)}",
+            f"estimate {percent(share)}, "
+            + ("no useful bound from so few" if upper >= 1 else f"at most {percent(upper)}"),
             "Good and Turing",
         )
     )
     table = Table(
         "unseen", "Bounds on what was not seen", ("Figure", f"Bound ({CONFIDENCE_WORDS}, one-sided)", "By"),
         tuple(lines),
-        "Units: drives of one family and seed, or episodes of one task, count once. Kinds: a place with a kind of "
+        "Units: drives of one family and seed, or episodes of one task, count once, if something was due in "
+        "them. Kinds: a place with a kind of "
         "event, or a task's half in a place. All bounds are for trials drawn as these were, not for the road.",
         heads=3,
     )  # fmt: skip
@@ -121,14 +123,15 @@ def _kinds(subject: Subject) -> Iterator[tuple[str, str]]:
 
 def areas(subject: Subject) -> Section:
     """The four areas of ISO 21448, as far as the run fills them."""
-    failures, passed = subject.failed, len(subject.judged) - len(subject.failed)
+    failures, passed, empty = subject.failed, len(subject.passed), len(subject.nothing_due)
     minimal = "" if subject.findings is None else f", {counted(len(subject.findings['failures']), 'minimal case')}"
     _, _, upper = failing(subject)
     bound = (subject.findings or {}).get("failure_rate_upper", upper)
     lines = (
         (
             "1: known, not hazardous",
-            f"{counted(passed, 'trial')} that passed",
+            f"{counted(passed, 'trial')} that passed"
+            + (f"; {counted(empty, 'more trial')} in which nothing was due" if empty else ""),
             "Events, Operational domain covered",
         ),
         ("2: known, hazardous", f"{counted(len(failures), 'trial')} that failed{minimal}", "Failures"),

@@ -1,0 +1,43 @@
+"""Progress as lines: nothing is said twice, and an estimate never counts upwards."""
+
+from __future__ import annotations
+
+from io import StringIO
+
+from automotive_cosim.cli.batches import ProgressView
+from automotive_cosim.cli.console import Console
+from automotive_cosim.run.batch import Progress
+from automotive_cosim.run.trial_row import TrialRow
+
+
+def told(*states: tuple[float, int, float | None]) -> list[str]:
+    """The lines after these: seconds since the start, runs that have ended of two, and seconds left."""
+    text = StringIO()
+    view: ProgressView[TrialRow] = ProgressView(Console(file=text), "drives", lambda _: "so far")
+    for seconds, done, left_s in states:
+        warming = () if done else ("grid",)
+        view.tell(Progress(2, done, done, done, 0, done, seconds, left_s, None, warming))
+    return text.getvalue().splitlines()
+
+
+def test_what_is_the_same_is_said_again_only_after_a_while() -> None:
+    lines = told(*((10.0 * step, 0, None) for step in range(13)))
+    assert lines == ["0 of 2 drives; so far; warming up grid"] * 2
+
+
+def test_an_estimate_that_rises_is_not_told() -> None:
+    states = [
+        (100.0, 1, 60.0),
+        (120.0, 1, 40.0),
+        (160.0, 1, 1.0),
+        (180.0, 1, 15.0),
+        (200.0, 1, 25.0),
+        (210.0, 2, 0.0),
+    ]
+    assert told(*states) == [
+        "1 of 2 drives; so far, 1:00 left",
+        "1 of 2 drives; so far, 0:40 left",
+        "1 of 2 drives; so far, 0:01 left",
+        "1 of 2 drives; so far; it takes longer than expected",
+        "2 of 2 drives; so far",
+    ]
