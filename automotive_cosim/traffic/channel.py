@@ -9,8 +9,8 @@ from contextlib import suppress
 from typing import Any
 
 LOADING_LIMIT_S = 1200.0
-"""Wall time that the simulation may take to load a network without a sign of life. A city of 50,000 edges takes 36 s
-of an idle core, and more than 300 s on a crowded machine."""
+"""Wall time that the simulation may take to load a network without a sign of life. A city of 50,000 edges takes
+36 s of an idle core, and more than 300 s on a crowded machine."""
 
 _LENGTH = struct.Struct("!Q")
 
