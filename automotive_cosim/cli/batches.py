@@ -120,11 +120,12 @@ class ProgressView(Generic[R]):
     def tell(self, progress: Progress[R]) -> None:
         """Shows the current progress."""
         progress, overdue = self._overdue(progress)
-        said = self._words(progress) + (overdue or _warming(progress))
+        told = ", ".join(filter(None, (self._words(progress), time_left(progress))))
+        said = "; ".join(filter(None, (told, overdue or _warming(progress))))
         if self._bar and self._task is not None:
             self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
             return
-        line = f"{progress.done} of {progress.planned} {self._what}; {said}"
+        line = f"{progress.done} of {progress.planned} {self._what}{said and f'; {said}'}"
         every_s = self.UNCHANGED_S if line == self._said else self.EVERY_S
         if progress.seconds - self._said_s >= every_s or progress.done == progress.planned:
             self._said_s, self._said = progress.seconds, line
@@ -137,7 +138,7 @@ class ProgressView(Generic[R]):
             return progress, ""
         up_s, (done, was_s) = progress.seconds + progress.left_s, self._known
         if progress.done == done and up_s > was_s + self.OVERDUE_S:
-            return replace(progress, left_s=None), "; it takes longer than expected"
+            return replace(progress, left_s=None), "it takes longer than expected"
         self._known = progress.done, up_s if progress.done != done else min(up_s, was_s)
         return progress, ""
 
@@ -225,16 +226,16 @@ def seeds_in(text: str) -> list[int]:
 
 def _warming(progress: Progress[Any]) -> str:
     """Where the first jobs wait for their traffic, while there is no estimate yet."""
-    return (
-        "" if progress.left_s is not None or not progress.warming else f"; warming up {', '.join(progress.warming)}"
-    )
+    if progress.left_s is not None or progress.done == progress.planned:
+        return ""
+    return f"warming up {', '.join(progress.warming)}" if progress.warming else ""
 
 
 def time_left(progress: Progress[Any]) -> str:
-    """For example ``, 3:05 left`` or ``, 1:03:05 left``; empty if unknown or if nothing is left."""
+    """For example ``3:05 left`` or ``1:03:05 left``; empty if unknown or if nothing is left."""
     left_s = progress.left_s
     if left_s is None or progress.done == progress.planned:
         return ""
     minutes, seconds = divmod(int(left_s), 60)
     told = f"{minutes // 60}:{minutes % 60:02d}" if minutes >= 60 else f"{minutes}"
-    return f", {told}:{seconds:02d} left"
+    return f"{told}:{seconds:02d} left"

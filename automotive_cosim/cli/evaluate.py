@@ -22,7 +22,6 @@ from automotive_cosim.cli.batches import (
     seeds_in,
     tell_notes,
     tell_stopped,
-    time_left,
     words,
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
@@ -327,7 +326,7 @@ def _failures(rows: Sequence[TrialRow]) -> Iterator[str]:
 def _said(progress: Progress[TrialRow]) -> str:
     lost = progress.judged - progress.successes
     errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
-    return f"{progress.successes:,} succeeded, {lost:,} failed{errors}{time_left(progress)}"
+    return f"{progress.successes:,} succeeded, {lost:,} failed{errors}"
 
 
 def _announce(console: Console, plan: Plan, folder: Path) -> None:

@@ -66,6 +66,9 @@ def measures(
     ego = None if everyone else "ego"
     kind = PairReading if readings else Encounter
     rows = list(pair_readings(scenes, ego, thresholds)) if readings else encounters(scenes, ego, thresholds)
+    if not rows:
+        whose = "any two vehicles" if everyone else "the ego and another vehicle (--everyone looks at all pairs)"
+        typer.echo(f"no encounters within {reach:g} m in {counted(len(scenes), 'second')}, of {whose}", err=True)
     if out is None:
         typer.echo(as_csv(rows, kind), nl=False)
         return

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from automotive_cosim.scenarios import Scenario
     from automotive_cosim.scenery.check import ScenarioProof
     from automotive_cosim.scenery.optimum import SystemOptimum
+    from automotive_cosim.traffic.stability import Stability
 
 app = typer.Typer(help="List, check, draw, import and calibrate scenarios.", no_args_is_help=True)
 app.command("calibrate")(calibrate_scenario)
@@ -73,8 +74,8 @@ def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: As
         ("driver", found.ego.driver),
     ):
         typer.echo(f"{label:<9}{value}")
-    for trip in found.ego.trips:
-        typer.echo(f"trip     {trip.name}: {trip.about or f'{trip.from_edge} to {trip.to_edge}'}")
+    for place, trip in enumerate(found.ego.trips, 1):
+        typer.echo(f"{f'trip {place}':<9}{trip.name}: {trip.about or f'{trip.from_edge} to {trip.to_edge}'}")
 
 
 def _shown(scenario: Scenario) -> Json:
@@ -236,7 +237,8 @@ def import_scenario(
 ) -> None:
     """Turn an OpenStreetMap extract, or a scenario in OpenSCENARIO XML, into a scenario.
 
-    The traffic is scaled down until it flows for half an hour after its warm-up. Reading the map, building the
+    The traffic is scaled down until it flows after its warm-up: for half an hour (--minutes) in steps of 1 s, then
+    for ten minutes in the scenario's own. Reading the map, building the
     network and testing the traffic take one to three minutes for a city district.
     """
     from automotive_cosim.osm import Area, ImportOptions, import_map
@@ -264,7 +266,7 @@ def import_scenario(
     started_s = time.monotonic()
     with _progress() as tell:
         report = import_map(file, folder, options, tell)
-    _print_report(report, folder, time.monotonic() - started_s)
+    _print_report(report, name or scenario_name(file), folder, time.monotonic() - started_s)
 
 
 @app.command("equilibrate")
@@ -430,7 +432,7 @@ def download_map(
     typer.echo(f"turn it into a scenario: automotive-cosim scenarios import {out}")
 
 
-SAY_EVERY_S = 10.0
+SAY_EVERY_S = 30.0
 """Minimum wall time between two lines about the same activity in a log."""
 
 
@@ -464,7 +466,7 @@ def _into_log() -> Tell:
         if what == said and now_s - said_at_s < SAY_EVERY_S:
             return
         said, said_at_s = what, now_s
-        typer.echo(stage if share is None else f"{stage}: {share:.0%}", err=True)
+        typer.echo(stage if share is None else f"{stage}: {share:.0%} done", err=True)
 
     return tell
 
@@ -475,11 +477,16 @@ def _agreement(report: ImportReport) -> str:
     return f"all but {counted(len(report.differences), 'property', 'properties')}:"
 
 
+def _tested(flow: Stability) -> str:
+    """How many vehicles were teleported in the last test of the traffic, with its steps."""
+    return f"{flow.teleports} in the last test, {flow.observed_s / 60:.0f} min in steps of {flow.step_length_s:g} s"
+
+
 DIFFERENCES_SHOWN = 20
 """How many the terminal lists; ``import.json`` has all."""
 
 
-def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
+def _print_report(report: ImportReport, name: str, folder: Path, took_s: float) -> None:
     from rich.table import Table
 
     from automotive_cosim.cli.console import Console
@@ -488,11 +495,11 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
     flow = report.stability
     table = Table(box=None, show_header=False, pad_edge=False)
     for label, value in (
-        ("scenario", str(folder)),
+        ("scenario", f"{name}, in {folder}"),
         *([("within", ",".join(f"{side:g}" for side in report.bbox))] if report.bbox else []),
         ("country", report.country + (", driving on the left" if report.left_hand else "")),
         ("edges", f"{report.edges} ({report.road_km:.1f} km)"),
-        ("posted limit", f"{report.posted_share:.2%} of the length"),
+        ("limits", f"posted on {report.posted_share:.1%} of the length, assumed on the rest"),
         ("derestricted", f"{report.derestricted_km:.1f} km"),
         ("as mapped", _agreement(report)),
         *(("", text) for text in report.differences[:DIFFERENCES_SHOWN]),
@@ -505,8 +512,9 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         *(
             [
                 (
-                    "at hours",
-                    f"{report.timed_access_km:.1f} km and {counted(report.timed_turns, 'turn')} open to cars",
+                    "timed",
+                    f"{report.timed_access_km:.1f} km and {counted(report.timed_turns, 'turn')} open to cars at "
+                    "certain hours only",
                 )
             ]
             if report.timed_access_km or report.timed_turns
@@ -517,7 +525,7 @@ def _print_report(report: ImportReport, folder: Path, took_s: float) -> None:
         ("traffic", f"{report.vehicles_per_hour:.0f} vehicles per hour, about {flow.vehicles_mean:.0f} at a time"),
         ("scale", f"{report.scale:g} of the requested density"),
         ("halted", f"{flow.halted_share_mean:.1%} on average, {flow.halted_share_max:.1%} in the worst minute"),
-        ("teleports", f"{flow.teleports} in {flow.observed_s / 60:.0f} min"),
+        ("teleports", _tested(flow)),
         ("took", f"{took_s:.0f} s, {megabytes_in_words(size_mb)}"),
         *(("guessed" if index == 0 else "", text) for index, text in enumerate(report.guessed)),
         ("drive it", f"automotive-cosim run --scenario {folder}"),

@@ -43,7 +43,8 @@ class Difference:
         mapped, built = (value or "unnamed" for value in (self.mapped, self.built))
         numbers = (("relation", self.relation), ("node", self.node), ("way", self.way))
         where = ", ".join(f"{kind} {number}" for kind, number in numbers if number is not None)
-        return f"{where}: {self.what} {mapped} is {built}{f' on edge {self.edge_id}' if self.edge_id else ''}"
+        built_where = f"edge {self.edge_id}" if self.edge_id else "the network"
+        return f"{where}: {self.what}: {mapped} in the map, {built} in {built_where}"
 
 
 def differences(

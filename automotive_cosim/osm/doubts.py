@@ -87,4 +87,7 @@ def unconnected(extract: Extract, built: Built) -> Iterator[str]:
     there = {way_of(edge.edge_id) for edge in built.edges}
     missing = [way.way_id for way in extract.ways if way.way_id not in there]
     if missing:
-        yield f"{counted(len(missing), 'road')} apart from the rest, left out: {in_words('way', missing)}"
+        yield (
+            f"{counted(len(missing), 'road')} left out, which no road for cars connects with the rest: "
+            f"{in_words('way', missing)}"
+        )

@@ -152,7 +152,7 @@ def write_scenario(
 def toml_value(value: object) -> str:
     """A value as TOML writes it."""
     if isinstance(value, datetime):
-        return value.isoformat()
+        return json.dumps(value.isoformat())  # as scenarios are written by hand
     return json.dumps(value, ensure_ascii=False)
 
 

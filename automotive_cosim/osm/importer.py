@@ -176,7 +176,8 @@ def _ground(options: ImportOptions) -> str:
 
 
 def _title(options: ImportOptions) -> str:
-    return options.name.replace("_", " ").replace("-", " ").capitalize()
+    words = options.name.replace("_", " ").replace("-", " ").split()
+    return " ".join(word[:1].upper() + word[1:] for word in words)
 
 
 def _write(
@@ -251,7 +252,10 @@ class _Search:
 
     def _until_it_flows(self, scale: float, step_length_s: float, observe_s: float) -> Stability:
         for trials_left in reversed(range(TRIALS)):
-            what = f"traffic at scale {scale:g}, in steps of {step_length_s:g} s"
+            what = (
+                f"testing whether traffic flows at scale {scale:g}, in steps of {step_length_s:g} s, after its "
+                f"warm-up for {observe_s / 60:.0f} min"
+            )
             self._tell(what, 0.0)
             run = measure(
                 self._scenario(scale),

@@ -174,7 +174,8 @@ def convert(
 def _stage(line: str) -> str:
     """What netconvert says it does, without dots, times and warnings; empty for other lines."""
     found = re.match(r"[A-Z][a-z]+ing [\w\s-]+", line)
-    return f"{found[0][0].lower()}{found[0][1:].strip()}" if found else ""
+    words = found[0].strip() if found else ""
+    return re.sub(r" (from|to|in|of|with|for)$", "", words[:1].lower() + words[1:])  # a file's name came next
 
 
 FIRST_NUMBER = 7 * 10**17

@@ -107,7 +107,7 @@ class Jam(Incident):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Closure(Incident):
-    """A road closed to all except the authorities; other vehicles go round."""
+    """A road closed to all except the authorities; other vehicles go round, or end their trip before it."""
 
     kind: Literal["closure"] = "closure"
     edge: EdgeId

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
+from unicodedata import combining, normalize
 
 from annotated_types import Ge, Gt, Le, MinLen
 
@@ -179,12 +180,24 @@ class Scenario(Described):
         return self.folder / self.sumo.config
 
     def trip(self, name: str) -> Trip:
-        """The ego trip of that name.
+        """The ego trip of that name, or with that number, or the only one whose name begins so; accents and case do
+        not count then.
 
         Raises:
             UnknownNameError: the scenario has no such trip.
         """
-        for trip in self.ego.trips:
+        trips = self.ego.trips
+        for trip in trips:
             if trip.name == name:
                 return trip
-        raise UnknownNameError(f"trip of scenario {self.name!r}", name, (trip.name for trip in self.ego.trips))
+        if name.isdecimal() and 0 < int(name) <= len(trips):
+            return trips[int(name) - 1]
+        begun = [trip for trip in trips if name and _plain(trip.name).startswith(_plain(name))]
+        if len(begun) == 1:
+            return begun[0]
+        raise UnknownNameError(f"trip of scenario {self.name!r}", name, (trip.name for trip in trips))
+
+
+def _plain(name: str) -> str:
+    """A name without accents and case."""
+    return "".join(each for each in normalize("NFKD", name.casefold()) if not combining(each))

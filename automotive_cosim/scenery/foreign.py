@@ -19,7 +19,15 @@ from automotive_cosim.scenery.relocation import zone_of
 from automotive_cosim.scenery.routes import drawn_trips
 from automotive_cosim.traffic.georeference import middle
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader
-from automotive_cosim.traffic.options import DEFAULTS, FIXED, INPUTS, QUIET, Configuration, read_configuration
+from automotive_cosim.traffic.options import (
+    ANY_ROUTE,
+    DEFAULTS,
+    FIXED,
+    INPUTS,
+    QUIET,
+    Configuration,
+    read_configuration,
+)
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
 from automotive_cosim.traffic.vetting import vet
 
@@ -117,9 +125,14 @@ def _overridden(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
     """What a run sets or leaves out whatever the configuration says."""
     run = DEFAULTS | dict(configuration.options) | FIXED
     run["step-length"] = f"{sumo.step_length_s:g}"
+    del run[ANY_ROUTE]  # what it lets pass is refused anyway
     if sumo.action_step_length_s != sumo.step_length_s:
         run["default.action-step-length"] = f"{sumo.action_step_length_s:g}"
-    settings = [f"{name} {value}" for name, value in run.items() if configuration.options.get(name) != value]
+    settings = [
+        f"{name} {value}" + " (a study: its --step)" * (name == "step-length")
+        for name, value in run.items()
+        if configuration.options.get(name) != value
+    ]
     yield f"{configuration.path.name} runs with {', '.join(settings)}, and with the run's seed"
     if ignored := [name for name in configuration.ignored if name not in QUIET]:
         yield f"{configuration.path.name} runs without its {', '.join(ignored)}"

@@ -18,7 +18,7 @@ from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery.labels import Labels, Points, place_labels
+from automotive_cosim.scenery.labels import GREY, RED, Labels, Points, place_labels
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network
@@ -228,7 +228,7 @@ def _where(scenario: Scenario, network: Network) -> str:
 def _framed(picture: Image.Image, scenario: Scenario, where: str) -> Image.Image:
     """The title above, the legend below."""
     trips = scenario.ego.trips
-    height = HEAD + picture.height + ROW * (len(trips) + 1) + 30
+    height = HEAD + picture.height + ROW * (len(trips) + 2) + 30
     whole = Image.new("RGB", (picture.width, height), DAY.surface)
     whole.paste(picture, (0, HEAD))
     brush = ImageDraw.Draw(whole)
@@ -240,6 +240,8 @@ def _framed(picture: Image.Image, scenario: Scenario, where: str) -> Image.Image
     brush.text((24, 62), facts, DAY.muted, font(Weight.REGULAR, 17), "lm")
     y = HEAD + picture.height + 26
     _classes(brush, y)
+    y += ROW
+    _signs(brush, y)
     for number, trip in enumerate(trips):
         y += ROW
         brush.ellipse((24, y - 11, 46, y + 11), trip_colour(number))
@@ -262,6 +264,22 @@ def _classes(brush: ImageDraw.ImageDraw, y: float) -> None:
     brush.line((x, y, x + 34, y), TUNNEL, 11)
     _dashed(brush, np.array(((x + 1, y), (x + 33, y))), 8, _colour("primary"))
     brush.text((x + 44, y), "tunnel", DAY.muted, letters, "lm")
+
+
+def _signs(brush: ImageDraw.ImageDraw, y: float) -> None:
+    """What discs, rings and the colours of limits stand for."""
+    x = 35.0
+    letters = font(Weight.REGULAR, 16)
+    colour = trip_colour(0)
+    for words, fill, ring in (
+        ("a trip begins", colour, colour),
+        ("it ends", DAY.halo, colour),
+        ("posted limit", DAY.halo, RED),
+        ("assumed limit", DAY.halo, GREY),
+    ):
+        brush.ellipse((x - 11, y - 11, x + 11, y + 11), fill, ring, 3)
+        brush.text((x + 19, y), words, DAY.muted, letters, "lm")
+        x += 19 + letters.getlength(words) + 37
 
 
 def cut(text: str, weight: Weight, size: int, width: float) -> str:

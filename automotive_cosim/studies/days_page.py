@@ -25,6 +25,7 @@ from automotive_cosim.studies.days import (
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.shown import ShownStudy, write_shown
 from automotive_cosim.studies.tables import NONE, told, told_mean
+from automotive_cosim.studies.warnings import missing_told
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -47,7 +48,9 @@ def write_days(folder: Path) -> Path:
     plan = study.plan
     about = f"{counted(len(plan.seeds), 'seed')}, up to {counted(plan.days, 'day')} of {plan.minutes:g} minutes"
     shown = ShownStudy("Study from day to day", about, answer(study), warnings(study), tables(study), charts(study))
-    return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
+    return write_shown(
+        folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.jobs()) - len(study.rows)
+    )
 
 
 def named(drivers: Drivers) -> str:
@@ -112,7 +115,7 @@ def _settled(study: DaysStudy, share: float) -> str:
 
 def warnings(study: DaysStudy) -> list[str]:
     """Warnings to read before using the study's figures."""
-    found = []
+    found = list(missing_told(len(study.plan.jobs()), len(study.rows), "run"))
     seeds = len(study.plan.seeds)
     if seeds < LEAST_SEEDS:
         found.append(f"{counted(seeds, 'seed')}: no interval of a mean below {LEAST_SEEDS} seeds.")

@@ -276,7 +276,8 @@ def horizons(study: Study) -> Table:
     note = (
         "Seconds that all others together save up to the instant at which the given share has arrived in the "
         f"faster future, over the decisions where the policy reroutes. The futures end at {study.plan.arrived:.0%} "
-        "(--arrived)."
+        "(--arrived), or later, with the ego's arrival: “Others save” in “Other effects” counts up to then, and "
+        "over all decisions."
     )
     return Table("horizons", "The others, by horizon", columns, tuple(rows), note, heads=3)
 

@@ -60,6 +60,7 @@ def write_study(folder: Path) -> Path:
             plots=plots,
             warnings=warnings(study),
             plan=study.plan.as_json(),
+            seeds=len({row.seed for row in study.rows}),
             demand=study.plan.demand(),
             cost_s=cost_s(study),
             starts=study.manifest["starts"],
@@ -85,7 +86,9 @@ def answer(study: Study) -> str:
     verb = "saves" if found.value >= 0 else "costs"
     told = f"Rerouting by “{policy}” {verb} {abs(found.value):.0f} s{sure} a decision{_parts(chosen)}"
     over = f"{counted(found.count, 'decision')} of {counted(found.seeds, 'seed')}"
-    return f"{told}, over {over}" + ("." if bounds else f"; {LEAST_SEEDS} seeds give an interval.")
+    return f"{told}, over {over}" + (
+        "." if bounds else f", too few for an interval, which needs {LEAST_SEEDS} seeds."
+    )
 
 
 def _parts(chosen: Sequence[PolicyChoice]) -> str:

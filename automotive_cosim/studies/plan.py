@@ -50,7 +50,7 @@ class StudyPlan:
     departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0, 600.0, 900.0)
     """Departures of the ego, after the warm-up; each in its own copy of the traffic."""
     trips: tuple[str, ...] = ()
-    """Names of the scenario's trips; empty for all."""
+    """Names of the scenario's trips, as ``Scenario.trip`` takes them; empty for all."""
     from_place: str = ""
     """Where the ego's route begins, instead of a trip: an edge, a street or ``LON,LAT``."""
     to_place: str = ""
@@ -208,7 +208,8 @@ class StudyPlan:
         """Every drive, grouped by simulation and ordered by departure."""
         scenario = self.opened
         shares = self.shares or (scenario.sumo.background_rerouting,)
-        trips = [trip for trip in scenario.ego.trips if not self.trips or trip.name in self.trips]
+        chosen = {scenario.trip(name).name for name in self.trips}
+        trips = [trip for trip in scenario.ego.trips if not chosen or trip.name in chosen]
         return tuple(
             StudyJob(self, share, seed, departure_s, trip)
             for seed, share, departure_s, trip in product(self.seeds, shares, sorted(self.departures_s), trips)
@@ -228,7 +229,7 @@ class StudyJob(LoneJob):
     @property
     def simulation(self) -> tuple[str, int]:
         """The warm traffic it departs from."""
-        return f"{self.share:g}", self.seed
+        return f"traffic in which {100 * self.share:g} % reroute", self.seed
 
     @property
     def wall_s(self) -> float:

@@ -37,6 +37,12 @@ class Study:
     """One row per drive, in the order of the plan."""
 
     @property
+    def planned(self) -> int:
+        """Number of drives in the plan; if it may stop early (``half_width_s``), those of the seeds begun."""
+        begun = {row.seed for row in self.rows}
+        return sum(self.plan.half_width_s is None or job.seed in begun for job in self.plan.jobs())
+
+    @property
     def errors(self) -> tuple[DriveRow, ...]:
         """Drives that ended in an infrastructure error."""
         return tuple(row for row in self.rows if row.error is not None)

@@ -30,7 +30,7 @@ class ShownStudy:
     """By name: title, SVG for a wide page, SVG for a narrow one."""
 
 
-def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, errors: int) -> Path:
+def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, errors: int, missing: int) -> Path:
     """Writes ``report.html``, ``tables/`` and ``plots/`` into a study's folder; returns the page.
 
     Args:
@@ -39,6 +39,7 @@ def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, err
         plan: the study's plan.
         manifest: with its starts.
         errors: number of infrastructure errors.
+        missing: number of jobs of the plan that have not run yet.
 
     Raises:
         UserError: they cannot be written.
@@ -60,6 +61,7 @@ def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, err
             tables=shown.tables,
             plots=shown.plots,
             errors=errors,
+            missing=missing,
             plan=plan,
             starts=manifest["starts"],
         )

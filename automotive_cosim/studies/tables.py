@@ -90,7 +90,8 @@ def policies(study: Study) -> Table:
     note = (
         "Over all decisions that count; where the policy keeps the route, the gain is 0. In brackets: 95 % t "
         f"intervals with a standard error over seeds, from {LEAST_SEEDS} seeds; resampled: from resampling "
-        f"whole seeds. {_how_judged(study, floor)}"
+        f"whole seeds. {_how_judged(study, floor)} Where the difference is chance, both routes count as the better "
+        "one, so shares of two policies may add up to more than 100 %."
     )
     return Table("policies", "What each policy saved the ego", columns, tuple(rows), note, heads=3)
 
@@ -186,9 +187,9 @@ def costs(study: Study) -> Table:
     )
     note = (
         "Means over decisions; negative values are costs. CO2 and fuel by SUMO's emission model. Others: "
-        "the sum over every vehicle on the road or due at the decision, departure delay included, until "
-        f"{study.plan.arrived:.0%} of them had arrived; the rest counts up to that instant. Unfinished: "
-        "the number of the latter, if the ego keeps its route / as the policy chooses."
+        "the sum over every vehicle on the road or due at the decision, departure delay included, until the "
+        f"ego and {study.plan.arrived:.0%} of them had arrived in one of the two futures; the rest counts up to "
+        "that instant. Unfinished: the number of the latter, if the ego keeps its route / as the policy chooses."
     )
     return Table("costs", "Other effects", columns, tuple(rows), note, heads=3)
 

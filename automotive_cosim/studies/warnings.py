@@ -22,6 +22,20 @@ def warnings(study: Study) -> list[str]:
     return [told for kind in KINDS for told in kind(study)]
 
 
+def unfinished(study: Study) -> Iterator[str]:
+    """Drives of the plan have not run yet."""
+    yield from missing_told(study.planned, len(study.rows), "drive")
+
+
+def missing_told(planned: int, ran: int, unit: str) -> Iterator[str]:
+    """The same for any kind of study."""
+    if ran < planned:
+        yield (
+            f"{planned - ran} of {counted(planned, unit)} are missing, so the figures are those of a part: rerun "
+            "the `study` command to resume."
+        )
+
+
 def nothing_counted(study: Study) -> Iterator[str]:
     """No decision counted at all."""
     if not study.decisions:
@@ -122,6 +136,7 @@ def stand_in(study: Study) -> Iterator[str]:
 
 
 KINDS: tuple[Finds, ...] = (
+    unfinished,
     nothing_counted,
     few_seeds,
     gain_beyond_delay,

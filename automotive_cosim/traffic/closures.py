@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
 from datetime import datetime
 from itertools import pairwise
 
+from automotive_cosim.traffic.detours import Detours, EdgePair
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.posted import TimedAccess, is_open
 from automotive_cosim.traffic.sumo import LibSumo
@@ -14,16 +14,14 @@ from automotive_cosim.traffic.sumo import LibSumo
 CARS = "passenger"
 """SUMO's class of the vehicles that are kept out."""
 
-EdgePair = tuple[str, str]
-"""From edge, to edge."""
-
 
 class Closures:
     """Closes roads and turns to cars. A car that is on such a road leaves it; one whose route leads over it gets
-    another, if there is one."""
+    another (``Detours``)."""
 
-    def __init__(self, sumo: LibSumo, network: Network) -> None:
+    def __init__(self, sumo: LibSumo, network: Network, detours: Detours) -> None:
         self._sumo = sumo
+        self._detours = detours
         edges = network.edges.values()
         self._roads = {edge.edge_id: edge.timed_access for edge in edges if edge.timed_access}
         self._turns = {(edge.edge_id, goal): access for edge in edges for goal, access in edge.timed_turns}
@@ -59,6 +57,7 @@ class Closures:
             self._allowed[lane] = self._sumo.lane.getAllowed(lane)
             self._sumo.lane.setDisallowed(lane, [*self._sumo.lane.getDisallowed(lane), CARS])
         self._shut, self._barred = shut, barred
+        self._detours.follow(shut, barred)
         if any(closed):
             self._divert()
         return any(closed)
@@ -77,5 +76,4 @@ class Closures:
         for vehicle in sumo.vehicle_ids():
             rest = sumo.route(vehicle)[max(0, sumo.route_index(vehicle)) :]
             if not self._shut.isdisjoint(rest[1:]) or not self._barred.isdisjoint(pairwise(rest)):
-                with suppress(*sumo.refusals):
-                    sumo.vehicle.rerouteTraveltime(vehicle, False)
+                self._detours.send_round(vehicle)

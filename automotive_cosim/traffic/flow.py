@@ -68,6 +68,10 @@ class FlowSummary:
     consumed: dict[str, tuple[int, float, float, float, float, float]]
     """By emission class, since the simulation began: vehicles, CO2, NOx and fuel in g, electricity in Wh, noise in
     seconds of ``accounts.LOUD_DB``; empty if it is not recorded."""
+    cut_short: int
+    kept_in: int
+    """Vehicles whose trip ended before a closed road, and those that would have set out on one, since the start
+    (``detours``)."""
 
 
 class Advisor:

@@ -51,8 +51,11 @@ QUIET = {
     "xml-validation.net": "never",
 }
 
-FIXED = {"collision.action": "remove"}
-"""Options of every run: SUMO's default would teleport who collides, and the ego's collision must end its drive."""
+ANY_ROUTE = "ignore-route-errors"
+
+FIXED = {"collision.action": "remove", ANY_ROUTE: "true"}
+"""Options of every run: SUMO's default would teleport who collides, and the ego's collision must end its drive. It
+would also stop at a vehicle whose fixed route leads over a closed road; that goes round instead (``detours``)."""
 
 SCRATCH = "automotive-cosim-"
 """Beginning of the name of a simulation's scratch folder."""
@@ -246,6 +249,12 @@ def copied(configuration: Configuration, folder: Path, network: NetworkReader | 
     )
 
 
+def takes_any_route(configuration: Configuration, network: Network) -> bool:
+    """Whether vehicles may set out on routes that their class cannot drive: the configuration says so, or roads of
+    the network are closed at certain hours."""
+    return network.has_hours or configuration.options.get(ANY_ROUTE, "").lower() in TRUE
+
+
 def run_options(configuration: Copied, setup: Setup, network: Network | None = None) -> dict[str, str]:
     """The options of a run, name -> value; names of files are those in the folder, in which SUMO must run.
 
@@ -293,8 +302,6 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
         "scale": f"{sumo.scale:g}",
         "device.rerouting.probability": f"{sumo.background_rerouting:g}",
     }
-    if network is not None and network.has_hours:
-        options["ignore-route-errors"] = "true"  # a fixed route may lead over a road that is closed at the hour
     if sumo.lateral_resolution_m is not None:
         options["lateral-resolution"] = f"{sumo.lateral_resolution_m:g}"
     if setup.outputs is not None and setup.flow_s is not None:

@@ -244,9 +244,14 @@ class Server:
     def _flow_summary(self) -> FlowSummary:
         assert self._ledger is not None
         assert self._world is not None
-        ledger = self._ledger
+        ledger, detours = self._ledger, self._world.detours
         return FlowSummary(
-            ledger.summary(), len(ledger.arrivals_s), self._world.slowed(), ledger.consumed_by_class()
+            ledger.summary(),
+            len(ledger.arrivals_s),
+            self._world.slowed(),
+            ledger.consumed_by_class(),
+            detours.cut_short,
+            detours.kept_in,
         )
 
     def do_bare_steps(self, count: int) -> None:

@@ -91,6 +91,11 @@ class _Roadworks(QuietScene):
         self._allowed = {lane: stage.sumo.lane.getAllowed(lane) for lane in self._closed}
         for lane in self._closed:
             stage.sumo.lane.setAllowed(lane, AUTHORITY)
+        if self._closed:
+            stage.detours.close(self._incident.edge, lanes_only=True)
+            for vehicle in stage.sumo.vehicle_ids():
+                if vehicle != stage.ego_id:
+                    stage.detours.check(vehicle)
         what = f"a sign of {self._incident.limit_kmh:g} km/h still stands after" if self._incident.over else ""
         return f"{what} roadworks{_on(stage.edge(self._incident.edge))}".strip()
 
@@ -98,6 +103,8 @@ class _Roadworks(QuietScene):
         self._stage.signs.take_down(self._incident.edge, self._incident.limit_kmh / KMH_PER_MPS)
         for lane, allowed in self._allowed.items():
             self._stage.sumo.lane.setAllowed(lane, allowed)
+        if self._closed:
+            self._stage.detours.open(self._incident.edge, lanes_only=True)
         return ""
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
@@ -160,35 +167,27 @@ class _Closure(QuietScene):
     def __init__(self, stage: IncidentStage, incident: incidents.Closure) -> None:
         self._stage = stage
         self._edge = stage.edge(incident.edge)
-        self._seen: set[str] = set()
 
     def begin(self) -> str:
-        lanes = self._stage.sumo.lane
-        self._allowed = {lane: lanes.getAllowed(lane) for lane in self._edge.lane_ids}
-        for lane in self._edge.lane_ids:
-            lanes.setAllowed(lane, AUTHORITY)
-        for vehicle in self._stage.sumo.vehicle.getIDList():
-            self._send_round(vehicle)
-        return f"{self._edge.name or self._edge.edge_id} is closed"
+        sumo, edge = self._stage.sumo, self._edge
+        self._allowed = {lane: sumo.lane.getAllowed(lane) for lane in edge.lane_ids}
+        for lane in edge.lane_ids:
+            sumo.lane.setAllowed(lane, AUTHORITY)
+        self._stage.detours.close(edge.edge_id)
+        for vehicle in sumo.vehicle_ids():
+            ahead = sumo.route(vehicle)[sumo.route_index(vehicle) :]
+            if vehicle != self._stage.ego_id and edge.edge_id in ahead:  # the ego has a driver of its own
+                self._stage.detours.send_round(vehicle)
+        return f"{edge.name or edge.edge_id} is closed"
 
     def tick(self, local_time: datetime) -> str:
-        for vehicle in self._stage.sumo.vehicle.getIDList():
-            if vehicle not in self._seen:
-                self._send_round(vehicle)
         return self._turn_off()
 
     def end(self) -> str:
+        self._stage.detours.open(self._edge.edge_id)
         for lane, allowed in self._allowed.items():
             self._stage.sumo.lane.setAllowed(lane, allowed)
         return f"{self._edge.name or self._edge.edge_id} is open again"
-
-    def _send_round(self, vehicle: str) -> None:
-        """The ego has a driver of its own."""
-        sumo = self._stage.sumo
-        self._seen.add(vehicle)
-        if vehicle != self._stage.ego_id and self._edge.edge_id in sumo.route(vehicle)[sumo.route_index(vehicle) :]:
-            with suppress(*sumo.refusals):  # without another route it waits
-                sumo.vehicle.rerouteTraveltime(vehicle, False)
 
     def _turn_off(self) -> str:
         """The ego's driver sees the sign on the previous edge and follows the detour to the destination."""

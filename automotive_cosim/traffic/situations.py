@@ -14,6 +14,7 @@ from automotive_cosim.contracts import RoadIncident
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.incidents import EgoIncident, Incident
 from automotive_cosim.traffic.base import EgoPlan, Event
+from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.scene import Scene
 from automotive_cosim.traffic.scenes import scene_of
 from automotive_cosim.traffic.sensing import Sensor
@@ -47,6 +48,11 @@ class Situations:
     def are_left(self) -> bool:
         """Whether any incident is pending or active."""
         return self._stage.follows_the_clock or any(not entry.is_over for entry in self._entries)
+
+    @property
+    def detours(self) -> Detours:
+        """The other vehicles' ways round what is closed."""
+        return self._stage.detours
 
     def expect(self, plan: EgoPlan, now_s: float) -> None:
         """Opens and closes roads and turns for the clock of an ego that is about to depart, whose route depends on

@@ -7,6 +7,7 @@ from datetime import datetime
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.traffic.closures import Closures
+from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.road_weather import Surface
 from automotive_cosim.traffic.sensing import Sensor
@@ -31,7 +32,8 @@ class IncidentStage:
         self.sensor: Sensor | None = None
         """The ego's pedals, once it is on the road."""
         self.signs = Signs(sumo, network)
-        self.closures = Closures(sumo, network)
+        self.detours = Detours(sumo, network)
+        self.closures = Closures(sumo, network, self.detours)
         self.route_changed = False
         """Whether the ego's route has changed since this was last set to False."""
         self._names = 0

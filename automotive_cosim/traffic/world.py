@@ -16,6 +16,7 @@ from automotive_cosim.scenarios.incidents import Incident
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
+from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
 from automotive_cosim.traffic.flow import Advice, Advisor
@@ -23,7 +24,14 @@ from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
 from automotive_cosim.traffic.network import Network, NetworkReader
-from automotive_cosim.traffic.options import Setup, command_line, copied, read_configuration, run_options
+from automotive_cosim.traffic.options import (
+    Setup,
+    command_line,
+    copied,
+    read_configuration,
+    run_options,
+    takes_any_route,
+)
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
 from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
@@ -85,6 +93,7 @@ class World:
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
         self._situations = Situations(IncidentStage(self._sumo, self.network, self._surface, EGO), scenario)
         self._has_incidents = self._situations.are_left
+        self._takes_any_route = takes_any_route(self._configuration, self.network)
         self._second_steps = max(1, round(1.0 / self.step_s))
         self.happened: tuple[Event, ...] = ()
         """The incidents of the last step."""
@@ -190,11 +199,17 @@ class World:
         road = EgoRoad(self, self._sumo, sensor, pedals, round_)
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
 
+    @property
+    def detours(self) -> Detours:
+        """The other vehicles' ways round what is closed."""
+        return self._situations.detours
+
     def step(self) -> bool:
         """One step of the traffic; true if the road ahead of the ego has to be read again.
 
         Raises:
             TrafficError: SUMO stopped at an error.
+            ScenarioError: a vehicle sets out on a route that its class cannot drive.
         """
         try:
             self._sumo.step()
@@ -251,6 +266,9 @@ class World:
                 self._emergency.add(vehicle)
             if vehicle != EGO:
                 self._surface.departed(vehicle)
+                self._check_route(vehicle)
+        if self.detours.are_needed:
+            self.detours.after_step()
         for vehicle in arrived:
             self._surface.arrived(vehicle)
         now_s = sumo.time()
@@ -268,6 +286,18 @@ class World:
             return self._situations.take_changes() or is_due or has_changed
         self.happened = ()
         return is_due or has_changed
+
+    def _check_route(self, vehicle: str) -> None:
+        """Sends a vehicle round that sets out on a route that is closed. SUMO itself would stop at it, and is told
+        not to (``options.run_options``), so a route that is broken anyway is refused here."""
+        if self.detours.are_needed:
+            self.detours.check(vehicle)
+        elif not self._takes_any_route and not self._sumo.vehicle.isRouteValid(vehicle):
+            raise ScenarioError(
+                f"vehicle {vehicle!r} sets out at {self._sumo.time():g} s, but its class cannot drive its route "
+                f"{' '.join(self._sumo.route(vehicle))[:200]!r}; mend the routes, as with duarouter --repair, or "
+                "set ignore-route-errors in the .sumocfg"
+            )
 
     def _add_ego(self, edges: tuple[str, ...], driver: DriverProfile, *, parked: bool) -> None:
         sumo = self._sumo

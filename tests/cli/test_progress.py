@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from io import StringIO
 
-from automotive_cosim.cli.batches import ProgressView, time_left
+from automotive_cosim.cli.batches import ProgressView
 from automotive_cosim.cli.console import Console
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.run.trial_row import TrialRow
@@ -13,7 +13,7 @@ from automotive_cosim.run.trial_row import TrialRow
 def told(*states: tuple[float, int, float | None]) -> list[str]:
     """The lines after these: seconds since the start, runs that have ended of two, and seconds left."""
     text = StringIO()
-    view: ProgressView[TrialRow] = ProgressView(Console(file=text), "drives", lambda now: f"so far{time_left(now)}")
+    view: ProgressView[TrialRow] = ProgressView(Console(file=text), "drives", lambda _: "so far")
     for seconds, done, left_s in states:
         warming = () if done else ("grid",)
         view.tell(Progress(2, done, done, done, 0, done, seconds, left_s, None, warming))

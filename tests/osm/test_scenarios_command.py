@@ -20,7 +20,7 @@ def test_import_makes_a_folder_and_prints_the_figures(
     assert scenarios.load(tmp_path / "village").name == "village"
     for word in (
         "edges",
-        "posted limit",
+        "limits",
         "as mapped",
         "signals",
         "tunnels",
@@ -33,7 +33,7 @@ def test_import_makes_a_folder_and_prints_the_figures(
         assert word in done.stdout
     told = done.stderr.splitlines()
     assert told[0] == "reading the map", "a log has the progress too"
-    assert any(line.startswith("traffic at scale 1, in steps of 1 s") for line in told)
+    assert any(line.startswith("testing whether traffic flows at scale 1, in steps of 1 s") for line in told)
     assert len(told) == len(set(told))
 
 

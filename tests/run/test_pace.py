@@ -212,9 +212,9 @@ def test_what_is_known_to_be_out_of_reach_takes_no_time(monkeypatch):
     ("left_s", "done", "said"),
     [
         (None, 1, ""),
-        (7.9, 1, ", 0:07 left"),
-        (185.0, 1, ", 3:05 left"),
-        (3785.0, 1, ", 1:03:05 left"),
+        (7.9, 1, "0:07 left"),
+        (185.0, 1, "3:05 left"),
+        (3785.0, 1, "1:03:05 left"),
         (9.0, 2, ""),
     ],
 )

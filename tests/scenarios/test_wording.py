@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from automotive_cosim.errors import CosimError
+from automotive_cosim.errors import CosimError, UnknownNameError
+from automotive_cosim.scenarios import load
 from automotive_cosim.scenarios.incidents import Breakdown, Incident, Jam
 from automotive_cosim.scenarios.wording import KINDS, read_line
 
@@ -37,3 +40,18 @@ def test_what_is_none_is_refused_in_a_line(text: str, told: str) -> None:
         read_line(text, KINDS, "--incident")
     assert told in str(refused.value)
     assert "\n" not in str(refused.value)
+
+
+LONG = "avenue-rené-descartes-to-rue-péguy"
+
+
+@pytest.mark.parametrize("wanted", ["2", "avenue-rene", "AVENUE-RENÉ-DESCARTES-to", LONG])
+def test_a_trip_is_found_by_number_and_by_the_beginning_of_its_name(wanted: str) -> None:
+    grid = load("grid")
+    trips = tuple(replace(grid.ego.trips[0], name=each) for each in ("avenue", LONG, "avenue-de-la-paix"))
+    found = replace(grid, ego=replace(grid.ego, trips=trips))
+    assert found.trip(wanted).name == LONG
+    assert found.trip("avenue").name == "avenue", "a whole name is one name, whatever others begin so"
+    for unclear in ("aven", "avenue-", "0", "4", "", "paix"):
+        with pytest.raises(UnknownNameError):
+            found.trip(unclear)

@@ -10,9 +10,12 @@ from pathlib import Path
 import pytest
 from typer.testing import CliRunner
 
+from automotive_cosim.cli.batches import ProgressView
+from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.results import report
 from automotive_cosim.cli.study import app
 from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.run.batch import Progress
 from automotive_cosim.studies.congestion.drive import run_congestion
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows, read_queues
 from automotive_cosim.studies.congestion.page import answer, warnings
@@ -163,7 +166,7 @@ def test_sumos_outputs_are_read_against_the_usual_limit(tmp_path: Path) -> None:
         ({"incidents": ("advice share=1",)}, "kind in --incident"),
         ({"minutes": 7.0}, "multiple of 5"),
         ({"minutes": 10.0, "demand": (1.0, 2.0, 1.0)}, "--demand has 3 periods"),
-        ({"corridor": "avenu"}, "avenue"),
+        ({"corridor": "venue"}, "avenue"),
         ({"seeds": ()}, "--seeds is empty"),
     ],
 )
@@ -264,3 +267,32 @@ def test_the_report_is_whole(driven: Path) -> None:
         assert (driven / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
     for name in ("whole", "by_class", "roads", "emissions"):
         assert (driven / "tables" / f"{name}.csv").is_file()
+
+
+@pytest.mark.parametrize(
+    ("before", "warming", "left_s", "told"),
+    [
+        ("", (), None, "0 of 2 seeds\n"),
+        ("", ("the traffic",), None, "0 of 2 seeds; warming up the traffic\n"),
+        ("1 error", (), 162.0, "0 of 2 seeds; 1 error, 2:42 left\n"),
+    ],
+)
+def test_progress_has_no_empty_part(
+    before: str, warming: tuple[str, ...], left_s: float | None, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    progress: Progress[CongestionRow] = Progress(2, 0, 0, 0, 0, 0, 1.0, left_s, None, warming)
+    ProgressView[CongestionRow](Console(), "seeds", lambda _: before).tell(progress)
+    assert capsys.readouterr().out == told
+
+
+def test_a_study_that_was_stopped_says_how_much_is_missing() -> None:
+    found = study(60.0, 60.0)
+    assert warnings(found)[0].startswith("8 of 10 seeds are missing")
+    assert "over 2 seeds, too few for an interval" in answer(found)
+
+
+def test_a_report_says_who_did_not_get_to_a_closed_road() -> None:
+    (row,) = study(60.0).rows
+    row = replace(row, outcomes=(row.outcomes[0], replace(row.outcomes[1], cut_short=1, kept_in=2)))
+    told = warnings(CongestionStudy(Path(), {}, PLAN, (row,)))
+    assert any("1 trip ended before the closed road" in each and "2 vehicles" in each for each in told)

@@ -237,7 +237,8 @@ def parted(gain_s: float, avoided_s: float, lost_s: float) -> Decision:
 
 
 def study(rows: Sequence[DriveRow], **more: Any) -> Study:
-    """Of the grid at its own steps."""
+    """Of the grid at its own steps, one drive a seed."""
+    more = {"departures_s": (0.0,), "trips": ("avenue",), "seeds": range(len({row.seed for row in rows}))} | more
     return Study(Path(), {}, StudyPlan("grid", step_s=0.1, policies=("never", "always"), **more), tuple(rows))
 
 
@@ -275,6 +276,7 @@ FINE = parted(50.0, 60.0, 90.0)
     [
         (study(seeds(30, FINE)), None),
         (study([]), "No decision counted"),
+        (study(seeds(12, FINE), seeds=range(20)), "8 of 20 drives are missing"),
         (study(seeds(12, FINE)), "12 seeds have a decision: run 30"),
         (study(seeds(9, FINE)), "9 seeds have a decision: no interval"),
         (

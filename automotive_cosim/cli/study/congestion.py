@@ -30,7 +30,9 @@ from automotive_cosim.cli.study.shared import (
     raise_errors,
     resumable,
     show,
+    tell_reading,
 )
+from automotive_cosim.contracts.plain import counted
 
 
 def congestion(
@@ -88,6 +90,7 @@ def congestion(
     from automotive_cosim.studies.congestion.results import read_congestion
     from automotive_cosim.studies.congestion.tables import whole
 
+    tell_reading(scenario)
     plan = CongestionPlan(
         scenario,
         measures=tuple(measure or ()),
@@ -108,6 +111,11 @@ def congestion(
     folder = out or folder_of(plan)
     where = executor_of(executor, workers, ray_address, ray_send)
     console = Console(stderr=as_json, highlight=False)
+    measures, over = counted(len(plan.measures), "measure"), counted(len(plan.seeds), "seed")
+    console.print(
+        f"{measures} and none, {over}, in steps of {plan.step_s:g} s, into {folder}",
+        soft_wrap=True,
+    )
     with where, ProgressView(console, "seeds", errors_so_far) as view, resumable("seeds", folder):
         run_congestion(plan, folder, executor=where, tell=view.tell)
     study = read_congestion(folder)

@@ -26,6 +26,7 @@ from automotive_cosim.cli.study.shared import (
     raise_errors,
     resumable,
     show,
+    tell_reading,
 )
 
 
@@ -61,6 +62,7 @@ def days(
     from automotive_cosim.studies.days import DaysPlan, read_days, run_days
     from automotive_cosim.studies.days_page import answer, tables, warnings, write_days
 
+    tell_reading(scenario)
     plan = DaysPlan(
         scenario,
         shares=tuple(numbers("shares", shares)),

@@ -17,7 +17,6 @@ from automotive_cosim.cli.batches import (
     executor_of,
     seeds_in,
     tell_notes,
-    time_left,
     words,
 )
 from automotive_cosim.cli.options import AsJson, whole_number
@@ -36,6 +35,7 @@ from automotive_cosim.cli.study.shared import (
     raise_errors,
     replicates_of,
     resumable,
+    tell_reading,
 )
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
@@ -61,7 +61,12 @@ def reroute(
         ),
     ] = None,
     trips: Annotated[
-        str | None, typer.Option(help="Ego trips of the scenario, separated by commas.", show_default="all")
+        str | None,
+        typer.Option(
+            help="Ego trips of the scenario, separated by commas: names, the beginnings of names, or numbers as in "
+            "`scenarios show`.",
+            show_default="all",
+        ),
     ] = None,
     from_place: Annotated[
         str, typer.Option("--from", help="Where the ego's route begins: an edge, a street or LON,LAT.")
@@ -192,6 +197,7 @@ def reroute(
     from automotive_cosim.studies.results import read_study
     from automotive_cosim.studies.rows import DriveRow
 
+    tell_reading(scenario)
     values: dict[str, Any] = {
         "via": via,
         "seeds": tuple(seeds_in(seeds)),
@@ -240,7 +246,7 @@ def reroute(
     def said(progress: Progress[DriveRow]) -> str:
         count = sum(len(row.decisions) for row in read_rows(folder, DriveRow).values())
         errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
-        return f"{counted(count, 'decision')}{errors}{time_left(progress)}"
+        return f"{counted(count, 'decision')}{errors}"
 
     with where, ProgressView(console, "drives", said) as view, resumable("drives", folder):
         run_study(plan, folder, executor=where, tell=view.tell)
@@ -291,6 +297,11 @@ def _announce(console: Console, plan: StudyPlan, folder: Path) -> None:
     table.add_row("seeds", f"{len(plan.seeds)}")
     table.add_row("policies", ", ".join(plan.policies))
     table.add_row("replicates", str(plan.replicates))
+    table.add_row("steps", f"{plan.step_s:g} s")
+    for incident in plan.incidents:
+        table.add_row("incident", incident)
+    if plan.close:
+        table.add_row("closed", plan.close)
     table.add_row("demand", plan.demand())
     table.add_row(
         "drives", f"{len(jobs):,} from {counted(len({job.simulation for job in jobs}), 'warm simulation')}"

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import time_left, words
+from automotive_cosim.cli.batches import words
 from automotive_cosim.cli.options import print_json, whole_number
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
@@ -55,9 +55,8 @@ StudyFolder = Annotated[
 
 
 def errors_so_far(progress: Progress[Any]) -> str:
-    """What stands beside the number of finished units: errors, and the time left."""
-    errors = counted(progress.errors, "error") if progress.errors else ""
-    return f"{errors}{time_left(progress)}"
+    """What stands beside the number of finished units: how many ended in an error."""
+    return counted(progress.errors, "error") if progress.errors else ""
 
 
 @contextmanager
@@ -68,6 +67,11 @@ def resumable(units: str, folder: Path) -> Iterator[None]:
     except KeyboardInterrupt:
         typer.echo(f"finished {units} are in {folder}; rerun the command to resume", err=True)
         raise
+
+
+def tell_reading(scenario: str) -> None:
+    """Says at once what is read: a city takes a while on a busy machine."""
+    typer.echo(f"reading {scenario}", err=True)
 
 
 def show(

@@ -132,6 +132,8 @@ def _outcome(
         states=states,
         emitted=tuple(_emitted(plan, summaries)),
         gridlock="" if jam is None else jam.why,
+        cut_short=summaries[-1].cut_short - first.cut_short,
+        kept_in=max(0, summaries[-1].kept_in - first.kept_in),
     )
 
 

@@ -23,7 +23,7 @@ from automotive_cosim.studies.congestion.tables import mean, tables
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
 from automotive_cosim.studies.shown import ShownStudy, write_shown
 from automotive_cosim.studies.tables import told
-from automotive_cosim.studies.warnings import steps_told
+from automotive_cosim.studies.warnings import missing_told, steps_told
 
 
 def write_congestion(folder: Path) -> Path:
@@ -40,7 +40,9 @@ def write_congestion(folder: Path) -> Path:
         "the same traffic"
     )
     shown = ShownStudy("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
-    return write_shown(folder, shown, plan.as_json(), study.manifest, len(study.errors))
+    return write_shown(
+        folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.seeds) - len(study.rows)
+    )
 
 
 def answer(study: CongestionStudy) -> str:
@@ -51,7 +53,8 @@ def answer(study: CongestionStudy) -> str:
     if found is None:
         return "No seed was driven to its end."
     before_h = mean(study, "", lambda each: delay_h(plan, each))
-    over = f"over {counted(seeds, 'seed')}" + ("" if seeds >= LEAST_SEEDS else f"; {LEAST_SEEDS} give an interval")
+    too_few = f", too few for an interval, which needs {LEAST_SEEDS}"
+    over = f"over {counted(seeds, 'seed')}{too_few if seeds < LEAST_SEEDS else ''}"
     if not plan.measures:
         return (
             f"{plan.opened.name} loses {before_h:.1f} vehicle-hours an hour; a trip takes {found.travel_time:.2f} "
@@ -93,7 +96,7 @@ def _told(total: SeedMean) -> str:
 
 def warnings(study: CongestionStudy) -> list[str]:
     """Warnings to read before using the study's figures."""
-    return [*_found(study)]
+    return [*missing_told(len(study.plan.seeds), len(study.rows), "seed"), *_found(study)]
 
 
 def _found(study: CongestionStudy) -> Iterator[str]:
@@ -104,17 +107,23 @@ def _found(study: CongestionStudy) -> Iterator[str]:
     elif seeds < PUBLISHED_SEEDS:
         yield f"{seeds} seeds: run {PUBLISHED_SEEDS} before publishing."
     for measure in study.measures:
+        where = f"With “{name_of(measure)}”" if measure else "Without a measure"
         jams = [outcome.gridlock for _, outcome in study.outcomes(measure) if outcome.gridlock]
         if jams:
-            where = f"With “{name_of(measure)}”" if measure else "Without a measure"
             yield (
                 f"{where}, the traffic of {len(jams)} of {seeds} seeds is gridlocked at the end (for example: "
                 f"{jams[0]}); delays in a gridlock depend on how long it is watched."
             )
         teleported = [outcome.states[-1].teleported for _, outcome in study.outcomes(measure)]
         if sum(teleported):
-            where = f"With “{name_of(measure)}”" if measure else "Without a measure"
             yield f"{where}, SUMO moved {counted(sum(teleported), 'vehicle')} on that stood too long."
+        cut = sum(outcome.cut_short for _, outcome in study.outcomes(measure))
+        kept = sum(outcome.kept_in for _, outcome in study.outcomes(measure))
+        if cut or kept:
+            yield (
+                f"{where}, {counted(cut, 'trip')} ended before the closed road, where no way led round it, and "
+                f"{counted(kept, 'vehicle')} that would have set out on it did not drive."
+            )
         if measure and isinstance(measure_in(measure, "--measure"), Jam):
             yield f"“{name_of(measure)}” brings cars of its own, whose delay is counted."
         pairs = [(dict(study.outcomes(""))[seed], outcome) for seed, outcome in study.outcomes(measure)]

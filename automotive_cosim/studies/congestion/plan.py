@@ -171,7 +171,7 @@ class CongestionJob(LoneJob):
     @property
     def simulation(self) -> tuple[str, int]:
         """The warm traffic that its copies start from."""
-        return "", self.seed
+        return "the traffic and measuring it", self.seed
 
     @property
     def wall_s(self) -> float:

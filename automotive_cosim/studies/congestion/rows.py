@@ -91,6 +91,10 @@ class MeasureOutcome:
     emitted: tuple[Emitted, ...] = ()
     gridlock: str = ""
     """Why the traffic counts as gridlocked at the end; empty while it flows. It counts all the same."""
+    cut_short: int = 0
+    """Vehicles whose trip ended before a closed road, as no way led round it."""
+    kept_in: int = 0
+    """Vehicles that would have set out on a closed road and were left out."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
