@@ -203,12 +203,15 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator
     if not starts:
         yield Problem(MANIFEST, "starts", "is empty")
     for number, start in enumerate(starts):
-        if start.keys() != {"started", "versions", "platform", "git"}:
+        if start.keys() - {"own_code"} != {"started", "versions", "platform", "git"}:
             yield Problem(MANIFEST, f"starts[{number}]", "lacks a field or has an unknown one")
             return
         yield from differences(
             MANIFEST, f"starts[{number}]", start, starts[0], ("versions", "git"), "the first start"
         )
+        code = start.get("own_code", {})  # not in bundles of 0.2
+        if not isinstance(code, dict) or not code.keys() <= {*plan["agents"]}:
+            yield Problem(MANIFEST, f"starts[{number}].own_code", "names an agent that the plan does not have")
         try:
             datetime.fromisoformat(start["started"])
         except (TypeError, ValueError):

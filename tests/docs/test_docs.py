@@ -144,6 +144,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"drive [a-z]", HELP, "takes a minute; tests/drives drives"),
     (r"report runs/hunt", HELP, "needs a search; tests/safety/test_trying.py has one"),
     (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_drives.py reports on some"),
+    (r"publish .*(runs/board|NAME)", HELP, "needs the leaderboard's evaluation; `make docs` checks its bundles"),
     (r"(serve|mcp|a2a)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
     (r"scenarios (check|download)", HELP, "takes minutes or the network; tests/osm has them"),
@@ -190,6 +191,11 @@ def place(tmp_path_factory):
     (folder / "tasks").mkdir()
     (folder / "tasks" / "own.py").write_text("TASKS = ()\n", encoding="utf-8")
     shutil.copytree(TOP / "docs/examples", folder / "docs/examples")
+    (folder / "docs/leaderboard").mkdir()
+    shutil.copyfile(TOP / "docs/leaderboard/plan.toml", folder / "docs/leaderboard/plan.toml")
+    shutil.copytree(TOP / "docs/examples/my-agent", folder / "my-agent")
+    (folder / "prompts").mkdir()
+    (folder / "prompts/careful.md").write_text("Be careful.\n", encoding="utf-8")
     (folder / "my_rules").mkdir()
     (rules,) = (text for language, text in blocks(TOP / "docs/geo.md") if language == "toml")
     (folder / "my_rules/FR-tours.toml").write_text(rules, encoding="utf-8")
