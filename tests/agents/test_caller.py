@@ -107,7 +107,7 @@ def test_the_interface_and_the_place_say_what_is_offered_and_told(observation: S
 
 
 def test_agents_of_the_screen_are_refused_by_name_without_it() -> None:
-    for name in ("human", "oracle"):
+    for name in ("human", "native"):
         with pytest.raises(UserError, match="works on the screen"):
             make_agent(name, settings=AgentSettings(CALLS))
     assert make_agent("caller", settings=AgentSettings(CALLS)).channels
