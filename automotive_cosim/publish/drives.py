@@ -17,6 +17,7 @@ from automotive_cosim.run.moments import judged_file, read_value
 from automotive_cosim.run.rerun import compare_drives, driven
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.trial_row import LATER
 from automotive_cosim.traffic.fork import Simulations
 
 PLANNED = ("family", "season", "scenario", "settings", "agent", "model", "conditions", "seed", "repeat", "split")
@@ -87,7 +88,8 @@ def drive_differences(
             yield Problem(file, f"step {step.number} {name}", "differs from its replay")
     result = json.loads(json.dumps(again.lines[-1]["result"]))
     yield from differences(file, "result", last["result"], result, result, "its replay")
-    names = [name for name in steady(row) if name not in OF_THE_AGENT]
+    unknown = OF_THE_AGENT | (LATER if row.malformed is None else frozenset())
+    names = [name for name in steady(row) if name not in unknown]
     yield from differences(ROWS, row.id, as_json(row), as_json(again.row), names, "its replay")
     path = judged_file(folder, row.id)
     if read_value(path, JudgedDrive) != again.judged:

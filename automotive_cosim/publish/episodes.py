@@ -46,7 +46,7 @@ PLANNED = (
 ALSO_IN_RESULT = (
     "task", "half", "scenario", "agent", "model", "conditions", "seed", "traffic_seed",
     "success", "reward", "steps", "sim_seconds", "end", "error", "error_kind", "agent_error", "held_out",
-    "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
+    "breaches", "trace_sha256", "tokens_in", "tokens_out", "model_seconds", "cost_usd", "drive", "baseline_drive",
 )  # fmt: skip
 """Fields of a row that the result at the end of the trace also has."""
 FROM_MOMENTS = (

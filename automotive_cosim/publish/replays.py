@@ -21,7 +21,7 @@ from automotive_cosim.run.moments import judged_file, read_judged
 from automotive_cosim.run.rerun import PlayedAgain, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
-from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.trial_row import LATER, TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
 OF_THE_AGENT = frozenset({"prompt_tokens", "tokens_in", "tokens_out", "cost_usd", "end"})
@@ -84,7 +84,8 @@ def _differences(
         yield from differences(file, f"step {number}", told, now, (*STEP, SAID), "its replay")
     names = [name for name in RESULT if name in last["result"]]
     yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
-    names = [name for name in steady(row) if name not in OF_THE_AGENT]
+    unknown = OF_THE_AGENT | (LATER if row.malformed is None else frozenset())
+    names = [name for name in steady(row) if name not in unknown]
     yield from differences(ROWS, row.id, as_json(row), as_json(again.row), names, "its replay")
     if read_judged(folder, row.id) != again.judged:
         yield Problem(judged_file(folder, row.id).relative_to(folder).as_posix(), "", "differs from its replay")

@@ -14,6 +14,9 @@ from automotive_cosim.run.row import InColumns, JobRow, Volatile
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.split import Split
 
+LATER = frozenset({"malformed", "malformed_why"})
+"""Fields that rows of 0.2 may lack."""
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialRow(JobRow, ABC):
