@@ -9,7 +9,8 @@ is coarse, since the road widens step by step; the numbers are told, so that som
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from operator import attrgetter
 from typing import NamedTuple
 
 from automotive_cosim.osm.doubts import SHOWN
@@ -36,7 +37,11 @@ def widened(edges: Sequence[Edge], roads: Mapping[int, MappedRoad]) -> Iterator[
         ending[edge.to_node].append(edge)
     for edge in edges:
         mapped, built = roads[way_of(edge.edge_id)].lanes(edge.edge_id), len(edge.lane_ids)
-        if mapped is not None and built > mapped and built in (_parted(edge, starting), _joined(edge, ending)):
+        if mapped is None or built <= mapped:
+            continue
+        parted = _lanes_beyond(edge, attrgetter("to_node"), starting)
+        joined = _lanes_beyond(edge, attrgetter("from_node"), ending)
+        if built in (parted, joined):
             yield Widened(edge.edge_id, mapped, built)
 
 
@@ -50,27 +55,22 @@ def in_words(found: Sequence[Widened]) -> str:
     return f"{shown}{f' and {len(most) - SHOWN} more ways' if len(most) > SHOWN else ''}"
 
 
-def _parted(edge: Edge, starting: Mapping[str, Sequence[Edge]]) -> int:
-    """Lanes of the two roads into which an edge parts, at its end or after straight pieces; 0 if it does not."""
+def _lanes_beyond(edge: Edge, node: Callable[[Edge], str], there: Mapping[str, Sequence[Edge]]) -> int:
+    """Lanes of the two roads that an edge parts into, or is joined from, at once or beyond straight pieces; 0
+    without such roads.
+
+    Args:
+        edge: the edge.
+        node: the end of an edge to go on from.
+        there: the edges beyond each node.
+    """
     seen: set[str] = set()
     while edge.edge_id not in seen:
         seen.add(edge.edge_id)
-        onward = starting.get(edge.to_node, ())
-        if len(onward) != 1:
-            return _lanes(onward)
-        edge = onward[0]
-    return 0
-
-
-def _joined(edge: Edge, ending: Mapping[str, Sequence[Edge]]) -> int:
-    """Lanes of the two roads that join to become an edge, at its start or before straight pieces."""
-    seen: set[str] = set()
-    while edge.edge_id not in seen:
-        seen.add(edge.edge_id)
-        before = ending.get(edge.from_node, ())
-        if len(before) != 1:
-            return _lanes(before)
-        edge = before[0]
+        beyond = there.get(node(edge), ())
+        if len(beyond) != 1:
+            return _lanes(beyond)
+        edge = beyond[0]
     return 0
 
 

@@ -352,4 +352,4 @@ def test_lanes_for_leaving_and_joining_are_told_and_are_no_difference(build: Bui
     assert not list(differences(world.map, world.built, world.roads, world.country))
     wider = replace(world.roads[101], tags=world.roads[101].tags | {"lanes": "1"})
     wrong = differences(world.map, world.built, world.roads | {101: wider}, world.country)
-    assert [str(each)[:24] for each in wrong] == ["way 101: lanes 1 is 2 on"]
+    assert [str(each)[:24] for each in wrong] == ["way 101: lanes: 1 in the"]
