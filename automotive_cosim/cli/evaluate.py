@@ -19,9 +19,9 @@ from automotive_cosim.cli.batches import (
     check_prices,
     executor_of,
     forecast_in_words,
-    seeds_in,
     tell_notes,
     tell_stopped,
+    whole_numbers_in,
     words,
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
@@ -210,7 +210,7 @@ def evaluate(
     named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "drives": drives}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
     values |= {name: words(name, text) for name, text in named.items() if text is not None}
-    values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
+    values |= {"seeds": whole_numbers_in("seeds", seeds)} if seeds is not None else {}
     single = {"suite": suite, "split": split, "repeats": repeats, "rephrase": rephrase}
     single |= {"held_out": held_out, "everywhere": everywhere}
     values |= {name: value for name, value in single.items() if value not in (None, False)}
