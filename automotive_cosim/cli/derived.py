@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Collection, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import MISSING, Field, fields
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
@@ -121,9 +122,6 @@ def _value(name: str, hint: Any, given: Any) -> Any:
     if (item := _item(bare)) is not None:
         read: Any = {int: whole_numbers_in, float: numbers_in}.get(item, words)
         return tuple(read(shown_as(hint).name or option, given))
-    for number in (int, float) if bare in (int, float) else ():
-        try:
-            return number(given)
-        except ValueError:
-            pass
+    with suppress(ValueError):
+        return bare(given) if bare in (int, float) else given
     return given
