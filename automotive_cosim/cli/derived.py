@@ -40,7 +40,7 @@ def takes(kind: type, but: Collection[str] = ()) -> Callable[[F], F]:
     return given
 
 
-def values_of(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
+def settings_in(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
     """The values of the options that were given, by the names of the fields.
 
     Numbers are read where the field takes them; what is none stays a text, for the type's own check to refuse.

@@ -10,7 +10,7 @@ import typer
 from annotated_types import Ge
 from typer.testing import CliRunner
 
-from automotive_cosim.cli.derived import takes, values_of
+from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.main import app
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Option
@@ -55,7 +55,7 @@ def told(*arguments: str) -> tuple[dict[str, Any], str]:
     @one.command()
     @takes(Settings)
     def greet(name: Annotated[str, typer.Option()] = "nobody", **settings: Any) -> None:
-        found.update(values_of(Settings, settings), name=name)
+        found.update(settings_in(Settings, settings), name=name)
 
     ran = CliRunner().invoke(one, list(arguments), catch_exceptions=False)
     return found, ran.output
@@ -96,11 +96,13 @@ def test_a_new_field_is_an_option_by_itself() -> None:
     more = make_dataclass("More", [("new_thing_s", float, 1.0)], bases=(Settings,), frozen=True)
     more.__field_docs__ = {"new_thing_s": "A new thing."}  # type: ignore[attr-defined]
     one = typer.Typer()
-    one.command()(takes(more)(lambda **settings: print(values_of(more, settings))))
+    one.command()(takes(more)(lambda **settings: print(settings_in(more, settings))))
     assert CliRunner().invoke(one, ["--new-thing", "4"]).output.strip() == "{'new_thing_s': 4.0}"
 
 
-@over((name, field.name) for name, (kind, but) in COMMANDS.items() for field in fields(kind) if field.name not in but)
+@over(
+    (name, field.name) for name, (kind, but) in COMMANDS.items() for field in fields(kind) if field.name not in but
+)
 def test_every_setting_of_a_study_is_an_option(name: str, field: str) -> None:
     command = typer.main.get_command(app).commands["study"].commands[name]  # type: ignore[attr-defined]
     (found,) = [each for each in command.params if each.name == field]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from automotive_cosim.cli.batches import ExecutorName, RayAddress, RaySend, Workers, executor_of, tell_notes
-from automotive_cosim.cli.derived import takes, values_of
+from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.options import AsJson
 from automotive_cosim.cli.study.shared import StudyFolder, driven, folder_of, tell_reading, tell_whole
 from automotive_cosim.contracts.plain import counted
@@ -33,7 +33,7 @@ def congestion(
     from automotive_cosim.studies.congestion.results import read_congestion
     from automotive_cosim.studies.congestion.tables import whole
 
-    plan = CongestionPlan(**values_of(CongestionSettings, settings))
+    plan = CongestionPlan(**settings_in(CongestionSettings, settings))
     tell_reading(plan.scenario)
     plan.check()
     tell_notes([plan.opened])

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from automotive_cosim.cli.batches import ExecutorName, RayAddress, RaySend, Workers, executor_of
-from automotive_cosim.cli.derived import takes, values_of
+from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.options import AsJson
 from automotive_cosim.cli.study.shared import StudyFolder, driven, folder_of, tell_reading, tell_whole
 from automotive_cosim.studies.settings import DaysSettings
@@ -29,7 +29,7 @@ def days(
     from automotive_cosim.studies.days import DaysPlan, read_days, run_days
     from automotive_cosim.studies.days_page import answer, tables, warnings, write_days
 
-    plan = DaysPlan(**values_of(DaysSettings, settings))
+    plan = DaysPlan(**settings_in(DaysSettings, settings))
     tell_reading(plan.scenario)
     plan.check()
     folder = out or folder_of(plan)

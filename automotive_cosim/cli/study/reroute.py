@@ -19,7 +19,7 @@ from automotive_cosim.cli.batches import (
     tell_notes,
     words,
 )
-from automotive_cosim.cli.derived import takes, values_of
+from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.options import AsJson
 from automotive_cosim.cli.study.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
 from automotive_cosim.contracts import Json
@@ -63,7 +63,7 @@ def reroute(
     from automotive_cosim.studies.rows import DriveRow
 
     departures = settings.pop("departures_s")
-    plan = StudyPlan(**values_of(RerouteSettings, settings))
+    plan = StudyPlan(**settings_in(RerouteSettings, settings))
     tell_reading(plan.scenario)
     if departures is not None:
         plan = replace(plan, departures_s=_departures(plan.scenario, departures))

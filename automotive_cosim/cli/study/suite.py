@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from automotive_cosim.cli.batches import Workers, executor_of
-from automotive_cosim.cli.derived import takes, values_of
+from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.options import AsJson
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError
@@ -38,7 +38,7 @@ def suite(
     from automotive_cosim.studies.results import read_study
     from automotive_cosim.studies.suite import folder_name, networks, write_networks
 
-    told = SuiteSettings(**values_of(SuiteSettings, settings))
+    told = SuiteSettings(**settings_in(SuiteSettings, settings))
     plans = [
         StudyPlan(name, warm_up_s=warm_up_s, **told.of_each())
         for name in _all_of(told.scenarios)
