@@ -100,7 +100,7 @@ def _parts(chosen: Sequence[PolicyChoice]) -> str:
     avoided_s = round(fmean(lost_s for lost_s, _ in known))
     way_s = round(fmean(map(sum, known))) - avoided_s
     return (
-        f", as {abs(avoided_s)} s {'less' if avoided_s >= 0 else 'more'} are lost in congestion and the way itself "
+        f", as {abs(avoided_s)} s {'less' if avoided_s >= 0 else 'more'} is lost in congestion and the route itself "
         f"takes {abs(way_s)} s {'less' if way_s >= 0 else 'more'}"
     )
 
