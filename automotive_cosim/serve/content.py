@@ -388,7 +388,7 @@ def _span(event: Json) -> Json:
 
 
 OUTCOMES = {
-    "hit": "met in time", "prepared": "met ahead of time", "late": "too late", "caused": "missed: the agent's doing",
+    "hit": "met in time", "prepared": "met ahead of time", "late": "too late", "caused": "missed: its own doing",
     "evaded": "missed: the car was held back", "void": "nothing was due", "avoided": "rightly left alone",
     "taken": "false alarm",
 }  # fmt: skip
