@@ -149,9 +149,10 @@ class ModelAgent:
         self._asking.note(StageName.REMEMBER, now, line)
 
     def _reflect(self, last: _Turn, now: Observation) -> str:
-        screens = [_shown(last.seen), _shown(now)] if self._sees else []
-        pictures = tuple(screen for screen in screens if screen is not None)
-        text = prompt.look_back(last.seen, last.action, now, last.plan, bool(pictures), length=self._profile.length)
+        before, after = (_shown(seen) if self._sees else None for seen in (last.seen, now))
+        pictures = tuple(screen for screen in (before, after) if screen is not None)
+        shown = before is not None, after is not None
+        text = prompt.look_back(last.seen, last.action, now, last.plan, shown, length=self._profile.length)
         reply, asked = self._asking.ask(text, pictures)
         lesson = one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
         self._asking.note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))

@@ -163,7 +163,12 @@ FUNCTIONS = (
     'Functions for the action `call`, as in {"action_type": "call", "function": "set_hvac_temperature", '
     '"arguments": {"which": "driver", "celsius": 21.5}}:'
 )
-BEFORE_AND_AFTER = "Two pictures come with this text: the screen before the action and after it."
+BEFORE_AND_AFTER = {
+    (True, True): "Two pictures come with this text: the screen before the action and after it.",
+    (True, False): "A picture comes with this text: the screen before the action.",
+    (False, True): "A picture comes with this text: the screen after the action.",
+}
+"""What is said about the pictures, by whether there is one of before and of after."""
 
 
 def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
@@ -187,16 +192,25 @@ def look_back(
     action: Action | None,
     after: Observation,
     plan: str = "",
-    pictures: bool = False,
+    pictures: tuple[bool, bool] = (False, False),
     length: PromptLength = PromptLength.STANDARD,
 ) -> str:
-    """The prompt that asks about the result of an action, or of an answer that could not be read."""
+    """The prompt that asks about the result of an action, or of an answer that could not be read.
+
+    Args:
+        before: what was seen when it was chosen.
+        action: the action; None for an answer that could not be read.
+        after: what is seen now.
+        plan: what was planned.
+        pictures: whether a picture of before and one of after come with it.
+        length: how much it says.
+    """
     slots = {
         "goal": driver_words(after),
         "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
         "plan": one_line(plan) or None,
         "feedback": _result(after),
-        "pictures": BEFORE_AND_AFTER if pictures else None,
+        "pictures": BEFORE_AND_AFTER.get(pictures),
     }
     if length is not PromptLength.LONG:
         lists = (before.elements, after.elements)
