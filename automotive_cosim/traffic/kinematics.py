@@ -162,6 +162,10 @@ class ScriptedCar:
         """False: there are no other lanes."""
         return False
 
+    def standing_ahead_m(self) -> float | None:
+        """None: nothing stands on this road."""
+        return None
+
     def leave_corridor(self, leave: bool) -> str:
         """Does nothing: nobody is there to use it."""
         return "keeps to the side" if leave else "drives in the middle of the lane"

@@ -165,6 +165,10 @@ class SumoPedals:
         self._sumo.vehicle.changeLane(self._ego, int(target.rpartition("_")[2]), for_s)
         return True
 
+    def standing_ahead_m(self) -> float | None:
+        """See ``ego.Pedals``."""
+        return self._sensor.route.standing_ahead_m(self._sensor.position_m)
+
     def leave_corridor(self, leave: bool) -> str:
         """See ``ego.Pedals``; without sublanes, SUMO knows no positions in a lane, and the car stays where it is.
 

@@ -35,6 +35,8 @@ BLUE_DUE_M = 150.0
 STANDS_DUE_S = 12.0
 """A warning triangle stands 100 m and more before a stopped vehicle outside towns: 4.5 s at 80 km/h; warnings on
 the screen come before it."""
+STANDS_FROM_MPS = 5.0
+"""Slower than this nothing is due for it."""
 PASS_SHARE = 0.6
 """A car passes what stands at the roadside at this share of its speed."""
 CLOSE_S = 1.0
@@ -132,13 +134,12 @@ class JamTail(EventKind):
             if now.driving.around.relative_speed < 0.6 and mps > 2.0:
                 yield Sighting(f"traffic at {now.driving.around.relative_speed:.0%}", lookalike=True)
             return
-        if not 0 < away_m <= JAM_M or speed_kmh(now) < JAM_FROM_KMH:
-            return
-        yield Sighting(
-            f"a jam in {away_m:.0f} m at {speed_kmh(now):.0f} km/h",
-            due=away_m <= JAM_DUE_S * mps,
-            left_s=time_left_s(away_m, mps),
-        )
+        if 0 < away_m <= JAM_M:
+            yield Sighting(
+                f"a jam in {away_m:.0f} m at {speed_kmh(now):.0f} km/h",
+                due=away_m <= JAM_DUE_S * mps and speed_kmh(now) >= JAM_FROM_KMH,
+                left_s=time_left_s(away_m, mps),
+            )
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """No jam on the route."""
@@ -195,10 +196,10 @@ class StandsAhead(EventKind):
             kind = IncidentKind(self.sights.value)
             if any(incident.kind is kind for incident in now.driving.ahead.incidents):
                 yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", lookalike=True)
-        elif mps > 5.0:
+        else:
             yield Sighting(
                 there.text,
-                due=there.distance_m <= STANDS_DUE_S * mps,
+                due=there.distance_m <= STANDS_DUE_S * mps and mps > STANDS_FROM_MPS,
                 left_s=time_left_s(there.distance_m, mps, PASS_SHARE * mps),
             )
 
