@@ -163,8 +163,8 @@ class ScriptedCar:
         return False
 
     def standing_ahead_m(self) -> float | None:
-        """None: nothing stands on this road."""
-        return None
+        """See ``ego.Pedals``."""
+        return self._layout.route.standing_ahead_m(self._along_m)
 
     def leave_corridor(self, leave: bool) -> str:
         """Does nothing: nobody is there to use it."""

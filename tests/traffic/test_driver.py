@@ -13,10 +13,10 @@ import pytest
 
 from automotive_cosim.contracts import (
     KMH_PER_MPS,
-    MPH_PER_MPS,
     Alert,
     AlertKind,
     DrivingState,
+    IncidentKind,
     PullOver,
     RoadRequest,
     Severity,
@@ -24,7 +24,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.scenarios import Scenario, Trip, load
 from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan, HaltAt, Traffic
-from automotive_cosim.traffic.ego import DRIVES_ON, PARKS, RELEASED, SETS_OFF
+from automotive_cosim.traffic.ego import DRIVES_ON, GOES_ON, PARKS, PASS_SHARE, RELEASED, SETS_OFF
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
@@ -101,9 +101,22 @@ def test_moving_over_leaves_the_kerb_or_slows_down(quiet: Forked, hurried: EgoPl
     traffic.close()
     traffic, drive = warned(quiet, replace(plan, trip=SOUTH), AlertKind.MOVE_OVER, 40.0)
     assert "driver_slows" in kinds(drive)
-    slow_kmh = 50.0 - 20.0 / MPH_PER_MPS * KMH_PER_MPS
+    slow_kmh = 50.0 * PASS_SHARE
     assert min(state.speed_mps for state in drive.states[:200]) * KMH_PER_MPS == pytest.approx(slow_kmh, abs=1.5)
     traffic.close()
+
+
+def test_who_cannot_move_over_slows_down_shortly_before_it_and_goes_on_after_it() -> None:
+    road = [Stretch("A", 500.0, 40.0), Stretch("B", 300.0, 40.0, incident=IncidentKind.BREAKDOWN)]
+    with closing(Scripted(road, start_speed_kmh=40.0).depart(WATCHED)) as traffic:
+        traffic.advance(10.0)
+        traffic.request(Alert(AlertKind.MOVE_OVER))
+        drive = traffic.advance(60.0)
+    kmh = {round(state.distance_m): state.speed_mps * KMH_PER_MPS for state in drive.states}
+    assert kmh[400] == pytest.approx(kmh[200], abs=1.0), "nobody slows down 100 m before it"
+    assert kmh[498] == pytest.approx(40.0 * PASS_SHARE, abs=1.0)
+    assert kmh[600] == pytest.approx(kmh[200], abs=1.0)
+    assert [event.kind for event in drive.events] == ["driver_slows", GOES_ON]
 
 
 @pytest.mark.sumo
