@@ -85,9 +85,11 @@ CORRIDOR_S = 90.0
 
 MOVE_OVER_S = 30.0
 MOVE_OVER_MPS = 20 / MPH_PER_MPS
+SLOWEST_MOVE_OVER_MPS = 5 / MPH_PER_MPS
+"""A driver who cannot change lanes passes at 20 mph below the limit, or at 5 mph if that is 20 or less (Florida
+statute 316.126)."""
 PASS_SHARE = 0.6
-"""A driver who cannot change lanes passes what stands there at 20 mph below the limit (Florida statute 316.126),
-but at no less than three fifths of it: our choice, since nobody creeps in a town."""
+"""On a drive it is no less than three fifths of the limit: our choice, since nobody creeps past a car in a town."""
 BESIDE_M = 15.0
 """From so far before it the driver is that slow."""
 
@@ -484,10 +486,12 @@ class Driver:
             if pedals.change_lane(1, MOVE_OVER_S):
                 return Event(state.time_s, "driver_moves_over", f"driver goes one lane away from the kerb, {after}")
             limit_mps = state.road.limit.mps or state.speed_mps
-            speed_mps = max(limit_mps - MOVE_OVER_MPS, PASS_SHARE * limit_mps)
+            on_drive = self.plan.advice_s < math.inf
+            slowest_mps = PASS_SHARE * limit_mps if on_drive else SLOWEST_MOVE_OVER_MPS
+            speed_mps = max(slowest_mps, limit_mps - MOVE_OVER_MPS)
             if alert.speed_kmh is not None:
                 speed_mps = alert.speed_kmh / KMH_PER_MPS
-            away_m = pedals.standing_ahead_m()
+            away_m = pedals.standing_ahead_m() if on_drive else None
             if away_m is None:
                 self._advise(speed_mps, state, MOVE_OVER_S)
                 return self._slows(state, after)
