@@ -36,6 +36,7 @@ from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.base import EgoPlan, Event, HaltAt
 from automotive_cosim.traffic.instant import Instant
 from automotive_cosim.traffic.profiles import DriverProfile, profile
+from automotive_cosim.traffic.reasons import Reason, View, reason_for
 from automotive_cosim.traffic.road_weather import DRY, Forecast, RoadCondition
 
 REACTION_SPREAD = 0.25
@@ -91,7 +92,9 @@ statute 316.126)."""
 PASS_SHARE = 0.6
 """On a drive it is no less than three fifths of the limit: our choice, since nobody creeps past a car in a town."""
 BESIDE_M = 15.0
-"""From so far before it the driver is that slow."""
+"""From so far before a place the driver is as slow as advised for it."""
+LONGEST_ADVICE_S = 360.0
+"""A driver keeps to advice no longer, whatever its reason."""
 
 FASTEST_MPS = 130 / KMH_PER_MPS
 """A request for this speed holds nobody back where there is no limit."""
@@ -225,16 +228,16 @@ class _Bounds:
     """The limit at which the advice was given, and with which it ends."""
     advised_until_s: float = math.inf
     passing: float = math.inf
-    """Beside what stands ahead, and slowed down to gently before it."""
-    to_pass_m: float = math.inf
+    """From a place ahead on, and slowed down to gently before it."""
+    to_place_m: float = 0.0
     """How far that is."""
 
     @property
     def approach_mps(self) -> float:
-        """How fast the driver goes towards what stands ahead, to pass it slowly."""
+        """How fast the driver goes towards that place."""
         if self.passing == math.inf:
             return math.inf
-        return math.sqrt(self.passing**2 + 2 * EASING_MPS2 * max(0.0, self.to_pass_m - BESIDE_M))
+        return math.sqrt(self.passing**2 + 2 * EASING_MPS2 * max(0.0, self.to_place_m - BESIDE_M))
 
     def advice_is_over(self, now: Instant) -> bool:
         """Whether a speed was advised until now: its time is over, or the limit is another."""
@@ -281,6 +284,10 @@ class Driver:
     _sets_off_s: float = math.inf
     _advised_until_s: float = math.inf
     """When the driver no longer keeps to what was asked or advised."""
+    _longest_until_s: float = math.inf
+    """When not even for its reason."""
+    _reason: Reason | None = None
+    """What the last advice on a drive is for, beyond the road here."""
     _search_until_s: float = -math.inf
     """Until when the driver looks for a place to stop, as asked."""
     _stop: str = ""
@@ -333,7 +340,7 @@ class Driver:
             self._change_mood(now.time_s - self._departed_s)
         if self.plan.at_schools:
             self._pass_school(now.state.road)
-        if self._profile is not before and self._advised_until_s < math.inf:
+        if self._profile is not before and self._advised_until_s < math.inf and self._reason is None:
             events = (self._release(now.time_s, "what was advised has ended"),)
         if self._halts < len(self.plan.halts):
             events += tuple(self._halt(self.plan.halts[self._halts], now))
@@ -349,8 +356,6 @@ class Driver:
         if now.time_s >= self._corridor_until_s:
             self._corridor_until_s = math.inf
             self.pedals.leave_corridor(False)
-        if self._bounds.passing < math.inf:
-            events += tuple(self._near_standing(now.time_s))
         self._hold_speed(now)
         return events
 
@@ -383,8 +388,10 @@ class Driver:
                 limit_mps = state.road.limit.mps
                 if self.plan.advice_s < math.inf and takes_back(speed_kmh, state):
                     return (self._release(state.time_s, f"advice taken back, {after} the request"),)
+                self._keep_to(None, state)
+                if self._reason is not None:
+                    return (self._name(speed_kmh / KMH_PER_MPS, state, f"{after} the request"),)
                 self._bounds.asked, self._bounds.asked_under = speed_kmh / KMH_PER_MPS, limit_mps
-                self._advised_until_s = state.time_s + self.plan.advice_s
                 return (self._slows(state, f"{after} the request"),)
             case PullOver() if self.plan.advice_s < math.inf:
                 self._search_until_s = state.time_s + SEARCH_S
@@ -400,7 +407,7 @@ class Driver:
 
     def _heed(self, alert: Alert, state: DrivingState, after: str) -> list[Event]:
         events = []
-        self._advised_until_s = state.time_s + self.plan.advice_s
+        self._keep_to(alert.kind, state)
         if self._is_told_to_stop(alert):
             self._search_until_s = state.time_s + SEARCH_S
             events.append(Event(state.time_s, "driver_pulls_over", f"driver looks for a place to stop, {after}"))
@@ -408,8 +415,9 @@ class Driver:
             self._law_abiding = True
             self._easing_mps2 = BRAKING_MPS2 if alert.severity is Severity.CRITICAL else EASING_MPS2
             if alert.speed_kmh is not None:
-                self._advise(alert.speed_kmh / KMH_PER_MPS, state)
-            events.append(self._slows(state, after))
+                events.append(self._name(alert.speed_kmh / KMH_PER_MPS, state, after))
+            else:
+                events.append(self._slows(state, after))
         if alert.kind in GAP_KINDS:
             self._headway_s = max(SAFE_HEADWAY_S, self._profile.headway_s)
             self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
@@ -447,31 +455,62 @@ class Driver:
             self._search_until_s = -math.inf
             yield Event(now.time_s, "driver_cannot_stop", "driver has found no place to stop")
         bounds = self._bounds
+        if self._reason is not None:
+            yield from self._keep_to_reason(self._reason, now)
+            return
         if bounds.asked < math.inf and now.limit_mps != bounds.asked_under:
             self._advised_until_s = now.time_s
         if now.time_s >= self._advised_until_s:
             yield self._release(now.time_s, "what was advised has ended")
         elif bounds.advice_is_over(now):
             bounds.advised = math.inf
-            yield self._goes_on(now.time_s, "the advised speed has ended")
+            kind, goes = ("driver_holds", "no faster than the limit") if self._law_abiding else (GOES_ON, "on")
+            yield Event(now.time_s, kind, f"driver goes {goes}; the advised speed has ended")
 
-    def _near_standing(self, now_s: float) -> Iterator[Event]:
-        """Looks how far it is to what the driver passes slowly, and goes on once that has been passed."""
-        bounds, away_m = self._bounds, self.pedals.standing_ahead_m()
-        if away_m is not None and away_m <= bounds.to_pass_m + BESIDE_M:
-            bounds.to_pass_m = away_m
+    def _keep_to_reason(self, reason: Reason, now: Instant) -> Iterator[Event]:
+        """Keeps to advice as long as what it is for is there."""
+        bounds = self._bounds
+        if now.time_s >= self._longest_until_s:
+            yield self._release(now.time_s, "what was advised has ended")
+        elif not reason.lasts(self._view(now.state)):
+            yield self._release(now.time_s, "what it was advised for is passed")
         else:
-            bounds.passing = bounds.to_pass_m = math.inf
-            yield self._goes_on(now_s, "what stood ahead is passed")
+            bounds.to_place_m, bounds.advised_under = reason.to_place_m, now.limit_mps
 
-    def _goes_on(self, now_s: float, why: str) -> Event:
-        """As fast as before a speed was advised."""
-        kind, goes = ("driver_holds", "no faster than the limit") if self._law_abiding else (GOES_ON, "on")
-        return Event(now_s, kind, f"driver goes {goes}; {why}")
+    def _keep_to(self, kind: AlertKind | None, state: DrivingState) -> None:
+        """Keeps to advice from now on: two minutes, or on a drive as long as its reason is there."""
+        self._advised_until_s = state.time_s + self.plan.advice_s
+        if self.plan.advice_s < math.inf:
+            self._reason = reason_for(kind, self._view(state)) or self._reason
+            self._longest_until_s = state.time_s + LONGEST_ADVICE_S
+
+    def _name(self, speed_mps: float, state: DrivingState, after: str) -> Event:
+        """Keeps to a speed that was named: from the place on that it is for, or at once."""
+        bounds, kmh = self._bounds, speed_mps * KMH_PER_MPS
+        if self._reason is None or self._reason.to_place_m <= 0.0:
+            self._advise(speed_mps, state)
+            return self._slows(state, after)
+        bounds.passing, bounds.to_place_m = speed_mps, self._reason.to_place_m
+        words = f"driver will go {kmh:.0f} km/h from {bounds.to_place_m:.0f} m ahead on, {after}"
+        return Event(state.time_s, "driver_slows", words)
+
+    def _view(self, state: DrivingState) -> View:
+        ahead = state.ahead
+        return View(
+            state.speed_mps,
+            state.road.limit.mps,
+            None if ahead.next_limit is None else ahead.next_limit.mps,
+            ahead.next_limit_distance_m,
+            self.pedals.standing_ahead_m(),
+            ahead.jam_distance_m,
+            state.road.friction,
+            self._condition.sight_mps,
+        )
 
     def _release(self, now_s: float, why: str) -> Event:
         """Drives as without any advice."""
-        self._advised_until_s = math.inf
+        self._advised_until_s = self._longest_until_s = math.inf
+        self._reason = None
         self._bounds.asked = self._bounds.advised = self._bounds.passing = math.inf
         self._drive_as(self._profile.name)
         return Event(now_s, RELEASED, f"driver drives as before; {why}")
@@ -491,13 +530,10 @@ class Driver:
             speed_mps = max(slowest_mps, limit_mps - MOVE_OVER_MPS)
             if alert.speed_kmh is not None:
                 speed_mps = alert.speed_kmh / KMH_PER_MPS
-            away_m = pedals.standing_ahead_m() if on_drive else None
-            if away_m is None:
-                self._advise(speed_mps, state, MOVE_OVER_S)
-                return self._slows(state, after)
-            self._bounds.passing, self._bounds.to_pass_m = speed_mps, away_m
-            speed_kmh = speed_mps * KMH_PER_MPS
-            return Event(state.time_s, "driver_slows", f"driver will pass it at {speed_kmh:.0f} km/h, {after}")
+            if self._reason is not None:
+                return self._name(speed_mps, state, after)
+            self._advise(speed_mps, state, MOVE_OVER_S)
+            return self._slows(state, after)
         if state.road.lane_count > 1 and not state.road.in_tunnel:
             pedals.change_lane(-state.road.lane_index, GIVE_WAY_S)
             return Event(state.time_s, "driver_gives_way", f"driver keeps to the lane at the kerb, {after}")
@@ -516,7 +552,9 @@ class Driver:
         wanted_kmh = self._wanted_mps(state) * KMH_PER_MPS
         if wanted_kmh < state.speed_mps * KMH_PER_MPS:
             return Event(state.time_s, "driver_slows", f"driver slows to {wanted_kmh:.0f} km/h, {after}")
-        return Event(state.time_s, "driver_holds", f"driver goes no faster than {wanted_kmh:.0f} km/h, {after}")
+        is_named = self._bound_mps() <= self._wanted_mps(state) < self._own_top_mps
+        bound = f"{wanted_kmh:.0f} km/h" if is_named else "the limit"
+        return Event(state.time_s, "driver_holds", f"driver goes no faster than {bound}, {after}")
 
     def _change_mood(self, since_s: float) -> None:
         """Drives in another way once that is due, but in a school zone only after it."""
@@ -541,10 +579,11 @@ class Driver:
             self._drive_as(self._mood)
 
     def _drive_as(self, name: str) -> None:
-        """Drives by another profile; what an alert had brought about is forgotten."""
+        """Drives by another profile; what an alert had brought about is forgotten, unless its reason is there."""
         self._profile = profile(name)
-        self._law_abiding, self._easing_mps2 = False, EASING_MPS2
-        self._headway_s = self._profile.headway_s
+        if self._reason is None:
+            self._law_abiding, self._easing_mps2 = False, EASING_MPS2
+            self._headway_s = self._profile.headway_s
         self._choose_speed()
         self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
         self.pedals.set_imperfection(self._profile.imperfection)
