@@ -161,6 +161,10 @@ class Pedals(Protocol):
         """Limits braking to ``friction * g``."""
         ...
 
+    def set_traction(self, friction: float) -> None:
+        """Limits acceleration to what the wheels of one axle, which carry half the car, bring on the road."""
+        ...
+
     def set_braking(self, deceleration_mps2: float) -> None:
         """How hard the driver brakes for what can be seen coming."""
         ...
@@ -614,6 +618,8 @@ class Driver:
             self._condition = condition
             self._choose_speed()
             self.pedals.set_grip(condition.friction)
+            if self.plan.advice_s < math.inf:
+                self.pedals.set_traction(condition.friction)
             self.pedals.set_headway(self._headway_s * self._adapted(condition.headway_ratio))
 
     def _choose_speed(self) -> None:

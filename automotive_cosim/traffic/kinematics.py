@@ -135,6 +135,9 @@ class ScriptedCar:
         """Limits the braking."""
         self._hardest_mps2 = friction * G_MPS2
 
+    def set_traction(self, friction: float) -> None:
+        """Does nothing: nobody accelerates hard here."""
+
     def set_braking(self, deceleration_mps2: float) -> None:
         """Does nothing: braking is gentle here."""
 

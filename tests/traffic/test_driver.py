@@ -135,6 +135,17 @@ def test_a_speed_for_a_place_is_driven_from_there_on_and_as_long_as_it_lasts() -
     assert max(kmh.values()) > 51.0
 
 
+def test_advice_for_ice_holds_as_long_as_the_ice() -> None:
+    icy = [Stretch(str(count), 1000.0, limit, friction=0.2) for count, limit in enumerate((80.0, 100.0, 80.0))]
+    with closing(Scripted([*icy, Stretch("dry", 3000.0, 80.0)], start_speed_kmh=60.0).depart(WATCHED)) as traffic:
+        traffic.request(Alert(AlertKind.SLIPPERY, speed_kmh=40.0))
+        drive = traffic.advance(330.0)
+    (release,) = (event for event in drive.events if event.kind == RELEASED)
+    there = next(state for state in drive.states if state.time_s >= release.time_s)
+    assert there.distance_m == pytest.approx(3000.0, abs=20.0)
+    assert release.time_s > 200.0
+
+
 def test_a_speed_for_a_jam_ends_with_it() -> None:
     road = [Stretch("A", 400.0, 50.0), Stretch("B", 200.0, 50.0, relative_speed=0.2), Stretch("C", 3000.0, 50.0)]
     with closing(Scripted(road, start_speed_kmh=50.0).depart(WATCHED)) as traffic:
