@@ -39,6 +39,8 @@ STANDS_FROM_MPS = 5.0
 """Slower than this nothing is due for it."""
 PASS_SHARE = 0.6
 """A car passes what stands at the roadside at this share of its speed."""
+GENTLE_MPS2 = 1.5
+"""How hard a driver brakes who is warned in time (``traffic.ego.EASING_MPS2``)."""
 CLOSE_S = 1.0
 """A time gap below this leaves no time to react (mean reaction 1.1 s)."""
 GAP_HOLD_S = 3.0
@@ -138,6 +140,7 @@ class JamTail(EventKind):
             yield Sighting(
                 f"a jam in {away_m:.0f} m at {speed_kmh(now):.0f} km/h",
                 due=away_m <= JAM_DUE_S * mps and speed_kmh(now) >= JAM_FROM_KMH,
+                severity=_urgency(away_m, mps, 0.0),
                 left_s=time_left_s(away_m, mps),
             )
 
@@ -147,6 +150,11 @@ class JamTail(EventKind):
         if seen(now, SightKind.JAM) is not None or seen(now, SightKind.CLOSURE) is not None:
             return None
         return "no jam is reported within 2 km"
+
+
+def _urgency(away_m: float, mps: float, to_mps: float) -> float:
+    """How hard the car must brake by now, as a share of braking gently; 1 as long as that is enough."""
+    return max(1.0, (mps**2 - to_mps**2) / (2 * max(away_m, 1.0)) / GENTLE_MPS2)
 
 
 class RearEnd(EventKind):
@@ -200,6 +208,7 @@ class StandsAhead(EventKind):
             yield Sighting(
                 there.text,
                 due=there.distance_m <= STANDS_DUE_S * mps and mps > STANDS_FROM_MPS,
+                severity=_urgency(there.distance_m, mps, PASS_SHARE * mps),
                 left_s=time_left_s(there.distance_m, mps, PASS_SHARE * mps),
             )
 
