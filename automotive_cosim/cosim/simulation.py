@@ -97,6 +97,7 @@ def couple(
     scenario: Scenario,
     *,
     gps_rng: np.random.Generator,
+    gps_is_steady: bool = False,
     weather: tuple[WeatherAt, ...],
     departure: datetime,
     links: tuple[LinkAt, ...] = (),
@@ -109,6 +110,7 @@ def couple(
         cockpit: the car's cockpit.
         scenario: the scenario; without a place on earth, the car has no receiver.
         gps_rng: source of the receiver's errors.
+        gps_is_steady: whether it shows a car that stands in one place.
         weather: the timeline, in seconds after departure.
         departure: local time of the traffic's present state, zone-aware.
         links: the best available link over time, in seconds after departure.
@@ -117,7 +119,7 @@ def couple(
     state, geo = traffic.state, Geo()
     car = Car(
         cockpit,
-        Gps(gps_rng) if scenario.has_place else None,
+        Gps(gps_rng, is_steady=gps_is_steady) if scenario.has_place else None,
         Modem(links),
         geo,
         weather,

@@ -70,6 +70,7 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
             cockpit,
             scenario,
             gps_rng=draws.rng(Purpose.RECEIVER),
+            gps_is_steady=True,
             weather=script.weather,
             departure=ego.start or scenario.start,
             links=scenario.connectivity,

@@ -365,7 +365,7 @@ class _Bench:
         if settled and not right:
             return _step(act, settled)
         if right:
-            worth, told_s = _told(act, right)
+            worth, told_s = self._told(act, right)
             reason = f"told {act.time_s - told_s:.0f} s before" if worth is Worth.REPEAT else ""
             return JudgedAct(act.time_s, act.words, worth, right[0].event.kind, reason)
         if act.alert is None and _sets_back(act, self.written, self.at_start):
@@ -402,6 +402,35 @@ class _Bench:
             return JudgedAct(act.time_s, act.words, Worth.REPEAT, about, reason)
         return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, about)
 
+    def _told(self, act: WatchAct, cases: Sequence[_Case]) -> tuple[Worth, float]:
+        """Notes an act that is right for some open events; the best that it is for any of them, and when one of
+        them was told of last."""
+        worths = []
+        before_s = max((case.told_s for case in cases if case.told_s is not None), default=act.time_s)
+        meant = [kind for kind in self.kinds if kind.settles(act, None)]
+        unnamed = [case for case in cases if not case.is_named]
+        for case in cases:
+            event = case.event
+            if case.is_too_early(act):
+                worths.append(Worth.NEUTRAL)
+                continue
+            if case.answered_s is None:
+                case.answered_s = act.time_s
+                late = event.deadline_s is not None and act.time_s > event.deadline_s
+                worths.append(Worth.LATE if late else Worth.RIGHT)
+            elif act.alert is None and not act.said:
+                worths.append(Worth.NEUTRAL)
+            else:
+                severity = event.severity_at(act.time_s)
+                recent = case.told_s is not None and act.time_s - case.told_s < REPEAT_S
+                again = recent and not unnamed and severity < WORSE * case.told_severity
+                worths.append(Worth.REPEAT if again and self._lasts(meant, before_s, act.time_s) else Worth.NEUTRAL)
+            if act.alert is not None or act.said:
+                case.told_s, case.told_severity = act.time_s, event.severity_at(act.time_s)
+        if unnamed and act.alert is not None:
+            min(unnamed, key=_most_likely).is_named = True
+        return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index), before_s
+
     def _lasts(self, meant: Sequence[EventKind], from_s: float, until_s: float) -> bool:
         """Whether at every second between two alerts something supported them."""
         seconds = (from_s + count for count in range(1, ceil(until_s - from_s)))
@@ -417,35 +446,6 @@ def _step(act: WatchAct, cases: Sequence[_Case]) -> JudgedAct:
             late = deadline_s is not None and done_s > deadline_s
             return JudgedAct(act.time_s, act.words, Worth.LATE if late else Worth.RIGHT, case.event.kind)
     return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, cases[0].event.kind)
-
-
-def _told(act: WatchAct, cases: Sequence[_Case]) -> tuple[Worth, float]:
-    """Notes an act that is right for some open events; the best that it is for any of them, and when one of them
-    was told of last."""
-    worths = []
-    before_s = max((case.told_s for case in cases if case.told_s is not None), default=act.time_s)
-    unnamed = [case for case in cases if not case.is_named]
-    for case in cases:
-        event = case.event
-        if case.is_too_early(act):
-            worths.append(Worth.NEUTRAL)
-            continue
-        if case.answered_s is None:
-            case.answered_s = act.time_s
-            late = event.deadline_s is not None and act.time_s > event.deadline_s
-            worths.append(Worth.LATE if late else Worth.RIGHT)
-        elif act.alert is None and not act.said:
-            worths.append(Worth.NEUTRAL)
-        else:
-            severity = event.severity_at(act.time_s)
-            recent = case.told_s is not None and act.time_s - case.told_s < REPEAT_S
-            again = recent and not unnamed and severity < WORSE * case.told_severity
-            worths.append(Worth.REPEAT if again else Worth.NEUTRAL)
-        if act.alert is not None or act.said:
-            case.told_s, case.told_severity = act.time_s, event.severity_at(act.time_s)
-    if unnamed and act.alert is not None:
-        min(unnamed, key=_most_likely).is_named = True
-    return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index), before_s
 
 
 def _most_likely(case: _Case) -> tuple[int, float]:

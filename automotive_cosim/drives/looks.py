@@ -210,15 +210,13 @@ def _weather(known: Gathered) -> Iterator[Concern]:
 def _traffic(known: Gathered) -> Iterator[Concern]:
     away_m = known.away_m("jam")
     if away_m is not None and _nears(known, "jam", away_m):
-        fast = known.speed_kmh >= 40
-        near = fast and away_m <= known.mps * (15 + LOOK_S)
-        yield Concern("jam", AlertKind.TRAFFIC, near, is_there=fast, due=away_m <= known.mps * 15)
+        near = known.speed_kmh >= 40 and away_m <= known.mps * (15 + LOOK_S)
+        yield Concern("jam", AlertKind.TRAFFIC, near, is_there=True, due=away_m <= known.mps * 15)
     for name, alert in (("breakdown", AlertKind.MOVE_OVER), ("roadworks", AlertKind.TRAFFIC)):
         away_m = known.away_m(name)
         if away_m is not None and _nears(known, name, away_m):
-            moves = known.mps > 5
-            near = moves and away_m <= known.mps * (12 + LOOK_S)
-            yield Concern(name, alert, near, is_there=moves, due=away_m <= known.mps * 12)
+            near = known.mps > 5 and away_m <= known.mps * (12 + LOOK_S)
+            yield Concern(name, alert, near, is_there=True, due=away_m <= known.mps * 12)
     blue = re.match(r"blue light (\d+) m", known.words("behind"))
     if blue is not None:
         yield Concern("blue light", AlertKind.YIELD, float(blue[1]) <= 150, 1.0)

@@ -258,8 +258,9 @@ def _behind_words(drive: Drive) -> str:
 
 
 def _far(away_m: float, now: Moment) -> str:
+    """Rounded up: what is still ahead does not read as if it were here."""
     mps = now.driving.speed_mps
-    return f"{away_m:.0f} m" + (f", {away_m / mps:.0f} s at this speed" if mps >= QUEUE_MPS else "")
+    return f"{ceil(away_m)} m" + (f", {away_m / mps:.0f} s at this speed" if mps >= QUEUE_MPS else "")
 
 
 def _steps(away_m: float, due_m: float, now: Moment) -> int:
@@ -366,8 +367,16 @@ def _lamps(now: Moment) -> tuple[str, ...]:
 
 
 def _lamp_words(drive: Drive) -> str:
-    switch = str(drive[-1].signals[LIGHTS.SWITCH.path]).lower()
-    return f"on: {', '.join(_lamps(drive[-1])) or 'none'}; switch: {switch}".replace(";", ",")
+    now = drive[-1]
+    lit = [*_lamps(now), *(["daytime running lamps"] if _runs_by_day(now) else [])]
+    return f"on: {', '.join(lit) or 'none'}, switch: {str(now.signals[LIGHTS.SWITCH.path]).lower()}"
+
+
+def _runs_by_day(now: Moment) -> bool:
+    """Whether the daytime running lamps are on, by themselves: while the car is ready to drive, and neither
+    headlamps nor front fog lamps are on (UN R48, 6.19.7)."""
+    others = (LIGHTS.LOW_BEAM, LIGHTS.HIGH_BEAM, LIGHTS.FRONT_FOG)
+    return now.signals[MOTION.GEAR.path] != "P" and not any(now.signals[lamp.path] for lamp in others)
 
 
 def _weather_words(drive: Drive) -> str:

@@ -23,7 +23,7 @@ from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
-from automotive_cosim.drives.wakes import LONGEST_S, Alarm, Noticed, noticed
+from automotive_cosim.drives.wakes import FAR_S, LONGEST_S, Alarm, Noticed, noticed
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.episode.observer import Observer
@@ -206,7 +206,9 @@ class Watch(JudgedSession):
         vehicle = self.observation.vehicle
         if vehicle is not None:
             lines = [noticed(self.moments[-READ_BACK:], self.marked), *driver_line(self.moments[-IN_FORCE_S:])]
-            vehicle = replace(vehicle, noticed="\n".join(lines))
+            ttc_s = vehicle.leader_time_to_collision_s
+            ttc_s = None if ttc_s is None or ttc_s > FAR_S else ttc_s
+            vehicle = replace(vehicle, noticed="\n".join(lines), leader_time_to_collision_s=ttc_s)
         self.observation = replace(self.observation, vehicle=vehicle, on_watch=True)
 
     @property

@@ -75,14 +75,13 @@ class RulePerfect:
                 self._seen[key] = now_s
             told = self._told.get(key)
             if told is not None:
-                told.was_due |= concern.now and concern.due and not told.paused
-                told.paused |= not concern.is_there and not concern.now
+                told.was_due |= concern.now and concern.due and now_s - told.at_s <= FORGOTTEN_S
             if concern.now:
                 self._since.setdefault(key, now_s - concern.lasted_s)
 
     def _is_untold(self, concern: Concern, now_s: float) -> bool:
         told = self._told.get(concern.key)
-        return told is None or (told.paused and not told.was_due and now_s - told.at_s > FORGOTTEN_S)
+        return told is None or (not told.was_due and now_s - told.at_s > FORGOTTEN_S)
 
     def _is_time(self, concern: Concern, now_s: float) -> bool:
         due = concern.now and self._is_untold(concern, now_s)
@@ -95,9 +94,7 @@ class _Telling:
 
     at_s: float
     was_due: bool
-    """Whether it came due before it paused; if not, it was told too early and is told again."""
-    paused: bool = False
-    """Whether it has been away since, as a breakdown ahead is while the car stands."""
+    """Whether it came due while the driver remembered; if not, it was told too early and is told again."""
 
 
 # --- watchers that must fail -----------------------------------------------------------------------------------

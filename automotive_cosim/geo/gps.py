@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from automotive_cosim.contracts import DrivingState, GpsFix
+from automotive_cosim.contracts import STANDING_BELOW_MPS, DrivingState, GpsFix
 from automotive_cosim.geo.earth import METRES_PER_DEGREE, metres_per_degree_east
 
 OPEN_SKY_SIGMA_M = 2.0
@@ -36,10 +36,14 @@ class Gps:
 
     Args:
         rng: source of its noise; three normal draws per reading, with or without a fix.
+        is_steady: whether its error stays the same while the car stands, as that of receivers with a static hold,
+            and comes over ``CORRELATION_S`` to that of other surroundings. Otherwise a parked car seems to move.
     """
 
-    def __init__(self, rng: np.random.Generator) -> None:
+    def __init__(self, rng: np.random.Generator, *, is_steady: bool = False) -> None:
         self._rng = rng
+        self._is_steady = is_steady
+        self._sigma_m: float | None = None
         self._error_east, self._error_north = (float(error) for error in rng.standard_normal(2))
         self._last: GpsFix | None = None
         self._sky_s = REACQUIRE_S
@@ -56,10 +60,11 @@ class Gps:
         """
         if driving.lon_deg is None or driving.lat_deg is None:
             return None
-        heading_error = self._wander(dt_s)
+        stands = driving.speed_mps < STANDING_BELOW_MPS
+        heading_error = self._wander(0.0 if self._is_steady and stands else dt_s)
         self._sky_s = 0.0 if driving.road.in_tunnel else self._sky_s + dt_s
         if self._sky_s >= REACQUIRE_S:
-            self._last = self._fix(driving, driving.lon_deg, driving.lat_deg, heading_error)
+            self._last = self._fix(driving, driving.lon_deg, driving.lat_deg, heading_error, dt_s)
         elif self._last is None:
             self._last = GpsFix(
                 False, driving.lon_deg, driving.lat_deg, UNDERGROUND_SIGMA_M, 0.0, driving.heading_deg
@@ -81,10 +86,15 @@ class Gps:
         self._error_north = kept * self._error_north + fresh * north
         return heading
 
-    def _fix(self, driving: DrivingState, lon_deg: float, lat_deg: float, heading_error: float) -> GpsFix:
+    def _fix(
+        self, driving: DrivingState, lon_deg: float, lat_deg: float, heading_error: float, dt_s: float
+    ) -> GpsFix:
         sigma_m = OPEN_SKY_SIGMA_M
         if driving.road.built_up:
             sigma_m = CANYON_SIGMA_M if driving.road.lane_count == 1 else BUILT_UP_SIGMA_M
+        if self._is_steady and self._sigma_m is not None:
+            sigma_m += (self._sigma_m - sigma_m) * math.exp(-dt_s / CORRELATION_S)
+        self._sigma_m = sigma_m
         lon = lon_deg + self._error_east * sigma_m / metres_per_degree_east(lat_deg)
         lat = lat_deg + self._error_north * sigma_m / METRES_PER_DEGREE
         return GpsFix(

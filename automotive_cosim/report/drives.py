@@ -63,11 +63,19 @@ def standings(rows: Iterable[DriveTrialRow]) -> list[str]:
         lines.append(
             f"{each.label}: score {told(mine, _value, '.0f')}; {recall}, "
             f"{total.false_alarms_per_h:.1f} false alarms and {total.nuisances_per_h:.1f} nuisances an hour, "
-            f"{counted(len(mine), 'drive')}"
+            f"{counted(len(mine), 'drive')}{_left_alone(mine)}"
         )
     if len({whole(mine).events for mine in groups.values()}) > 1:
         lines.append(DIVERGE)
     return lines
+
+
+def _left_alone(rows: Sequence[DriveTrialRow]) -> str:
+    """How many drives nobody watched to their end, and from when on at the earliest."""
+    from_s = [row.unwatched_from_s for row in rows if row.unwatched_from_s is not None]
+    if not from_s:
+        return ""
+    return f"; nobody watched {counted(len(from_s), 'drive')} to the end, one from {clock(min(from_s))} on"
 
 
 DIVERGE = (

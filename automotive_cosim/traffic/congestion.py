@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from itertools import islice, pairwise
 from typing import Protocol, TypeAlias
 
-from automotive_cosim.contracts import OLDEST_NEWS_S, Limit, RoadAhead, RoadIncident, TrafficLight
+from automotive_cosim.contracts import OLDEST_NEWS_S, IncidentKind, Limit, RoadAhead, RoadIncident, TrafficLight
 from automotive_cosim.traffic.network import Crossing, Edge, Network
 from automotive_cosim.traffic.records import make_ahead
 
@@ -42,6 +42,9 @@ SLOW_BELOW = 0.75
 
 SLOWEST_MPS = 0.5
 """Minimum speed, so that travel times stay finite."""
+
+STANDS = frozenset({IncidentKind.BREAKDOWN, IncidentKind.ROADWORKS})
+"""Incidents that drivers pass slowly."""
 
 MOTORWAY_CLASSES = frozenset({"motorway", "trunk"})
 """Road classes with exits."""
@@ -188,6 +191,13 @@ class Route:
         self._rest = tuple(self.edge_ids[index:] for index in range(len(edges)))
         self._slow = flow.slow_edges()
         self._incidents = incidents
+        self._standing_m = sorted(
+            start_m + incident.position_m
+            for incident in incidents
+            if incident.kind in STANDS
+            for start_m, edge_id in zip(starts_m, self.edge_ids, strict=True)
+            if edge_id == incident.edge_id
+        )
         self._legs = _legs(edges, ways, starts_m, network, flow)
 
     def position_m(self, index: int, on_edge_m: float) -> float:
@@ -197,6 +207,10 @@ class Route:
     def relative_speed(self, index: int) -> float:
         """Mean speed divided by the limit on an edge of the route; 1 is free flow."""
         return self._legs[index].relative_speed
+
+    def standing_ahead_m(self, position_m: float) -> float | None:
+        """Distance from a position on the route to the next breakdown or roadworks; None without one."""
+        return _next_m(self._standing_m, position_m)
 
     def edge_at(self, position_m: float) -> tuple[int, float]:
         """Index of the edge at a distance from the start of the route, and the distance on that edge."""
@@ -231,14 +245,16 @@ class Route:
             None if leg.exit_m is None else max(0.0, leg.exit_m - position_m),
             self._rest[index],
             (),
-            self._camera_m(position_m) if self._cameras_m else None,
+            _next_m(self._cameras_m, position_m),
             self._slow,
             self._incidents,
         )
 
-    def _camera_m(self, position_m: float) -> float | None:
-        index = bisect_right(self._cameras_m, position_m)
-        return self._cameras_m[index] - position_m if index < len(self._cameras_m) else None
+
+def _next_m(places_m: Sequence[float], position_m: float) -> float | None:
+    """Distance to the next of some places on the route, in order; None after the last."""
+    index = bisect_right(places_m, position_m)
+    return places_m[index] - position_m if index < len(places_m) else None
 
 
 def _legs(

@@ -36,6 +36,7 @@ from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.base import EgoPlan, Event, HaltAt
 from automotive_cosim.traffic.instant import Instant
 from automotive_cosim.traffic.profiles import DriverProfile, profile
+from automotive_cosim.traffic.reasons import Reason, View, reason_for
 from automotive_cosim.traffic.road_weather import DRY, Forecast, RoadCondition
 
 REACTION_SPREAD = 0.25
@@ -88,6 +89,12 @@ MOVE_OVER_MPS = 20 / MPH_PER_MPS
 SLOWEST_MOVE_OVER_MPS = 5 / MPH_PER_MPS
 """A driver who cannot change lanes passes at 20 mph below the limit, or at 5 mph if that is 20 or less (Florida
 statute 316.126)."""
+PASS_SHARE = 0.6
+"""On a drive it is no less than three fifths of the limit: our choice, since nobody creeps past a car in a town."""
+BESIDE_M = 15.0
+"""From so far before a place the driver is as slow as advised for it."""
+LONGEST_ADVICE_S = 360.0
+"""A driver keeps to advice no longer, whatever its reason."""
 
 FASTEST_MPS = 130 / KMH_PER_MPS
 """A request for this speed holds nobody back where there is no limit."""
@@ -154,6 +161,10 @@ class Pedals(Protocol):
         """Limits braking to ``friction * g``."""
         ...
 
+    def set_traction(self, friction: float) -> None:
+        """Limits acceleration to what the wheels of one axle, which carry half the car, bring on the road."""
+        ...
+
     def set_braking(self, deceleration_mps2: float) -> None:
         """How hard the driver brakes for what can be seen coming."""
         ...
@@ -179,6 +190,10 @@ class Pedals(Protocol):
 
         False if there is no such lane here.
         """
+        ...
+
+    def standing_ahead_m(self) -> float | None:
+        """Distance on the route to the next breakdown or roadworks that is reported; None without one."""
         ...
 
     def leave_corridor(self, leave: bool) -> str:
@@ -216,6 +231,17 @@ class _Bounds:
     advised_under: float | None = None
     """The limit at which the advice was given, and with which it ends."""
     advised_until_s: float = math.inf
+    passing: float = math.inf
+    """From a place ahead on, and slowed down to gently before it."""
+    to_place_m: float = 0.0
+    """How far that is."""
+
+    @property
+    def approach_mps(self) -> float:
+        """How fast the driver goes towards that place."""
+        if self.passing == math.inf:
+            return math.inf
+        return math.sqrt(self.passing**2 + 2 * EASING_MPS2 * max(0.0, self.to_place_m - BESIDE_M))
 
     def advice_is_over(self, now: Instant) -> bool:
         """Whether a speed was advised until now: its time is over, or the limit is another."""
@@ -262,6 +288,10 @@ class Driver:
     _sets_off_s: float = math.inf
     _advised_until_s: float = math.inf
     """When the driver no longer keeps to what was asked or advised."""
+    _longest_until_s: float = math.inf
+    """When not even for its reason."""
+    _reason: Reason | None = None
+    """What the last advice on a drive is for, beyond the road here."""
     _search_until_s: float = -math.inf
     """Until when the driver looks for a place to stop, as asked."""
     _stop: str = ""
@@ -314,7 +344,7 @@ class Driver:
             self._change_mood(now.time_s - self._departed_s)
         if self.plan.at_schools:
             self._pass_school(now.state.road)
-        if self._profile is not before and self._advised_until_s < math.inf:
+        if self._profile is not before and self._advised_until_s < math.inf and self._reason is None:
             events = (self._release(now.time_s, "what was advised has ended"),)
         if self._halts < len(self.plan.halts):
             events += tuple(self._halt(self.plan.halts[self._halts], now))
@@ -362,8 +392,10 @@ class Driver:
                 limit_mps = state.road.limit.mps
                 if self.plan.advice_s < math.inf and takes_back(speed_kmh, state):
                     return (self._release(state.time_s, f"advice taken back, {after} the request"),)
+                self._keep_to(None, state)
+                if self._reason is not None:
+                    return (self._name(speed_kmh / KMH_PER_MPS, state, f"{after} the request"),)
                 self._bounds.asked, self._bounds.asked_under = speed_kmh / KMH_PER_MPS, limit_mps
-                self._advised_until_s = state.time_s + self.plan.advice_s
                 return (self._slows(state, f"{after} the request"),)
             case PullOver() if self.plan.advice_s < math.inf:
                 self._search_until_s = state.time_s + SEARCH_S
@@ -379,7 +411,7 @@ class Driver:
 
     def _heed(self, alert: Alert, state: DrivingState, after: str) -> list[Event]:
         events = []
-        self._advised_until_s = state.time_s + self.plan.advice_s
+        self._keep_to(alert.kind, state)
         if self._is_told_to_stop(alert):
             self._search_until_s = state.time_s + SEARCH_S
             events.append(Event(state.time_s, "driver_pulls_over", f"driver looks for a place to stop, {after}"))
@@ -387,8 +419,9 @@ class Driver:
             self._law_abiding = True
             self._easing_mps2 = BRAKING_MPS2 if alert.severity is Severity.CRITICAL else EASING_MPS2
             if alert.speed_kmh is not None:
-                self._advise(alert.speed_kmh / KMH_PER_MPS, state)
-            events.append(self._slows(state, after))
+                events.append(self._name(alert.speed_kmh / KMH_PER_MPS, state, after))
+            else:
+                events.append(self._slows(state, after))
         if alert.kind in GAP_KINDS:
             self._headway_s = max(SAFE_HEADWAY_S, self._profile.headway_s)
             self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
@@ -426,6 +459,9 @@ class Driver:
             self._search_until_s = -math.inf
             yield Event(now.time_s, "driver_cannot_stop", "driver has found no place to stop")
         bounds = self._bounds
+        if self._reason is not None:
+            yield from self._keep_to_reason(self._reason, now)
+            return
         if bounds.asked < math.inf and now.limit_mps != bounds.asked_under:
             self._advised_until_s = now.time_s
         if now.time_s >= self._advised_until_s:
@@ -435,10 +471,51 @@ class Driver:
             kind, goes = ("driver_holds", "no faster than the limit") if self._law_abiding else (GOES_ON, "on")
             yield Event(now.time_s, kind, f"driver goes {goes}; the advised speed has ended")
 
+    def _keep_to_reason(self, reason: Reason, now: Instant) -> Iterator[Event]:
+        """Keeps to advice as long as what it is for is there."""
+        bounds = self._bounds
+        if now.time_s >= self._longest_until_s:
+            yield self._release(now.time_s, "what was advised has ended")
+        elif not reason.lasts(self._view(now.state)):
+            yield self._release(now.time_s, "what it was advised for is passed")
+        else:
+            bounds.to_place_m, bounds.advised_under = reason.to_place_m, now.limit_mps
+
+    def _keep_to(self, kind: AlertKind | None, state: DrivingState) -> None:
+        """Keeps to advice from now on: two minutes, or on a drive as long as its reason is there."""
+        self._advised_until_s = state.time_s + self.plan.advice_s
+        if self.plan.advice_s < math.inf:
+            self._reason = reason_for(kind, self._view(state)) or self._reason
+            self._longest_until_s = state.time_s + LONGEST_ADVICE_S
+
+    def _name(self, speed_mps: float, state: DrivingState, after: str) -> Event:
+        """Keeps to a speed that was named: from the place on that it is for, or at once."""
+        bounds, kmh = self._bounds, speed_mps * KMH_PER_MPS
+        if self._reason is None or self._reason.to_place_m <= 0.0:
+            self._advise(speed_mps, state)
+            return self._slows(state, after)
+        bounds.passing, bounds.to_place_m = speed_mps, self._reason.to_place_m
+        words = f"driver will go {kmh:.0f} km/h from {bounds.to_place_m:.0f} m ahead on, {after}"
+        return Event(state.time_s, "driver_slows", words)
+
+    def _view(self, state: DrivingState) -> View:
+        ahead = state.ahead
+        return View(
+            state.speed_mps,
+            state.road.limit.mps,
+            None if ahead.next_limit is None else ahead.next_limit.mps,
+            ahead.next_limit_distance_m,
+            self.pedals.standing_ahead_m(),
+            ahead.jam_distance_m,
+            state.road.friction,
+            self._condition.sight_mps,
+        )
+
     def _release(self, now_s: float, why: str) -> Event:
         """Drives as without any advice."""
-        self._advised_until_s = math.inf
-        self._bounds.asked = self._bounds.advised = math.inf
+        self._advised_until_s = self._longest_until_s = math.inf
+        self._reason = None
+        self._bounds.asked = self._bounds.advised = self._bounds.passing = math.inf
         self._drive_as(self._profile.name)
         return Event(now_s, RELEASED, f"driver drives as before; {why}")
 
@@ -452,9 +529,13 @@ class Driver:
             if pedals.change_lane(1, MOVE_OVER_S):
                 return Event(state.time_s, "driver_moves_over", f"driver goes one lane away from the kerb, {after}")
             limit_mps = state.road.limit.mps or state.speed_mps
-            speed_mps = max(SLOWEST_MOVE_OVER_MPS, limit_mps - MOVE_OVER_MPS)
+            on_drive = self.plan.advice_s < math.inf
+            slowest_mps = PASS_SHARE * limit_mps if on_drive else SLOWEST_MOVE_OVER_MPS
+            speed_mps = max(slowest_mps, limit_mps - MOVE_OVER_MPS)
             if alert.speed_kmh is not None:
                 speed_mps = alert.speed_kmh / KMH_PER_MPS
+            if self._reason is not None:
+                return self._name(speed_mps, state, after)
             self._advise(speed_mps, state, MOVE_OVER_S)
             return self._slows(state, after)
         if state.road.lane_count > 1 and not state.road.in_tunnel:
@@ -475,7 +556,9 @@ class Driver:
         wanted_kmh = self._wanted_mps(state) * KMH_PER_MPS
         if wanted_kmh < state.speed_mps * KMH_PER_MPS:
             return Event(state.time_s, "driver_slows", f"driver slows to {wanted_kmh:.0f} km/h, {after}")
-        return Event(state.time_s, "driver_holds", f"driver goes no faster than {wanted_kmh:.0f} km/h, {after}")
+        is_named = self._bound_mps() <= self._wanted_mps(state) < self._own_top_mps
+        bound = f"{wanted_kmh:.0f} km/h" if is_named else "the limit"
+        return Event(state.time_s, "driver_holds", f"driver goes no faster than {bound}, {after}")
 
     def _change_mood(self, since_s: float) -> None:
         """Drives in another way once that is due, but in a school zone only after it."""
@@ -500,10 +583,11 @@ class Driver:
             self._drive_as(self._mood)
 
     def _drive_as(self, name: str) -> None:
-        """Drives by another profile; what an alert had brought about is forgotten."""
+        """Drives by another profile; what an alert had brought about is forgotten, unless its reason is there."""
         self._profile = profile(name)
-        self._law_abiding, self._easing_mps2 = False, EASING_MPS2
-        self._headway_s = self._profile.headway_s
+        if self._reason is None:
+            self._law_abiding, self._easing_mps2 = False, EASING_MPS2
+            self._headway_s = self._profile.headway_s
         self._choose_speed()
         self.pedals.set_headway(self._headway_s * self._adapted(self._condition.headway_ratio))
         self.pedals.set_imperfection(self._profile.imperfection)
@@ -534,6 +618,8 @@ class Driver:
             self._condition = condition
             self._choose_speed()
             self.pedals.set_grip(condition.friction)
+            if self.plan.advice_s < math.inf:
+                self.pedals.set_traction(condition.friction)
             self.pedals.set_headway(self._headway_s * self._adapted(condition.headway_ratio))
 
     def _choose_speed(self) -> None:
@@ -566,7 +652,7 @@ class Driver:
 
     def _bound_mps(self) -> float:
         bounds = self._bounds
-        return min(self._own_top_mps, bounds.asked, bounds.cruise, bounds.advised)
+        return min(self._own_top_mps, bounds.asked, bounds.cruise, bounds.advised, bounds.approach_mps)
 
     def _wanted_mps(self, state: DrivingState) -> float:
         limit_mps = state.road.limit.mps

@@ -135,6 +135,9 @@ class ScriptedCar:
         """Limits the braking."""
         self._hardest_mps2 = friction * G_MPS2
 
+    def set_traction(self, friction: float) -> None:
+        """Does nothing: nobody accelerates hard here."""
+
     def set_braking(self, deceleration_mps2: float) -> None:
         """Does nothing: braking is gentle here."""
 
@@ -161,6 +164,10 @@ class ScriptedCar:
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
         """False: there are no other lanes."""
         return False
+
+    def standing_ahead_m(self) -> float | None:
+        """See ``ego.Pedals``."""
+        return self._layout.route.standing_ahead_m(self._along_m)
 
     def leave_corridor(self, leave: bool) -> str:
         """Does nothing: nobody is there to use it."""

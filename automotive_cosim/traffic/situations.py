@@ -88,9 +88,11 @@ class Situations:
         since_s = now_s - self._zero_s
         local_time = self._local_time(now_s)
         told: list[str] = []
-        for entry in self._entries:
-            if not entry.is_over:
-                told += self._proceed(entry, since_s, local_time)
+        going_on = [entry for entry in self._entries if not entry.is_over]
+        if any(isinstance(entry.incident, EgoIncident) for entry in going_on) and self._ego_has_left():
+            going_on = [entry for entry in going_on if not isinstance(entry.incident, EgoIncident)]
+        for entry in going_on:
+            told += self._proceed(entry, since_s, local_time)
         self._stage.follow(local_time)
         return tuple(Event(now_s, "incident", text) for text in told if text)
 
@@ -102,6 +104,10 @@ class Situations:
         """
         going_on = (entry.scene for entry in self._entries if entry.has_begun and not entry.is_over)
         return tuple(seen for scene in going_on if (seen := scene.reported(slow)) is not None)
+
+    def _ego_has_left(self) -> bool:
+        """Whether the ego has arrived or was removed, while others drive on: nothing happens around it any more."""
+        return self._stage.sensor is not None and self._stage.ego_id not in self._stage.sumo.vehicle_ids()
 
     def _local_time(self, now_s: float) -> datetime:
         """The local time: the scenario's in the warm-up, the ego's once it is driving."""

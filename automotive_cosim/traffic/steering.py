@@ -67,6 +67,7 @@ class SumoPedals:
         self._router = router
         self._stops = tuple(stops)
         self._service_mps2: float = sumo.vehicle.getDecel(ego_id)
+        self._own_mps2: float = sumo.vehicle.getAccel(ego_id)
         self._expected_mps2 = self._service_mps2
         """How hard those behind expect the driver to brake: as hard as he can, however gently he means to."""
         self._factor = 1.0
@@ -103,6 +104,10 @@ class SumoPedals:
         vehicle.setDecel(self._ego, service_mps2)
         vehicle.setApparentDecel(self._ego, min(self._expected_mps2, hardest_mps2))
         vehicle.setEmergencyDecel(self._ego, hardest_mps2)
+
+    def set_traction(self, friction: float) -> None:
+        """See ``ego.Pedals``."""
+        self._sumo.vehicle.setAccel(self._ego, min(self._own_mps2, friction * G_MPS2 / 2))
 
     def set_braking(self, deceleration_mps2: float) -> None:
         """See ``ego.Pedals``; it counts from the next ``set_grip``."""
@@ -164,6 +169,10 @@ class SumoPedals:
         target = lanes[lanes.index(lane) + lanes_from_kerb]
         self._sumo.vehicle.changeLane(self._ego, int(target.rpartition("_")[2]), for_s)
         return True
+
+    def standing_ahead_m(self) -> float | None:
+        """See ``ego.Pedals``."""
+        return self._sensor.route.standing_ahead_m(self._sensor.position_m)
 
     def leave_corridor(self, leave: bool) -> str:
         """See ``ego.Pedals``; without sublanes, SUMO knows no positions in a lane, and the car stays where it is.

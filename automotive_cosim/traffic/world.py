@@ -406,17 +406,20 @@ class EgoRoad:
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
 
     def _go_on(self, round_: Round) -> tuple[Event, ...]:
-        """Sets the next destination near the present one, if there is a way to it, and says so."""
+        """Sets the next destination near the present one, and says so. From a place without a way back, as one that
+        the driver was guided to on request, it is set before the car is there."""
         sumo, route = self._sumo, self._sensor.route
         here = sumo.edge_of(EGO)
         if route.length_m - self._sensor.position_m > ONWARD_M or here.startswith(":"):
             return ()
         rest = route.edge_ids[sumo.route_index(EGO) :]
-        way = round_.following(self._world.always_open, rest[-1], self._leg)
-        self._leg += 1
+        leg, self._leg = self._leg, self._leg + 1
+        backwards = range(len(rest) - 1, -1, -1)
+        ways = ((count, round_.following(self._world.always_open, rest[count], leg)) for count in backwards)
+        count, way = next((found for found in ways if found[1]), (0, ()))
         if not way:
             return ()
-        sumo.set_route(EGO, (*rest, *way[1:]))
+        sumo.set_route(EGO, (*rest[:count], *way))
         goal = self._world.network.edges[way[-1]].name or "the next destination"
         return (Event(sumo.time(), "driver_goes_on", f"driver goes on to {goal}"),)
 

@@ -363,6 +363,16 @@ def test_everybody_aboard_is_belted_and_things_need_not_be(kind: str, is_lookali
     assert not found(stream(20, signals={**aboard, OCCUPANT.REAR_LEFT.belted.path: True}), "belt")
 
 
+@pytest.mark.parametrize("name", ["breakdown", "roadworks", "jam_tail"])
+def test_a_slow_car_does_not_end_what_stands_ahead(name: str) -> None:
+    """Nor does the driver who slows down for it when warned: later on, it is the same event."""
+    scene = SCENES[name][0]
+    slow = [moment(float(second), **(scene | {"kmh": 8.0})) for second in range(10, 55)]
+    drive = [*stream(10, **scene), *slow, *(moment(float(second), **scene) for second in range(55, 70))]
+    (event,) = [each for each in found(drive, name) if not each.lookalike]
+    assert event.last_s == 69.0
+
+
 def test_a_red_light_does_not_end_an_open_belt() -> None:
     open_belt = {SEAT.DRIVER_BELT.path: False}
     drive = [moment(float(s), kmh=0.0 if 10 < s < 60 else 50.0, signals=open_belt) for s in range(80)]

@@ -131,7 +131,10 @@ def test_an_act_on_a_look_alike_is_a_false_alarm() -> None:
 
 
 def test_a_repeat_within_a_minute_is_a_nuisance_unless_it_has_become_worse() -> None:
-    assert [act.worth for act in judged(warn(105.0), warn(130.0)).acts] == [Worth.RIGHT, Worth.REPEAT]
+    assert [act.worth for act in judged(warn(105.0), warn(130.0), true=("over_limit",)).acts] == [
+        Worth.RIGHT,
+        Worth.REPEAT,
+    ]
     worse = replace(SPEEDING, severities=[(100.0, 1.0), (120.0, 2.0)])
     assert [act.worth for act in judged(warn(105.0), warn(130.0), events=(worse,)).acts] == [
         Worth.RIGHT,
@@ -261,6 +264,16 @@ def test_what_was_just_told_of_another_case_is_no_repeat() -> None:
     assert [(act.worth, act.about) for act in found] == [(Worth.NEUTRAL, "leader_brakes")] * 2
 
 
+def test_what_comes_back_within_a_minute_may_be_told_again() -> None:
+    """The driver slows down when warned, and soon drives too fast once more."""
+
+    def against(kind: EventKind, time_s: float) -> str | None:
+        return "the car keeps the limit" if 110.0 <= time_s <= 120.0 or kind.name != "over_limit" else None
+
+    acts = judge(KINDS, (SPEEDING,), [warn(105.0), warn(125.0), warn(135.0)], {}, against).acts
+    assert [act.worth for act in acts] == [Worth.RIGHT, Worth.NEUTRAL, Worth.REPEAT]
+
+
 def test_hazard_lights_for_who_comes_fast_from_behind_are_neutral() -> None:
     lit = WatchAct(300.0, writes=((LIGHTS.HAZARD.path, True),))
     assert judged(lit, true=("rear_end",)).acts[0].worth is Worth.NEUTRAL
@@ -286,7 +299,7 @@ def test_a_repeat_holds_nobody_back() -> None:
     """A red warning of a tyre that the driver was told of just now costs a nuisance, and no minutes."""
     soft = replace(SPEEDING, kind="tyre", subject="", value=None)
     red = WatchAct(120.0, AlertKind.VEHICLE, Severity.CRITICAL)
-    found = judged(warn(105.0, AlertKind.VEHICLE), red, events=(soft,)).acts[1]
+    found = judged(warn(105.0, AlertKind.VEHICLE), red, events=(soft,), true=("tyre",)).acts[1]
     assert (found.worth, found.holds_s) == (Worth.REPEAT, 0.0)
     assert judged(replace(red, time_s=300.0)).acts[0].holds_s > 0.0
 
@@ -319,7 +332,7 @@ def test_a_second_alert_may_be_about_a_second_event() -> None:
     tyre = replace(SPEEDING, kind="tyre", subject="", value=None)
     door = replace(tyre, kind="door")
     acts = [warn(at_s, AlertKind.VEHICLE) for at_s in (105.0, 108.0, 111.0)]
-    assert [act.worth for act in judged(*acts, events=(tyre, door)).acts] == [
+    assert [act.worth for act in judged(*acts, events=(tyre, door), true=("tyre", "door")).acts] == [
         Worth.RIGHT,
         Worth.NEUTRAL,
         Worth.REPEAT,

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim.agents import Thinker, make_agent
-from automotive_cosim.cockpit.signals import CABIN, CALL, GLASS, HMI, SEAT, TYRE
+from automotive_cosim.cockpit.signals import CABIN, CALL, GLASS, HMI, LIGHTS, MOTION, SEAT, TYRE
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -223,6 +223,25 @@ def test_a_reading_states_quantity_limit_and_trend() -> None:
     assert f"tyres: {pressures}, recommended 250, too low below 200" in lines
     ahead = noticed([moment(leader=vehicle(25.0, 36.0, time_to_collision_s=6.4))]).splitlines()
     assert "vehicle ahead: 25 m at 36 km/h, time gap 1.8 s, time to collision 6.4 s" in ahead
+
+
+def test_what_is_still_ahead_does_not_read_as_if_it_were_here() -> None:
+    ahead = Sight(SightKind.JAM, "", 0.3)
+    assert "jam: in 1 m" in noticed([moment(kmh=0.0, sights=(ahead,))]).splitlines()
+
+
+@pytest.mark.parametrize(
+    ("signals", "words"),
+    [
+        ({}, "on: dipped beam, switch: beam"),
+        ({LIGHTS.LOW_BEAM.path: False}, "on: daytime running lamps, switch: beam"),
+        ({LIGHTS.LOW_BEAM.path: False, LIGHTS.REAR_FOG.path: True}, "on: rear fog lamp, daytime running lamps"),
+        ({LIGHTS.LOW_BEAM.path: False, LIGHTS.FRONT_FOG.path: True}, "on: front fog lamps, switch"),
+        ({LIGHTS.LOW_BEAM.path: False, MOTION.GEAR.path: "P"}, "on: none, switch"),
+    ],
+)
+def test_lamps_that_light_by_themselves_are_read_too(signals: dict[str, Any], words: str) -> None:
+    assert f"lamps: {words}" in noticed([moment(signals=signals)])
 
 
 def test_a_reading_that_has_just_turned_round_reads_as_it_goes() -> None:

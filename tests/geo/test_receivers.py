@@ -55,6 +55,15 @@ def test_the_error_is_as_large_as_claimed(drive: Drive, built_up: bool, lane_cou
     assert _fix(_gps(), state).accuracy_m == pytest.approx(sigma_m * math.sqrt(2))
 
 
+def test_a_car_that_stands_stays_where_it_is_and_other_surroundings_come_slowly(drive: Drive) -> None:
+    gps = Gps(np.random.default_rng(3), is_steady=True)
+    assert len(set(_north_errors_m(gps, drive(speed_mps=0.0), 1.0, 60))) == 1
+    there = _north_errors_m(gps, drive(speed_mps=15.0), 1.0, 20)
+    here = _north_errors_m(gps, drive(speed_mps=15.0, built_up=True, lane_count=1), 1.0, 200)
+    assert max(abs(b - a) for a, b in pairwise([*there, *here[:10]])) < BUILT_UP_SIGMA_M
+    assert np.std(here) > OPEN_SKY_SIGMA_M
+
+
 def test_the_error_wanders_slowly(drive: Drive) -> None:
     steps = [abs(b - a) for a, b in pairwise(_north_errors_m(_gps(), drive(), 0.1, 500))]
     assert max(steps) < OPEN_SKY_SIGMA_M

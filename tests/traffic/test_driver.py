@@ -17,6 +17,7 @@ from automotive_cosim.contracts import (
     Alert,
     AlertKind,
     DrivingState,
+    IncidentKind,
     PullOver,
     RoadRequest,
     Severity,
@@ -24,7 +25,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.scenarios import Scenario, Trip, load
 from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan, HaltAt, Traffic
-from automotive_cosim.traffic.ego import DRIVES_ON, PARKS, RELEASED, SETS_OFF
+from automotive_cosim.traffic.ego import DRIVES_ON, PARKS, PASS_SHARE, RELEASED, SETS_OFF
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
@@ -104,6 +105,55 @@ def test_moving_over_leaves_the_kerb_or_slows_down(quiet: Forked, hurried: EgoPl
     slow_kmh = 50.0 - 20.0 / MPH_PER_MPS * KMH_PER_MPS
     assert min(state.speed_mps for state in drive.states[:200]) * KMH_PER_MPS == pytest.approx(slow_kmh, abs=1.5)
     traffic.close()
+
+
+def test_who_cannot_move_over_slows_down_shortly_before_it_and_goes_on_after_it() -> None:
+    road = [Stretch("A", 500.0, 40.0), Stretch("B", 300.0, 40.0, incident=IncidentKind.BREAKDOWN)]
+    with closing(Scripted(road, start_speed_kmh=40.0).depart(WATCHED)) as traffic:
+        traffic.advance(10.0)
+        traffic.request(Alert(AlertKind.MOVE_OVER))
+        drive = traffic.advance(60.0)
+    kmh = {round(state.distance_m): state.speed_mps * KMH_PER_MPS for state in drive.states}
+    assert kmh[400] == pytest.approx(kmh[200], abs=1.0), "nobody slows down 100 m before it"
+    assert kmh[498] == pytest.approx(40.0 * PASS_SHARE, abs=1.0)
+    assert kmh[600] == pytest.approx(kmh[200], abs=1.0)
+    assert [event.kind for event in drive.events] == ["driver_slows", RELEASED]
+
+
+def test_a_speed_for_a_place_is_driven_from_there_on_and_as_long_as_it_lasts() -> None:
+    """A zone of five minutes, entered by a driver who gets hurried in it."""
+    road = [Stretch("A", 500.0, 50.0), Stretch("B", 2000.0, 30.0), Stretch("C", 900.0, 50.0)]
+    plan = replace(WATCHED, moods=(DriverAt(80.0, "hurried"),))
+    with closing(Scripted(road, start_speed_kmh=50.0).depart(plan)) as traffic:
+        traffic.request(Alert(AlertKind.SPEED, speed_kmh=30.0))
+        drive = traffic.advance(330.0)
+    kmh = {round(state.distance_m): state.speed_mps * KMH_PER_MPS for state in drive.states}
+    assert kmh[350] > 45.0
+    assert max(kmh.get(at_m, 0.0) for at_m in range(505, 2490)) < 31.0
+    (release,) = (event for event in drive.events if event.kind == RELEASED)
+    assert release.text == "driver drives as before; what it was advised for is passed"
+    assert max(kmh.values()) > 51.0
+
+
+def test_advice_for_ice_holds_as_long_as_the_ice() -> None:
+    icy = [Stretch(str(count), 1000.0, limit, friction=0.2) for count, limit in enumerate((80.0, 100.0, 80.0))]
+    with closing(Scripted([*icy, Stretch("dry", 3000.0, 80.0)], start_speed_kmh=60.0).depart(WATCHED)) as traffic:
+        traffic.request(Alert(AlertKind.SLIPPERY, speed_kmh=40.0))
+        drive = traffic.advance(330.0)
+    (release,) = (event for event in drive.events if event.kind == RELEASED)
+    there = next(state for state in drive.states if state.time_s >= release.time_s)
+    assert there.distance_m == pytest.approx(3000.0, abs=20.0)
+    assert release.time_s > 200.0
+
+
+def test_a_speed_for_a_jam_ends_with_it() -> None:
+    road = [Stretch("A", 400.0, 50.0), Stretch("B", 200.0, 50.0, relative_speed=0.2), Stretch("C", 3000.0, 50.0)]
+    with closing(Scripted(road, start_speed_kmh=50.0).depart(WATCHED)) as traffic:
+        traffic.request(Alert(AlertKind.TRAFFIC, speed_kmh=20.0))
+        drive = traffic.advance(110.0)
+    (release,) = (event for event in drive.events if event.kind == RELEASED)
+    there = next(state for state in drive.states if state.time_s >= release.time_s)
+    assert 600.0 <= there.distance_m <= 640.0
 
 
 @pytest.mark.sumo

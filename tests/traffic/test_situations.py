@@ -438,6 +438,14 @@ def test_what_does_not_fit_the_network_is_refused_when_loaded(staged: Staged, in
         Forked(staged(incident), seed=1)
 
 
+@pytest.mark.sumo
+def test_nothing_happens_around_an_ego_that_has_left(staged: Staged, average: EgoPlan) -> None:
+    """It arrives in the very second in which its incidents are looked after: with steps of a second, in each."""
+    never = staged('kind = "braking_leader"\nat_m = 100.0\nfrom_kmh = 190.0', empty=True)
+    never = replace(never, sumo=replace(never.sumo, step_length_s=1.0))
+    assert driven(never, average).states[-1].end is EgoEnd.ARRIVED
+
+
 def test_people_cross_and_the_ego_lets_them(
     variant: Variant, walkable: Edit, average: EgoPlan, in_sumo: InSumo
 ) -> None:

@@ -111,7 +111,7 @@ class LeftBehind(EventKind):
     grace_s = 75.0
     alerts = frozenset({AlertKind.VEHICLE})
     says = ("child", "baby", "pet", "dog", "cat", "alone", "left behind")
-    writes: ClassVar[Mapping[str, Wanted]] = {DRIVE.HORN.path: on}
+    writes: ClassVar[Mapping[str, Wanted]] = {DRIVE.HORN.path: on, HVAC.KEPT.path: on}
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """By the seats' sensors, and by how warm the air will be (``cockpit.forecast``)."""

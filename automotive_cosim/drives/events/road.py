@@ -35,8 +35,12 @@ BLUE_DUE_M = 150.0
 STANDS_DUE_S = 12.0
 """A warning triangle stands 100 m and more before a stopped vehicle outside towns: 4.5 s at 80 km/h; warnings on
 the screen come before it."""
+STANDS_FROM_MPS = 5.0
+"""Slower than this nothing is due for it."""
 PASS_SHARE = 0.6
 """A car passes what stands at the roadside at this share of its speed."""
+GENTLE_MPS2 = 1.5
+"""How hard a driver brakes who is warned in time (``traffic.ego.EASING_MPS2``)."""
 CLOSE_S = 1.0
 """A time gap below this leaves no time to react (mean reaction 1.1 s)."""
 GAP_HOLD_S = 3.0
@@ -132,13 +136,13 @@ class JamTail(EventKind):
             if now.driving.around.relative_speed < 0.6 and mps > 2.0:
                 yield Sighting(f"traffic at {now.driving.around.relative_speed:.0%}", lookalike=True)
             return
-        if not 0 < away_m <= JAM_M or speed_kmh(now) < JAM_FROM_KMH:
-            return
-        yield Sighting(
-            f"a jam in {away_m:.0f} m at {speed_kmh(now):.0f} km/h",
-            due=away_m <= JAM_DUE_S * mps,
-            left_s=time_left_s(away_m, mps),
-        )
+        if 0 < away_m <= JAM_M:
+            yield Sighting(
+                f"a jam in {away_m:.0f} m at {speed_kmh(now):.0f} km/h",
+                due=away_m <= JAM_DUE_S * mps and speed_kmh(now) >= JAM_FROM_KMH,
+                severity=_urgency(away_m, mps, 0.0),
+                left_s=time_left_s(away_m, mps),
+            )
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """No jam on the route."""
@@ -146,6 +150,11 @@ class JamTail(EventKind):
         if seen(now, SightKind.JAM) is not None or seen(now, SightKind.CLOSURE) is not None:
             return None
         return "no jam is reported within 2 km"
+
+
+def _urgency(away_m: float, mps: float, to_mps: float) -> float:
+    """How hard the car must brake by now, as a share of braking gently; 1 as long as that is enough."""
+    return max(1.0, (mps**2 - to_mps**2) / (2 * max(away_m, 1.0)) / GENTLE_MPS2)
 
 
 class RearEnd(EventKind):
@@ -195,10 +204,11 @@ class StandsAhead(EventKind):
             kind = IncidentKind(self.sights.value)
             if any(incident.kind is kind for incident in now.driving.ahead.incidents):
                 yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", lookalike=True)
-        elif mps > 5.0:
+        else:
             yield Sighting(
                 there.text,
-                due=there.distance_m <= STANDS_DUE_S * mps,
+                due=there.distance_m <= STANDS_DUE_S * mps and mps > STANDS_FROM_MPS,
+                severity=_urgency(there.distance_m, mps, PASS_SHARE * mps),
                 left_s=time_left_s(there.distance_m, mps, PASS_SHARE * mps),
             )
 
