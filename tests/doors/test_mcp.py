@@ -18,7 +18,7 @@ from automotive_cosim.interface.functions import functions
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.service import EpisodeService, ServiceLimits
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
