@@ -467,7 +467,7 @@ def _example(kind: ActionType, takes: Takes, by_point: bool) -> str:
 
 def _is_blank(name: str, value: Any) -> bool:
     """Whether a field that may be left out says nothing."""
-    return is_blank(value, _ENUMS.get(name, ()))
+    return is_blank(value, tuple(_ENUMS.get(name, ())))
 
 
 def _field(name: str, value: Any) -> Any:

@@ -23,8 +23,9 @@ from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.jobs import HUMAN, DriveJob, EpisodeJob, Limits
-from automotive_cosim.run.plan import ALL_SUITES, Plan
+from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.row import R
+from automotive_cosim.run.settings import ALL_SUITES
 from automotive_cosim.run.store import Store, opened, read_rows, replan
 
 FOLDER, DRIVES = "people", "people-drives"
