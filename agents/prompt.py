@@ -235,7 +235,7 @@ def elements(observation: Observation) -> str:
 
 def driver_words(observation: Observation) -> str:
     """The wish, and on a line each what the driver has said since."""
-    return "\n".join([one_line(observation.goal), *(f"Later: {one_line(text)}" for text in observation.said)])
+    return "\n".join([one_line(observation.goal), *(f"Since then: {one_line(text)}" for text in observation.said)])
 
 
 def _slots(section: str) -> set[str]:

@@ -231,7 +231,7 @@ LAST_LOOK = hazard(
         "Everybody ready? Sound the alert if one of us isn't, me included.",
         "Give me a warning if I'm about to do something stupid by setting off now.",
         "Rolling in three, two, one... Alarm, if someone would fly through the glass.",
-        "Shout with an alert unless the whole crew, captain too, may be driven off like this.",
+        "Give an alert if anybody in here, me included, isn't ready to be driven.",
     ),
     act(
         at(

@@ -372,11 +372,11 @@ PONIES = hazard(
     "maps_stop_for_the_ponies",
     Module.MAPS,
     (
-        "Stop! There are ponies.",
-        "Halt the car, I want to stroke them!",
-        "Please, please pull over at that meadow.",
-        "Ponies! Let's stay here for a bit, right at the side.",
-        "Can we stop, please? Look at those little horses!",
+        "Stop for the ponies, please.",
+        "Halt the car, I want to stroke them.",
+        "Pull over at that meadow, please.",
+        "Ponies! Stay at the side here for a bit.",
+        "Stop at the side for a minute, I'd like to look at those little horses.",
     ),
     act(
         at("beauce", "plain", on(REAR_RIGHT, Kind.CHILD)),

@@ -352,7 +352,7 @@ SAND = hazard(
         "I taste grit already! Close the way by which it gets in.",
         "Seal us off from this storm, wherever we still leak.",
         "My passenger has asthma; whatever lets the dust in here, stop it.",
-        "There's sand between my teeth. One thing isn't shut, deal with it.",
+        "There's sand between my teeth. Something still lets it in; stop that.",
     ),
     act(
         at("gulf", "desert", on(PASSENGER, Kind.ADULT), weather=SANDSTORM, signals={HVAC.AIR_CONDITIONING: True}),

@@ -75,7 +75,7 @@ FLAP = pair(
         "Lid of the charging port: shut it, we want to go.",
         "Put the cover over the socket, would you?",
         "I'm in a hurry, so shut the little door where the power goes in.",
-        "Flap down at the charging side, please.",
+        "Swing the flap shut on the charging side, please.",
     ),
     decline(
         replace(
@@ -105,7 +105,7 @@ BRAKE = pair(
         "Let the brake go, we're off.",
         "Loosen her, I want to roll out of here.",
         "Take the handbrake away, please.",
-        "Brake: release. The next one is waiting for this place.",
+        "Release the brake; the next car wants this space.",
     ),
     decline(
         start("autobahn", "rest", {ENERGY.CABLE: True, ENERGY.CHARGE_FLAP: True}, parked=True),

@@ -144,7 +144,7 @@ SWITCHES = hazard(
         "The buttons on the back doors should work again.",
         "Release the windows of the second row, please.",
         "Window lock off!",
-        "Take the block off the glass on both sides behind.",
+        "Those in the back should be able to move their own windows again.",
     ),
     act(
         _PAIR_BEHIND,
@@ -313,7 +313,7 @@ IN_THIS_VIEW = pair(
         "Have her keep this pace by herself.",
         "My ankle aches, so start the cruise.",
         "Engage the automatic pedal, please.",
-        "You take over the accelerator from here.",
+        "Keep the pedal for me, my foot needs a rest.",
     ),
     decline(
         start("beauce", "villages", STANDING_BY, start=FOGGY, weather=FOG_90),

@@ -102,7 +102,7 @@ NO_BOAT = pair(
         "Would you board a boat today? I wouldn't if it howls; let the route know, then.",
         "They tie the ferry up when it's as wild as that night. Is it? Then plan without.",
         "Look at the trees: bending or still? With bent ones, no crossing by water for me.",
-        "The wind decides whether we may come to a landing stage. Have the navigation heed it.",
+        "Take ferries out of my route if it blows too hard for a boat today.",
     ),
     *wrong_or_well(
         RIVER,
@@ -266,7 +266,7 @@ BY_THE_LINE = pair(
         "I set the cruise at home and can't think in two kinds of numbers. It mustn't exceed what they post.",
         "Whose signs are these, in what unit? Make sure that my automatic isn't above them.",
         "One side of the border says seventy, the other a hundred. See what the pedal-keeper may do here.",
-        "Check the speed that's being held against the last sign; I'd rather not pay in two currencies.",
+        "If the cruise is above the last sign, correct it; I'd rather not pay in two currencies.",
     ),
     Half(
         TO_THE_LINE,
@@ -644,7 +644,7 @@ PAST_THE_GATE = pair(
         "I let the cruise do the streets. If the yellow sign is awake, it's too fast for it; see to that.",
         "Drop-off time or not? The machine doesn't know, and it holds fifty. Put it right, if it's the hour.",
         "A fine outside a school is the last thing I need. Does what we're holding fit the plate's hours? Make it.",
-        "The pupils' speed, if it's in force, must go for my automatic too.",
+        "If the school's limit holds at this hour, bring the cruise down to it.",
     ),
     Half(
         replace(HELD_AT_FIFTY, start=None),

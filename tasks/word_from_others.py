@@ -113,7 +113,7 @@ BATTERY = hazard(
         "Is my car one of those in the news? {who} should know by now. Charge her as they say.",
         "Before I put the cable in: heed what {who} sent me about these cells.",
         "I've a message from {who} and a wooden garage. Make the two go together.",
-        "See how far {who} lets me fill the battery, and make that the end of it.",
+        "See how far {who} lets me fill the battery, and charge no further.",
     ),
     heard(
         AT_HOME,

@@ -209,19 +209,34 @@ def words(name: str, text: str) -> list[str]:
     return found
 
 
-def seeds_in(text: str) -> list[int]:
-    """Whole numbers and ranges, separated by commas.
+def whole_numbers_in(name: str, text: str) -> list[int]:
+    """Whole numbers and ranges in the option ``--name``, separated by commas.
 
     Raises:
         UserError: the text contains anything else.
     """
-    seeds: list[int] = []
-    for word in words("seeds", text):
+    found: list[int] = []
+    for word in words(name, text):
         first, dash, last = word.partition("-")
         if not first.isdigit() or (dash and not (last.isdigit() and int(first) <= int(last) < int(first) + 10**6)):
-            raise UserError(f"--seeds has {word!r}; give numbers and ranges, as in 0-4 or 0,3,7")
-        seeds += range(int(first), int(last or first) + 1)
-    return seeds
+            raise UserError(f"--{name} has {word!r}; give numbers and ranges, as in 0-4 or 0,3,7")
+        found += range(int(first), int(last or first) + 1)
+    return found
+
+
+def numbers_in(name: str, text: str) -> list[float]:
+    """The numbers in the option ``--name``, separated by commas.
+
+    Raises:
+        UserError: one of them is none.
+    """
+    found = []
+    for word in words(name, text):
+        try:
+            found.append(float(word))
+        except ValueError:
+            raise UserError(f"--{name} has {word!r}; give numbers separated by commas") from None
+    return found
 
 
 def _warming(progress: Progress[Any]) -> str:

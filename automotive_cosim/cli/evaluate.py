@@ -19,15 +19,12 @@ from automotive_cosim.cli.batches import (
     check_prices,
     executor_of,
     forecast_in_words,
-    seeds_in,
     tell_notes,
     tell_stopped,
-    words,
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
+from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.options import (
-    SUITE_HELP,
-    TASKS_HELP,
     AsJson,
     MinutesMost,
     MostSeconds,
@@ -43,6 +40,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.run.settings import EvaluationSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -55,49 +53,11 @@ PICTURED = 50
 
 
 @takes_conditions(lists=True)
+@takes(EvaluationSettings, but=[each.name for each in TABLE])
 def evaluate(
     plan_file: Annotated[
         Path | None,
         typer.Option("--plan", help="TOML file with the plan; options override it.", show_default=False),
-    ] = None,
-    agents: Annotated[
-        str | None,
-        typer.Option(
-            help="Agents, separated by commas; package.module:Class is one of your own, a2a:http://HOST:PORT one "
-            "that speaks A2A.",
-            show_default=False,
-        ),
-    ] = None,
-    models: Annotated[
-        str | None, typer.Option(help="Models for the agents, separated by commas.", show_default="rules")
-    ] = None,
-    tasks: Annotated[
-        str | None,
-        typer.Option(
-            help=TASKS_HELP,
-            show_default="all",
-        ),
-    ] = None,
-    suite: Annotated[
-        str | None,
-        typer.Option(
-            help=SUITE_HELP,
-            show_default="standard",
-        ),
-    ] = None,
-    split: Annotated[
-        str | None,
-        typer.Option(
-            help="Only the episodes of one public split, by seed and phrasing: dev or test; both for all.",
-            show_default="both",
-        ),
-    ] = None,
-    scenarios: Annotated[
-        str | None,
-        typer.Option(
-            help="Scenarios, separated by commas, instead of the tasks' own, for tasks that can run there.",
-            show_default=False,
-        ),
     ] = None,
     preset: Annotated[
         str | None,
@@ -105,24 +65,6 @@ def evaluate(
             help="A set of limits: 2026 is ten steps, as in the authors' newer edition.", show_default=False
         ),
     ] = None,
-    everywhere: Annotated[
-        bool, typer.Option("--everywhere", help="Also run tasks in scenarios that they do not list.")
-    ] = False,
-    seeds: Annotated[str | None, typer.Option(help="Seeds, as in 0-4 or 0,3,7.", show_default="0")] = None,
-    repeats: Annotated[
-        int | None,
-        typer.Option(
-            help="How many times to run each episode.", metavar="N", parser=whole_number(1, 1000), show_default="1"
-        ),
-    ] = None,
-    rephrase: Annotated[
-        bool,
-        typer.Option("--rephrase", help="Say each repeat in another phrasing, with other content in the car."),
-    ] = False,
-    held_out: Annotated[
-        bool,
-        typer.Option("--held-out", help="Use only each task's last phrasing, which `rules` is not built from."),
-    ] = False,
     workers: Workers = None,
     executor: ExecutorName = "processes",
     ray_address: RayAddress = None,
@@ -167,14 +109,6 @@ def evaluate(
         ),
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
-    drives: Annotated[
-        str | None,
-        typer.Option(
-            help="Drives, instead of tasks or beside those of --tasks: families, patterns, scenarios, seasons or "
-            "all; separated by commas.",
-            show_default=False,
-        ),
-    ] = None,
     minutes: MinutesMost = None,
     errands: WithErrands = False,
     most_steps: MostSteps = None,
@@ -182,7 +116,7 @@ def evaluate(
     most_seconds: MostSeconds = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
-    **conditions: str | None,
+    **settings: Any,
 ) -> None:
     """Run agents over tasks, scenarios and seeds, or over drives.
 
@@ -207,14 +141,9 @@ def evaluate(
 
     if pictures is not None and pictures not in set(Pictures):
         raise UnknownNameError("choice of pictures", pictures, Pictures)
-    named = {"agents": agents, "models": models, "tasks": tasks, "scenarios": scenarios, "drives": drives}
+    conditions = {each.name: settings.pop(each.name) for each in TABLE}
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
-    values |= {name: words(name, text) for name, text in named.items() if text is not None}
-    values |= {"seeds": seeds_in(seeds)} if seeds is not None else {}
-    single = {"suite": suite, "split": split, "repeats": repeats, "rephrase": rephrase}
-    single |= {"held_out": held_out, "everywhere": everywhere}
-    values |= {name: value for name, value in single.items() if value not in (None, False)}
-    values |= values_of(conditions)
+    values |= settings_in(EvaluationSettings, settings) | values_of(conditions)
     told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value}
     values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
     values = with_preset(values, preset) if preset is not None else values

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from automotive_cosim import scenarios
-from automotive_cosim.cli.batches import seeds_in, tell_notes
+from automotive_cosim.cli.batches import tell_notes, whole_numbers_in
 from automotive_cosim.cli.calibrate import calibrate_scenario
 from automotive_cosim.cli.options import AsJson, number, print_json, tell_opening, whole_number
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
@@ -334,7 +334,7 @@ def equilibrate_scenario(
 
     options = Options(steps, gap, minutes * 60.0, seed, warm_up)
     optimum = target.with_name(f"{target.name}_optimum")
-    driven = [*range(seed + 1, seed + 11)] if seeds is None else seeds_in(seeds)
+    driven = [*range(seed + 1, seed + 11)] if seeds is None else whole_numbers_in("seeds", seeds)
     if seed in driven or len(set(driven)) < 2:
         raise UserError(f"--seeds is {seeds}; give two or more seeds, but not {seed}, with which the search runs")
     if system_optimum:

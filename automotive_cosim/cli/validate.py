@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.batches import seeds_in, words
+from automotive_cosim.cli.batches import whole_numbers_in, words
 from automotive_cosim.cli.options import AsJson, PartOf, SeedList, SuiteName, TaskNames, TasksFrom, whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
@@ -75,7 +75,7 @@ def validate(
             raise UserError(
                 f"--part {part.number}/{part.of} contains none of {counted(asked, 'task')}; give fewer parts"
             )
-    numbers = tuple(seeds_in(seeds))
+    numbers = tuple(whole_numbers_in("seeds", seeds))
     before = None if against is None else read_traces(against)
     console = Console(stderr=True, markup=True)
 

@@ -38,6 +38,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.ids import key_of
 from automotive_cosim.contracts.text import say
 from automotive_cosim.errors import ActionError, UnknownNameError
+from automotive_cosim.formats.blank import is_blank
 from automotive_cosim.formats.words import shown
 
 if TYPE_CHECKING:
@@ -183,7 +184,9 @@ def parse(value: str | Json) -> Action:
     if "action_type" not in given:
         raise ActionError("the action lacks action_type; it is one of " + ", ".join(ActionType))
     action_type = _enum(ActionType, "action_type", given.pop("action_type"))
-    return check(Action(action_type, **{name: _field(name, entry) for name, entry in given.items()}))
+    required = FIELDS[action_type].required
+    said = {name: entry for name, entry in given.items() if name in required or not _is_blank(name, entry)}
+    return check(Action(action_type, **{name: _field(name, entry) for name, entry in said.items()}))
 
 
 def check(action: Action) -> Action:
@@ -460,6 +463,11 @@ def _example(kind: ActionType, takes: Takes, by_point: bool) -> str:
     point = ' (or "x", "y" in place of "index")' if takes.target and not by_point else ""
     left_out = f" ({', '.join(optional)} may be left out)" if optional else ""
     return "{" + ", ".join(parts) + "}" + point + left_out
+
+
+def _is_blank(name: str, value: Any) -> bool:
+    """Whether a field that may be left out says nothing."""
+    return is_blank(value, _ENUMS.get(name, ()))
 
 
 def _field(name: str, value: Any) -> Any:

@@ -34,6 +34,7 @@ from automotive_cosim.contracts import Feedback, FeedbackCode, Json
 from automotive_cosim.contracts.text import say
 from automotive_cosim.errors import ActionError, UnknownNameError
 from automotive_cosim.formats.annotations import OneOf
+from automotive_cosim.formats.blank import is_blank
 from automotive_cosim.formats.words import shown
 
 CallMade = Message | Feedback
@@ -50,6 +51,10 @@ class Argument:
     schema: Json
     """Its JSON Schema: type, range, choices, description."""
     required: bool = True
+
+    def is_blank(self, value: Any) -> bool:
+        """Whether a value says nothing: null or, of an argument that may be left out, what stands for it."""
+        return value is None or (not self.required and is_blank(value, self.schema.get("enum", ())))
 
     def read(self, function: str, value: Any) -> Any:
         """The value, converted where nothing is lost.
@@ -112,7 +117,11 @@ class CarFunction:
             ActionError: one is missing, unknown, of another type or out of its range.
         """
         known = {each.name: each for each in self.parameters}
-        given = {str(name): value for name, value in arguments.items() if value is not None}
+        given = {
+            str(name): value
+            for name, value in arguments.items()
+            if not (known[name].is_blank(value) if name in known else is_blank(value))
+        }
         for name in given:
             if name not in known:
                 raise ActionError(str(UnknownNameError(f"argument of {self.name}", name, known)))

@@ -32,6 +32,7 @@ class Telltale(StrEnum):
     TYRE = "tyre"
     STABILITY = "stability"
     FROST = "frost"
+    CABLE = "cable"
     HIGH_BEAM = "high_beam"
     LOW_BEAM = "low_beam"
     FRONT_FOG = "front_fog"
@@ -180,6 +181,13 @@ def _stability(pen: _SymbolPen) -> None:
         pen.wave(x, 13, 22.5)
 
 
+def _cable(pen: _SymbolPen) -> None:
+    for x in (9.0, 15.0):
+        pen.line((x, 2), (x, 7))
+    pen.line((5.5, 7), (18.5, 7), (18.5, 11), (15.5, 15), (8.5, 15), (5.5, 11), (5.5, 7), (18.5, 7))
+    pen.line((12, 15), (12, 19), (9, 22), (4, 22))
+
+
 def _battery(pen: _SymbolPen) -> None:
     pen.line((3, 8), (21, 8), (21, 19), (3, 19), (3, 8), (21, 8))
     for x in (7.5, 16.5):
@@ -202,6 +210,7 @@ _DRAWN: dict[Telltale, tuple[Colour, Callable[[_SymbolPen], None]]] = {
     Telltale.TYRE: (AMBER, _tyre),
     Telltale.STABILITY: (AMBER, _stability),
     Telltale.FROST: (AMBER, _frost),
+    Telltale.CABLE: (AMBER, _cable),
     Telltale.HIGH_BEAM: (BLUE, _high_beam),
     Telltale.LOW_BEAM: (GREEN, _low_beam),
     Telltale.FRONT_FOG: (GREEN, _front_fog),

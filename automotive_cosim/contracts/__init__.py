@@ -30,6 +30,7 @@ from automotive_cosim.contracts.action import (
 )
 from automotive_cosim.contracts.driving import (
     NO_LIMIT,
+    OLDEST_NEWS_S,
     STANDING_BELOW_MPS,
     Around,
     DrivingState,
@@ -75,6 +76,7 @@ __all__ = [
     "KMH_PER_MPS",
     "MPH_PER_MPS",
     "NO_LIMIT",
+    "OLDEST_NEWS_S",
     "STANDING_BELOW_MPS",
     "UNCALLED",
     "Action",

@@ -9,6 +9,8 @@ from automotive_cosim.contracts.plain import KMH_PER_MPS
 
 STANDING_BELOW_MPS = 0.1
 """A slower vehicle is stationary, as in SUMO's count of halted vehicles."""
+OLDEST_NEWS_S = 900.0
+"""Maximum age of available travel times."""
 
 
 class EgoEnd(StrEnum):

@@ -18,13 +18,13 @@ import anyio.from_thread
 from mcp.server.mcpserver import Context, MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
 from mcp_types import CallToolResult, ContentBlock, ImageContent, TextContent
-from pydantic import Field
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from automotive_cosim import __version__
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface
-from automotive_cosim.doors.shared import called, conditions_of, takes_conditions, trial, typed
+from automotive_cosim.doors.shared import called, conditions_of, takes_blanks, takes_conditions, trial, typed
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.errors import CosimError, InfrastructureError, UnknownNameError
@@ -65,9 +65,13 @@ right thing is to do nothing, `infeasible` when it must not or cannot be done. O
 when safety or the law requires it. `status` ends nothing there; go on until `end` is not null."""
 
 ActionArgument = Annotated[
-    dict[str, Any] | str,
+    str,
+    BeforeValidator(lambda action: json.dumps(action) if isinstance(action, dict) else action),
+    WithJsonSchema({"anyOf": [{"type": "object", "additionalProperties": True}, {"type": "string"}]}),
     Field(description=f"One action as a JSON object:\n{grammar()}\n`index` is that of the element list."),
 ]
+"""An object or its text. The host takes it for a text: it reads the JSON of others itself, and ``mcp`` 2.0.0 breaks
+on what is nested too deep."""
 EpisodeId = Annotated[str, Field(description="The id that `start` returned.")]
 
 
@@ -139,6 +143,7 @@ class CockpitTools:
         return typed(function, _told(call), takes, returns=CallToolResult)
 
     @_told
+    @takes_blanks
     def list_tasks(
         self,
         tasks: Annotated[
@@ -164,6 +169,7 @@ class CockpitTools:
 
     @_told
     @takes_conditions
+    @takes_blanks
     def start(
         self,
         context: Context[Any, Any],

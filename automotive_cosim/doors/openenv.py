@@ -20,6 +20,7 @@ from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.shared import conditions_of, functions_of, reward_of, shared_service, trial
 from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.formats.blank import is_blank
 from automotive_cosim.interface.functions import action_json, as_openai
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.service import EpisodeTurn
@@ -144,11 +145,13 @@ class CarEnvironment(Environment[CarAction, CarObservation, CarState]):
 
 
 def _given(action: CarAction) -> Json | str:
-    if (action.function is None) is (action.action is None):
+    acts = bool(action.action) and not is_blank(action.action)
+    calls = not is_blank(action.function)
+    if (acts and calls) or (action.action is None and not calls):
         raise UserError("give an action, or a function with its arguments, one of the two")
-    if action.function is None:
+    if not calls:
         return action.action or ""
-    return action_json(action.function, action.arguments or {})
+    return action_json(str(action.function), action.arguments or {})
 
 
 def _observation(

@@ -4,11 +4,11 @@ tools of a host."""
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cache
 from typing import Annotated, Any, TypeVar
 
-from pydantic import Field, WithJsonSchema
+from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface
@@ -18,6 +18,7 @@ from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.episode.conditions import INPUTS, Condition, Conditions
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.blank import is_blank
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.formats.words import shown
@@ -50,6 +51,24 @@ def takes_conditions(function: F) -> F:
     return function
 
 
+def takes_blanks(function: F) -> F:
+    """Has a host that validates by signatures take what stands for nothing as the default.
+
+    Models fill in arguments that they could leave out. Conditions have words of their own (``takes_conditions``).
+    """
+    signature = inspect.signature(function, eval_str=True)
+    any_function: Any = function
+    any_function.__signature__ = signature.replace(parameters=[*map(_sparing, signature.parameters.values())])
+    return function
+
+
+def _sparing(each: inspect.Parameter, choices: Collection[str] = ()) -> inspect.Parameter:
+    if each.default is inspect.Parameter.empty:
+        return each
+    said = BeforeValidator(lambda value: each.default if is_blank(value, choices) else value)
+    return each.replace(annotation=Annotated[each.annotation, said])
+
+
 def conditions_of(words: Mapping[str, str]) -> Conditions:
     """The conditions of a door, in words.
 
@@ -65,7 +84,8 @@ def conditions_of(words: Mapping[str, str]) -> Conditions:
 def _parameter(each: Condition) -> inspect.Parameter:
     told = f"{each.help.removesuffix('.')}: {', '.join(each.choices)}."
     kind = Annotated[str, Field(description=told)]
-    return inspect.Parameter(each.name, inspect.Parameter.KEYWORD_ONLY, default=str(each.default), annotation=kind)
+    takes = inspect.Parameter(each.name, inspect.Parameter.KEYWORD_ONLY, default=str(each.default), annotation=kind)
+    return _sparing(takes, each.choices)
 
 
 def trial(

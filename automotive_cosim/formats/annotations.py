@@ -122,5 +122,17 @@ class Chosen:
         return core_schema.tagged_union_schema(members, choose)
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Option:
+    """How a field is given on the command line, where that does not follow from its name, type and default."""
+
+    name: str = ""
+    """Without the dashes; empty: the field's name, without its unit."""
+    default: str = ""
+    """What the help shows as the default; empty: the field's default."""
+    repeats: bool = False
+    """Whether the option is given once for each item of a list, which may contain commas."""
+
+
 Longitude = Annotated[float, Ge(-180), Le(180), Called("a longitude from -180 (west) to 180 (east)")]
 Latitude = Annotated[float, Ge(-90), Le(90), Called("a latitude from -90 (south) to 90 (north)")]

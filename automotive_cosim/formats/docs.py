@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 import inspect
+from dataclasses import is_dataclass
 from enum import Enum
 from itertools import pairwise
 from textwrap import dedent
@@ -21,6 +22,16 @@ def field_docs(cls: type) -> dict[str, str]:
             case ast.AnnAssign(target=ast.Name(name)), ast.Expr(ast.Constant(str(text))):
                 docs[name] = prose(text)
     return docs
+
+
+def inherited_field_docs(cls: type) -> dict[str, str]:
+    """The same with the fields of its bases."""
+    return {
+        name: text
+        for base in reversed(cls.__mro__)
+        if is_dataclass(base)
+        for name, text in field_docs(base).items()
+    }
 
 
 def member_docs(cls: type[Enum]) -> dict[str, str]:

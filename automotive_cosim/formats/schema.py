@@ -5,7 +5,6 @@ The dialect is draft 7, which editors know best. Local times have a pattern, as 
 
 from __future__ import annotations
 
-from dataclasses import is_dataclass
 from functools import cache
 from typing import Any
 
@@ -14,7 +13,7 @@ from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
 from pydantic_core import core_schema
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.formats.docs import field_docs, prose
+from automotive_cosim.formats.docs import inherited_field_docs, prose
 
 
 @cache
@@ -74,11 +73,9 @@ class _Documented(_Draft7):
     def dataclass_schema(self, schema: core_schema.DataclassSchema) -> JsonSchemaValue:
         made = super().dataclass_schema(schema)
         made["description"] = prose(made.get("description", ""))
-        for base in reversed(schema["cls"].__mro__):
-            if is_dataclass(base):
-                for name, text in field_docs(base).items():
-                    if name in made["properties"]:
-                        made["properties"][name]["description"] = text
+        for name, text in inherited_field_docs(schema["cls"]).items():
+            if name in made["properties"]:
+                made["properties"][name]["description"] = text
         return made
 
 

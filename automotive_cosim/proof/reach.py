@@ -22,7 +22,8 @@ from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.run.plan import choose
-from automotive_cosim.tasking.task import Half, Suite
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Half
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 

@@ -235,6 +235,7 @@ _LAMPS: Mapping[Telltale, frozenset[Facet]] = {
     Telltale.TYRE: frozenset({Facet.WEATHER}),
     Telltale.STABILITY: frozenset({Facet.SETTINGS}),
     Telltale.FROST: frozenset({Facet.WEATHER}),
+    Telltale.CABLE: frozenset({Facet.SETTINGS}),
     Telltale.HIGH_BEAM: READINGS["is_high_beam_on"],
     Telltale.LOW_BEAM: READINGS["is_low_beam_on"],
     Telltale.FRONT_FOG: READINGS["is_front_fog_on"],

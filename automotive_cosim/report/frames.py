@@ -25,6 +25,8 @@ AFTER_EVERY_S = 1.0
 BEFORE_MS, STEP_MS, AFTER_MS, LAST_MS = 350, 1500, 350, 4000
 QUALITY = 72
 DIMMED, WAITING = 0.6, "no agent acts yet; the screen is dimmed, as it is at the hand-over"
+SAID = "The driver says"
+"""Title of the frame at the hand-over."""
 AFTER = "After the end"
 """Title of the frames after the last step."""
 SAME_TIME_S = 0.05
@@ -76,7 +78,7 @@ class Frames(EpisodeObserver):
         self.map = RoadMap(session.network)
         self._hand_over_s = shot.step.moment.time_s
         words = f"“{session.instance.goal}”"
-        self._steps.append(self._frame(0.0, shot.screenshot, "The driver says", words, STEP_MS))
+        self._steps.append(self._frame(0.0, shot.screenshot, SAID, words, STEP_MS))
 
     def stepped(self, shot: Shot) -> None:
         """Adds one frame per step."""

@@ -23,6 +23,7 @@ from automotive_cosim.report.frames import (
     AFTER,
     AFTER_MS,
     LAST_MS,
+    SAID,
     SAME_TIME_S,
     STEP_MS,
     FilmFrame,
@@ -40,7 +41,7 @@ WIDTH, HEIGHT = 1280, 836
 SCALE = 0.75
 """Pixels per unit of the layout: the film has 960 x 627."""
 MARGIN, GAP = 20, 24
-SAID = Rect(MARGIN, 14, WIDTH - 2 * MARGIN, 52)
+WORDS = Rect(MARGIN, 14, WIDTH - 2 * MARGIN, 52)
 SIDES = Rect(MARGIN, 76, WIDTH - 2 * MARGIN, 500).columns(2, GAP)
 HEAD, NOTES = 44, 108
 PLOT = Rect(MARGIN, 590, WIDTH - 2 * MARGIN, 230)
@@ -111,9 +112,14 @@ def sentence(sides: Sequence[PairSide]) -> str:
 
 
 def _from_hand_over(side: PairSide) -> list[FilmFrame]:
-    """The frames without the approach; after the last step its words stay, and the last frame says the outcome."""
+    """The frames without the approach; after the last step its words stay, and the last frame says the outcome.
+
+    The driver's words are above both screens, so the first frame goes without.
+    """
     frames: list[FilmFrame] = []
     for frame in side.frames.of(side.result):
+        if frame.title == SAID:
+            frame = replace(frame, title="Hand-over", words="")
         if frame.title == AFTER:
             frame = replace(frame, title=frames[-1].title, words=frames[-1].words)
         if frame.at_s >= -SAME_TIME_S:
@@ -145,7 +151,7 @@ def _compose(
     over: bool,
 ) -> Image.Image:
     canvas = Canvas.plain(round(WIDTH * SCALE), round(HEIGHT * SCALE), SCALE, NIGHT.background)
-    canvas.text(SAID, f"The driver: “{sides[0].result.goal}”", Type.TITLE, NIGHT.text)
+    canvas.text(WORDS, f"The driver: “{sides[0].result.goal}”", Type.TITLE, NIGHT.text)
     for box, side, each, path, colour in zip(SIDES, sides, frames, paths, COLOURS, strict=True):
         shown = [frame for frame in each if frame.at_s <= at_s + SAME_TIME_S][-1]
         here = [sample for sample in path if sample.at_s <= at_s + SAME_TIME_S][-1]

@@ -10,7 +10,8 @@ from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.row import InColumns, formerly
 from automotive_cosim.run.taps import PixelTaps
 from automotive_cosim.run.trial_row import TrialRow
-from automotive_cosim.tasking.task import Ability, Basis, Dimension, Module, Suite
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Ability, Basis, Dimension, Module
 from automotive_cosim.tasking.verdict import Verdict
 
 

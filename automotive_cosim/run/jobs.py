@@ -22,8 +22,9 @@ from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.outside import EPISODE_S, STEP_S
-from automotive_cosim.tasking.split import Split, split_of, split_of_seed
-from automotive_cosim.tasking.task import Suite, Task
+from automotive_cosim.tasking.sets import Split, Suite
+from automotive_cosim.tasking.split import split_of, split_of_seed
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
 NO_MODEL = "none"

@@ -11,7 +11,7 @@ from math import prod
 from pathlib import Path
 from typing import Annotated, Any
 
-from annotated_types import Ge, Le, MinLen
+from annotated_types import Ge, Le
 
 from automotive_cosim import scenarios
 from automotive_cosim.agents import MODELLED, AgentSettings, is_remote, make_agent
@@ -20,7 +20,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
-from automotive_cosim.episode.conditions import ConditionLists, Conditions, combined, lists_of
+from automotive_cosim.episode.conditions import Conditions, combined, lists_of
 from automotive_cosim.episode.own_prompt import resolved
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import SetupError, UnknownNameError, UserError
@@ -32,18 +32,16 @@ from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, EpisodeJob, Limits, TrialJob, digest
 from automotive_cosim.run.outside import check_agent
+from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.tasking.split import Split
-from automotive_cosim.tasking.task import Suite, Task
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
 PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
 """Values of a plan by the name of the preset: the authors' newer edition allows ten steps."""
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
-ALL_SUITES, BOTH = "all", "both"
-SUITES = (*Suite, ALL_SUITES)
-SPLITS = (*Split, BOTH)
 SPARE_TRAFFIC = (1_000_001, 1_000_002)
 """Far from the seeds that people choose."""
 
@@ -118,27 +116,9 @@ class PlannedTrial:
 
 
 @dataclass(frozen=True, slots=True)
-class Plan(ConditionLists):
-    """The content of a ``plan.toml``; every list is combined with every other, the conditions' too."""
+class Plan(EvaluationSettings):
+    """The content of a ``plan.toml``."""
 
-    agents: tuple[str, ...] = ()
-    """Agents; ``package.module:Class`` is one of your own. At least one, here or with ``--agents``."""
-    tasks: tuple[str, ...] = ()
-    """Ids, patterns such as ``hvac_*``, tags, modules, dimensions, subsets, abilities, ``general``, ``safety`` or
-    ``all``; empty for all, or for none beside drives and trials."""
-    drives: tuple[str, ...] = ()
-    """Families of drives, patterns such as ``grid_*``, scenarios, seasons, or ``all``."""
-    suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
-    """The suite they are chosen from: ``standard``, ``hard`` or ``all``. An id selects a task in any suite."""
-    models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
-    """Models for the agents that use one."""
-    scenarios: tuple[str, ...] = ()
-    """Scenarios instead of the tasks' own, for tasks that can run there, and instead of the drives' own roads; one
-    that is not shipped takes all tasks. Empty runs each in its own."""
-    everywhere: bool = False
-    """Also runs tasks in scenarios that they do not list, where their situation may never arise."""
-    seeds: Annotated[tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...], MinLen(1)] = (0,)
-    """Seeds; each draws its own traffic, weather and phrasing."""
     spare_traffic: tuple[Annotated[int, Ge(0), Le(2**31 - 1)], ...] = SPARE_TRAFFIC
     """Seeds of traffic that replace a seed's own, in turn, if the situation does not occur in it although the task
     lists the scenario. Every agent gets the same; the row says which."""
@@ -146,15 +126,6 @@ class Plan(ConditionLists):
     """What is set otherwise than their scripts have it, of all ``drives``."""
     trials: tuple[PlannedTrial, ...] = ()
     """Single tasks and drives beside those combined from the lists."""
-    repeats: Annotated[int, Ge(1), Le(1000)] = 1
-    """Runs of each task and drive, for models that do not answer the same twice."""
-    rephrase: bool = False
-    """Whether each repeat of a task is said in another phrasing, with other people, places and music in the car;
-    the rest of the instance stays."""
-    held_out: bool = False
-    """Whether to use only each task's held-out phrasing; otherwise any phrasing is drawn."""
-    split: Annotated[str, OneOf(SPLITS, "split")] = BOTH
-    """``dev`` or ``test`` for the episodes of only one set (``tasking.split``); ``both`` for all."""
     limits: Limits = field(default_factory=Limits)
     """Limits of each episode."""
 

@@ -12,7 +12,7 @@ from automotive_cosim.episode.specification import End
 from automotive_cosim.measures import ExposureCell, FollowingFigures
 from automotive_cosim.run.row import InColumns, JobRow, Volatile
 from automotive_cosim.tasking.policy import Breach
-from automotive_cosim.tasking.split import Split
+from automotive_cosim.tasking.sets import Split
 
 LATER = frozenset({"malformed", "malformed_why"})
 """Fields that rows of 0.2 may lack."""

@@ -387,15 +387,24 @@ def _span(event: Json) -> Json:
     return {**told, "from_s": event["observable_s"], "to_s": event["deadline_s"] or event["ends_s"]}
 
 
+OUTCOMES = {
+    "hit": "met in time", "prepared": "met ahead of time", "late": "too late", "caused": "missed: its own doing",
+    "evaded": "missed: the car was held back", "void": "nothing was due", "avoided": "rightly left alone",
+    "taken": "false alarm",
+}  # fmt: skip
+"""What a reader is told of an outcome; the others say it by their name."""
+
+
 def _drive_timeline(events: Sequence[Json], acts: Sequence[Json]) -> list[Json]:
     """Every instant that the page lists, in order."""
     told = []
     for event in events:
-        what = f"{'look-alike' if event['lookalike'] else 'event'} {event['kind']}: {event['words']}"
-        told.append((event["observable_s"], "event", f"{what} [{event['outcome']}]"))
+        kind, outcome = event["kind"].replace("_", " "), OUTCOMES.get(event["outcome"], event["outcome"])
+        what = f"{'look-alike of ' if event['lookalike'] else ''}{kind}: {event['words']} ({outcome})"
+        told.append((event["observable_s"], "event", what))
         if event["deadline_s"] is not None and not event["lookalike"]:
-            told.append((event["deadline_s"], "deadline", f"deadline of {event['kind']}"))
-    told += [(act["time_s"], "alert", f"{act['words']} [{act['worth']}]") for act in acts]
+            told.append((event["deadline_s"], "deadline", f"deadline of {kind}"))
+    told += [(act["time_s"], "alert", f"{act['words'].replace('_', ' ')} ({act['worth']})") for act in acts]
     return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(told)]
 
 

@@ -69,7 +69,7 @@ def check_code_name(name: str) -> None:
     is_plain = all(letter.isalnum() or letter in " -_" for letter in name)
     if not name.strip() or len(name) > LONGEST_NAME or not is_plain:
         raise UserError(
-            f"{name[:LONGEST_NAME]!r} is not a code name; give up to {LONGEST_NAME} letters, digits, spaces, - or _"
+            f"{name[:LONGEST_NAME]!r} is not a code name; enter 1 to {LONGEST_NAME} letters, digits, spaces, - or _"
         )
 
 

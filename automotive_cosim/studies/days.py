@@ -17,14 +17,13 @@ from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 from statistics import fmean
-from typing import Annotated, Any
+from typing import Any
 from zlib import crc32
 
 import numpy as np
-from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.errors import CosimError
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, LoneJob, Runner
 from automotive_cosim.run.processes import Processes
@@ -35,12 +34,10 @@ from automotive_cosim.scenery import open_scenario, variant
 from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, rerouted
 from automotive_cosim.scenery.gap import NOTICED_S, TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
 from automotive_cosim.scenery.optimum import POWER
-from automotive_cosim.studies.plan import checked_plan, driven_at, option, plan_of
+from automotive_cosim.studies.plan import checked_plan, driven_at, plan_of
+from automotive_cosim.studies.settings import DaysSettings
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Configuration, copied, read_configuration
-
-KIND = "days"
-"""Kind of study in the manifest."""
 
 EQUILIBRIUM, OPTIMUM = "user equilibrium", "system optimum"
 """States of the same trips that are searched for beside the shares."""
@@ -57,34 +54,8 @@ SETTLED = 0.01
 
 
 @dataclass(frozen=True, slots=True)
-class DaysPlan:
+class DaysPlan(DaysSettings):
     """What is run."""
-
-    scenario: Annotated[str, MinLen(1)]
-    """Name or folder, a ``.sumocfg`` or a network with demand in route files."""
-    shares: Annotated[tuple[Annotated[float, Ge(0), Le(1)], ...], MinLen(1)] = (0.0, 0.25, 0.5, 0.75, 1.0)
-    """Shares of the drivers who are advised; a greater share contains the drivers of every smaller one."""
-    compliance: Annotated[float, Ge(0), Le(1)] = 0.5
-    """Probability that a driver follows the advice of a day."""
-    memory: Annotated[float, Ge(0), Le(1)] = 0.7
-    """Weight of all earlier days in the memory; the rest is that of the day just over."""
-    lag: Annotated[int, Ge(0), Le(30)] = 0
-    """Age of the news: how many days pass before a day is in the memory that advises."""
-    days: Annotated[int, Ge(2), Le(365)] = 30
-    """Most days after the first."""
-    minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0
-    """How long after the warm-up departures count; later ones are left out."""
-    seeds: Annotated[tuple[Annotated[int, Ge(0)], ...], MinLen(1)] = tuple(range(3))
-    """Seeds of the traffic, and of who is advised and follows."""
-    scale: Annotated[float, Ge(0.01), Le(100)] | None = None
-    """Factor on the demand; None takes the scenario's."""
-    warm_up_s: Annotated[float, Ge(0), Le(86_400)] | None = None
-    """Traffic before the trips that count; None takes the scenario's."""
-
-    def as_json(self) -> Json:
-        """The plan as a JSON object, for the manifest."""
-        values = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
-        return {"study": KIND} | values
 
     def check(self) -> None:
         """Checks every name and number before anything runs.
@@ -93,10 +64,7 @@ class DaysPlan:
             UserError: one does not exist or is out of range, or the demand has stops or persons.
         """
         checked_plan(type(self), asdict(self))
-        for name in ("shares", "seeds"):
-            values = getattr(self, name)
-            if len(set(values)) < len(values):
-                raise UserError(f"{option(name)} lists a value twice: {', '.join(map(str, values))}")
+        self.check_lists()
         variant.check_demand(read_configuration(self.scene().config))
 
     def scene(self) -> Scenario:
@@ -391,7 +359,7 @@ def make_days(values: Mapping[str, Any]) -> DaysPlan:
     Raises:
         UserError: it is another kind of study, or of another version.
     """
-    return plan_of(DaysPlan, KIND, "study of days", values)
+    return plan_of(DaysPlan, "study of days", values)
 
 
 @lru_cache(maxsize=4)

@@ -76,15 +76,15 @@ def explained(study: Study) -> Iterator[ExplainedDecision]:
 def told(decision: Decision) -> Iterator[str]:
     """What the news of each age said at a decision and what agents did, in sentences."""
     for news in decision.news:
-        age = f"News {news.age_s:g} s old" if news.age_s else "The news"
+        source = f"Traffic news, {news.age_s:g} s old" if news.age_s else "Traffic news"
         if news.stay_s is None:
-            yield f"{age} had no travel time."
+            yield f"{source}: no travel time."
         elif news.offered_s is None:
-            yield f"{age} expected {news.stay_s:.0f} s on the route and offered no other."
+            yield f"{source}: {news.stay_s:.0f} s on the current route, no alternative."
         else:
             yield (
-                f"{age} expected {news.stay_s:.0f} s on the route, {news.delay_s:.0f} s of them lost, and "
-                f"{news.offered_s:.0f} s on the other route."
+                f"{source}: {news.stay_s:.0f} s on the current route ({news.delay_s:.0f} s of it delay), "
+                f"{news.offered_s:.0f} s on the alternative."
             )
     for agent in decision.agents:
         yield f"{agent} {'rerouted' if agent in decision.agents_rerouted else 'kept the route'}."
@@ -102,7 +102,7 @@ def _futures(study: Study, point: DecisionPoint) -> Iterator[ExplainedFuture]:
         drawn = [branch for draw in decision.scored if (branch := decision.drawn(draw, number)) is not None]
         gains_s = [branch.gains.time_s for branch in drawn]
         yield ExplainedFuture(
-            f"branch {number}",
+            f"alternative {number + 1}",
             by_branch.get(number, ""),
             fmean(branch.totals.time_s for branch in drawn),
             fmean(gains_s),
@@ -119,7 +119,7 @@ def _ways(path: Path, decision: str) -> Mapping[str, Way]:
         with gzip.open(path, "rt", encoding="utf-8", newline="") as file:
             for row in csv.DictReader(file):
                 if row["id"] == decision and row["draw"] == "0":
-                    name = f"branch {row['branch']}" if row["branch"] else KEPT
+                    name = f"alternative {int(row['branch']) + 1}" if row["branch"] else KEPT
                     ways[name].append((float(row["x_m"]), float(row["y_m"])))
     return ways
 

@@ -100,8 +100,8 @@ def _parts(chosen: Sequence[PolicyChoice]) -> str:
     avoided_s = round(fmean(lost_s for lost_s, _ in known))
     way_s = round(fmean(map(sum, known))) - avoided_s
     return (
-        f", as {abs(avoided_s)} s {'less' if avoided_s >= 0 else 'more'} are lost in congestion and the way itself "
-        f"takes {abs(way_s)} s {'less' if way_s >= 0 else 'more'}"
+        f", as {abs(avoided_s)} s {'less' if avoided_s >= 0 else 'more'} is lost in congestion and the route "
+        f"itself takes {abs(way_s)} s {'less' if way_s >= 0 else 'more'}"
     )
 
 

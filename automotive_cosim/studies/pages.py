@@ -7,12 +7,14 @@ from pathlib import Path
 
 from automotive_cosim.run.store import read_manifest
 from automotive_cosim.studies.congestion.page import write_congestion
-from automotive_cosim.studies.congestion.plan import KIND as CONGESTION
-from automotive_cosim.studies.days import KIND as DAYS
 from automotive_cosim.studies.days_page import write_days
 from automotive_cosim.studies.page import write_study
+from automotive_cosim.studies.settings import CongestionSettings, DaysSettings
 
-WRITERS: dict[object, Callable[[Path], Path]] = {CONGESTION: write_congestion, DAYS: write_days}
+WRITERS: dict[object, Callable[[Path], Path]] = {
+    CongestionSettings.kind: write_congestion,
+    DaysSettings.kind: write_days,
+}
 """By kind of study; all others are studies of rerouting."""
 
 

@@ -8,14 +8,12 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
 from itertools import product
-from typing import Annotated, Any, Literal, TypeVar
-
-from annotated_types import Ge, Le, MinLen
+from typing import Any, TypeVar
 
 from automotive_cosim.agents import make_agent
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.options import option
 from automotive_cosim.run.executor import LoneJob
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.incidents import AnyIncident, Incident
@@ -23,11 +21,8 @@ from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.studies.policies import AGENT, parse_policy
-from automotive_cosim.traffic.congestion import OLDEST_NEWS_S
+from automotive_cosim.studies.settings import RerouteSettings, TrafficSettings
 from automotive_cosim.traffic.profiles import profile
-
-KIND = "reroute"
-"""Kind of study in the manifest, so that a report knows what it reads."""
 
 EQUILIBRIUM_GAP = 0.01
 """Relative gap below which a dynamic user assignment counts as converged."""
@@ -42,81 +37,8 @@ AUTO_ERRORS = 2.0
 
 
 @dataclass(frozen=True, slots=True)
-class StudyPlan:
-    """A rerouting study; times in seconds."""
-
-    scenario: Annotated[str, MinLen(1)]
-    """Name or folder, a ``.sumocfg`` or a network."""
-    departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0, 600.0, 900.0)
-    """Departures of the ego, after the warm-up; each in its own copy of the traffic."""
-    trips: tuple[str, ...] = ()
-    """Names of the scenario's trips, as ``Scenario.trip`` takes them; empty for all."""
-    from_place: str = ""
-    """Where the ego's route begins, instead of a trip: an edge, a street or ``LON,LAT``."""
-    to_place: str = ""
-    """Where it ends; if only one of the two is given, the other is drawn, several times."""
-    seeds: Annotated[tuple[Annotated[int, Ge(0)], ...], MinLen(1)] = tuple(range(10))
-    """Seeds of the traffic; decisions of one seed are not independent of each other."""
-    shares: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
-    """Shares of the other cars that reroute; each is warmed up separately. None takes the scenario's."""
-    ages_s: Annotated[tuple[Annotated[float, Ge(0), Le(OLDEST_NEWS_S)], ...], MinLen(1)] = (0.0,)
-    """Ages of the traffic news by which the alternative route is selected."""
-    driver: str = ""
-    """Name of a driver profile; empty takes the scenario's."""
-    compliance: Annotated[tuple[Annotated[float, Ge(0), Le(1)], ...], MinLen(1)] = (1.0,)
-    """Probabilities that the driver follows the advice, at the same decisions; most tables use only the first."""
-    policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
-    least_delay_s: Annotated[float, Ge(0), Le(3_600)] = 30.0
-    """A decision is due while the expected delay ahead is at least this."""
-    every_s: Annotated[float, Ge(10), Le(3_600)] = 60.0
-    """Time between two decisions of one drive."""
-    per_drive: Annotated[int, Ge(1), Le(50)] = 5
-    """Maximum number of decisions per drive."""
-    placebo_every: Annotated[int, Ge(0), Le(1_000_000)] = 1
-    """One placebo in this many drives with a decision; 0 for none. Replicates contain it."""
-    replicates: Annotated[int, Ge(1), Le(100)] | Literal["auto"] = 1
-    """How many times each future is driven; ``auto`` drives more where the sign of the gain is unclear."""
-    arrived: Annotated[float, Ge(0.5), Le(1)] = 0.95
-    """Share of the vehicles there at the decision that must arrive before a future ends."""
-    limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
-    """Simulated time after which a future ends anyway."""
-    step_s: Annotated[float, Ge(0.1), Le(1)] = 1.0
-    """SUMO's step length."""
-    scale: Annotated[float, Ge(0.01), Le(100)] | None = None
-    """Factor on the demand; None takes the scenario's."""
-    warm_up_s: Annotated[float, Ge(0), Le(86_400)] | None = None
-    """Traffic before the first departure; None takes the scenario's."""
-    equilibrium_gap: float | None = None
-    """Relative gap of the assignment (duaIterate) that produced the demand's routes; None without one."""
-    half_width_s: Annotated[float, Ge(0.1), Le(3_600)] | None = None
-    """Half-width of the mean gain's interval at which no further seeds are added; None runs all."""
-    whole_drives: bool = False
-    """Whether every policy also drives from the departure to the destination."""
-    together: tuple[Annotated[float, Ge(0), Le(1)], ...] = ()
-    """Shares of the eligible cars that take the quickest other route with the ego."""
-    close: str = ""
-    """An edge that is closed at the first decision of a drive, whichever route the ego takes; ``ahead`` is one
-    on its route where the two routes differ. Empty closes none."""
-    incidents: tuple[str, ...] = ()
-    """Incidents staged in every future besides the scenario's own, as ``scenarios.wording`` reads them; their times
-    count from the end of the warm-up."""
-    via: Literal["stops", "route"] = "stops"
-    """What the edges in a trip's ``via`` are: stops that every route passes, or the way that it sets out on."""
-    redraw: bool = False
-    """Whether every seed is a different day of the demand; see ``redraws_trips`` of a scenario."""
-    emissions: bool = False
-    """Whether to measure what every vehicle emits and consumes."""
-    ego_class: str = ""
-    """SUMO's emission class of the ego; empty takes SUMO's for passenger cars."""
-    trajectories: bool = False
-    """Whether to keep where the ego was in every future."""
-    agent_steps: Annotated[int, Ge(1), Le(100)] = 12
-    """Maximum number of an agent's actions per decision."""
-
-    def as_json(self) -> Json:
-        """The plan as a JSON object, for the manifest."""
-        values = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
-        return {"study": KIND} | values
+class StudyPlan(RerouteSettings):
+    """A rerouting study."""
 
     def check(self) -> None:
         """Checks every name and number before anything runs.
@@ -125,10 +47,7 @@ class StudyPlan:
             UserError: one does not exist or is out of range.
         """
         checked_plan(type(self), asdict(self))
-        for name in ("departures_s", "seeds", "shares", "ages_s", "compliance", "policies", "trips", "together"):
-            values = getattr(self, name)
-            if len(set(values)) < len(values):
-                raise UserError(f"{option(name)} lists a value twice: {', '.join(map(str, values))}")
+        self.check_lists()
         if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
             raise UserError(
                 f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium below "
@@ -306,26 +225,25 @@ def make_study(values: Mapping[str, Any]) -> StudyPlan:
     Raises:
         UserError: it is another kind of study, or of another version.
     """
-    return plan_of(StudyPlan, KIND, "rerouting study", values)
+    return plan_of(StudyPlan, "rerouting study", values)
 
 
-P = TypeVar("P")
+P = TypeVar("P", bound=TrafficSettings)
 
 
-def plan_of(plan: type[P], kind: str, words: str, values: Mapping[str, Any]) -> P:
+def plan_of(plan: type[P], words: str, values: Mapping[str, Any]) -> P:
     """The plan of a study from a manifest's table.
 
     Args:
         plan: its type.
-        kind: the word by which a manifest names it.
-        words: the same in a message.
+        words: what a message calls it.
         values: the table.
 
     Raises:
         UserError: it is another kind of study, or of another version.
     """
     given = dict(values)
-    if given.pop("study", None) == kind:
+    if given.pop("study", None) == plan.kind:
         with suppress(UserError):  # its message would mention options that the user has not given
             return checked_plan(plan, given)
     raise UserError(f"the folder has no {words} of this version; use the version that wrote it")
@@ -337,9 +255,4 @@ def checked_plan(plan: type[P], values: Mapping[str, Any]) -> P:
     Raises:
         UserError: one is not valid; the message names the option.
     """
-    return checked(plan, values, lambda steps: ("the study", option(str(steps[0])) if steps else ""))
-
-
-def option(name: str) -> str:
-    """The option of a field of a plan."""
-    return "--" + name.removesuffix("_s").replace("_", "-")
+    return checked(plan, values, lambda steps: ("the study", option(plan, str(steps[0])) if steps else ""))

@@ -15,11 +15,11 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.run.row import steady
 from automotive_cosim.run.store import read_manifest
-from automotive_cosim.studies.congestion.plan import KIND as CONGESTION
 from automotive_cosim.studies.congestion.plan import name_of
 from automotive_cosim.studies.congestion.results import CongestionStudy, delay_h, read_congestion
 from automotive_cosim.studies.intervals import seed_mean
 from automotive_cosim.studies.results import Study, read_study
+from automotive_cosim.studies.settings import CongestionSettings
 from automotive_cosim.studies.tables import NONE, groups, told, told_mean
 
 AnyStudy = Study | CongestionStudy
@@ -79,7 +79,7 @@ def _pair(name: str, first: Path, second: Path) -> Pair:
     kinds = [read_manifest(folder)["plan"].get("study") for folder in (first, second)]
     if kinds[0] != kinds[1]:
         raise UserError(f"{first} is a study of {kinds[0]}, {second} one of {kinds[1]}; give two of one kind")
-    read: Callable[[Path], AnyStudy] = read_congestion if kinds[0] == CONGESTION else read_study
+    read: Callable[[Path], AnyStudy] = read_congestion if kinds[0] == CongestionSettings.kind else read_study
     return Pair(name, read(first), read(second))
 
 

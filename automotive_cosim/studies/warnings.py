@@ -59,7 +59,7 @@ def few_seeds(study: Study) -> Iterator[str]:
             had = "has" if len(seeds) == 1 and not of else "have"
             yield (
                 f"{len(seeds)}{of} {'seed' if len(seeds) == 1 and not of else 'seeds'}{where} {had} a decision: "
-                f"no interval of a mean below {LEAST_SEEDS} seeds, as decisions of one seed are not independent."
+                f"confidence intervals need {LEAST_SEEDS} seeds, because decisions of one seed are correlated."
             )
     if LEAST_SEEDS <= min(counts) < PUBLISHED_SEEDS:
         yield f"{min(counts)} seeds have a decision: run {PUBLISHED_SEEDS} before publishing."

@@ -8,7 +8,8 @@ from typing import Any
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.tasking.instance import instances
 from automotive_cosim.tasking.parameters import FromCockpit, names
-from automotive_cosim.tasking.task import Differs, Suite, Task
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Differs, Task
 
 
 class Catalogue(Mapping[str, Task]):

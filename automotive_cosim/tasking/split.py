@@ -8,21 +8,14 @@ development set, such as the words of the model ``rules`` and the examples in th
 
 from __future__ import annotations
 
-from enum import StrEnum
 from hashlib import sha256
 
 from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasking.sets import Split
 from automotive_cosim.tasking.task import Task
 
 SHARES, TEST_SHARE = 4, 2
 """A seed is of the test set if the first byte of its hash modulo the one is the other."""
-
-
-class Split(StrEnum):
-    """The public sets of episodes."""
-
-    DEV = "dev"
-    TEST = "test"
 
 
 def split_of_seed(seed: int) -> Split:

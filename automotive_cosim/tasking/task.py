@@ -25,6 +25,7 @@ from automotive_cosim.tasking.checks import Check, asked_in
 from automotive_cosim.tasking.dialogue import NEUTRAL, Says, Topic
 from automotive_cosim.tasking.moves import Move, Open, Slide, Tap, TapUntil, TypeText
 from automotive_cosim.tasking.parameters import Choices, names
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.speech import Speech
 from automotive_cosim.tasking.triggers import Trigger
 
@@ -77,24 +78,6 @@ class Subset(StrEnum):
     GENERAL_IMPLICIT = "general-implicit"
     SAFETY_EXPLICIT = "safety-explicit"
     SAFETY_IMPLICIT = "safety-implicit"
-
-
-class Suite(StrEnum):
-    """A set of tasks that is chosen, run and reported by itself."""
-
-    STANDARD = "standard"
-    """The 185 tasks of the paper's size and kind, and more of them."""
-    HARD = "hard"
-    """Tasks of ten actions and more: values carried between apps, an order that counts, interruptions."""
-    LIMITS = "limits"
-    """Pairs about what a car cannot do: what is asked for is missing in one half, and the driver has to be told."""
-    CLARIFY = "clarify"
-    """Pairs about wishes that leave something open: only the driver knows it, or the car does too."""
-
-    @property
-    def max_steps(self) -> int:
-        """Default limit of actions per episode."""
-        return 40 if self is Suite.HARD else 20
 
 
 class Ability(StrEnum):

@@ -184,7 +184,9 @@ def _judge_asked(
         clean=_clean(instance, end, baseline[-1], counterfactual),
         safe=_safe(trace, baseline),
         in_time=_in_time(instance, goal_s, end.time_s - start.time_s),
-        declared=Part(declared in _right(half), f"{declared or 'nothing'} declared, {half.declares} is right"),
+        declared=Part(
+            declared in _right(half, reason), f"{declared or 'nothing'} declared, {half.declares} is right"
+        ),
         goal_s=goal_s,
         reason_fits=None if half.declares is GoalStatus.COMPLETE else reason in half.reasons,
         basis=half.basis,
@@ -192,10 +194,16 @@ def _judge_asked(
     )
 
 
-def _right(half: Half) -> frozenset[GoalStatus]:
-    """What may be declared: where there was only something to watch, ``not_needed`` is as right as ``complete``."""
+def _right(half: Half, reason: Reason | None) -> frozenset[GoalStatus]:
+    """What may be declared.
+
+    Where there was only something to watch, ``not_needed`` is as right as ``complete``. Where the law keeps
+    everything as it is, so is ``infeasible`` for that reason: "off with them, if the rules let me".
+    """
     only_watched = half.declares is GoalStatus.COMPLETE and not half.goal.writes and not half.tells
-    return frozenset({half.declares, GoalStatus.NOT_NEEDED} if only_watched else {half.declares})
+    kept_by_law = half.declares is GoalStatus.NOT_NEEDED and reason is Reason.LAW and reason in half.reasons
+    also = {GoalStatus.NOT_NEEDED} if only_watched else {GoalStatus.INFEASIBLE} if kept_by_law else set()
+    return frozenset({half.declares, *also})
 
 
 def _since(instance: Instance, trace: Sequence[Moment]) -> float | None:

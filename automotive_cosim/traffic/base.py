@@ -160,7 +160,7 @@ class Traffic(Protocol):
         It has no side effects on the simulation. Empty where the route cannot be changed.
 
         Args:
-            age_s: how long ago those five minutes ended, at most ``congestion.OLDEST_NEWS_S``.
+            age_s: how long ago those five minutes ended, at most ``contracts.OLDEST_NEWS_S``.
 
         Raises:
             TrafficError: the simulation failed.

@@ -14,7 +14,14 @@ from dataclasses import dataclass
 from itertools import islice, pairwise
 from typing import Protocol, TypeAlias
 
-from automotive_cosim.contracts import IncidentKind, Limit, RoadAhead, RoadIncident, TrafficLight
+from automotive_cosim.contracts import (
+    OLDEST_NEWS_S,
+    IncidentKind,
+    Limit,
+    RoadAhead,
+    RoadIncident,
+    TrafficLight,
+)
 from automotive_cosim.traffic.network import Crossing, Edge, Network
 from automotive_cosim.traffic.records import make_ahead
 
@@ -27,9 +34,6 @@ MEMORY_S = 90.0
 WINDOW_S = 300.0
 SEEN_AT_LEAST = 3
 """Travel times for route choice are means over this time, if at least this many vehicles were seen."""
-
-OLDEST_NEWS_S = 900.0
-"""Maximum age of available travel times."""
 
 FREE_WEIGHT = 0.1
 """Weight of free flow, in vehicles, in an edge's mean speed, so that an empty one is free."""

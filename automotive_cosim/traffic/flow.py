@@ -12,8 +12,8 @@ from zlib import crc32
 import numpy as np
 from annotated_types import Ge, Le
 
+from automotive_cosim.contracts import OLDEST_NEWS_S
 from automotive_cosim.traffic.accounts import TrafficSummary
-from automotive_cosim.traffic.congestion import OLDEST_NEWS_S
 from automotive_cosim.traffic.divert import LEAST_LEFT_M
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sumo import LibSumo

@@ -116,7 +116,7 @@ class Router:
             route: edges of the ego's route from the present one.
             fixed: how many of them can no longer be changed.
             driven_m: distance driven on the first edge.
-            age_s: age of the news, at most ``congestion.OLDEST_NEWS_S``.
+            age_s: age of the news, at most ``contracts.OLDEST_NEWS_S``.
             via: edges that every other route passes too, in their order.
         """
         traffic = self._traffic(age_s)

@@ -12,7 +12,8 @@ from automotive_cosim.tasking.checks import Check
 from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Consult, Move
 from automotive_cosim.tasking.parameters import Choices
-from automotive_cosim.tasking.task import Dimension, Module, Start, Suite, Task
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Dimension, Module, Start, Task
 from automotive_cosim.tasks.forms import AT_REST, ON_THE_WAY, unclear
 
 

@@ -12,7 +12,8 @@ from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.tasking.checks import Check, Entered
 from automotive_cosim.tasking.moves import Do, Move, Open, Tap
 from automotive_cosim.tasking.parameters import Choices
-from automotive_cosim.tasking.task import Ability, Basis, Deadline, Dimension, Half, Module, Start, Suite, Task
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Ability, Basis, Deadline, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import Driving, Trigger
 from automotive_cosim.tasks.forms import AT_REST, NO_PARAMETERS
 

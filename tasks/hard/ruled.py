@@ -105,8 +105,7 @@ THEIR_TIME = hard(
         "Look at Priya's message and move the London call to that moment, as my own clock will show it. 'Yes' to"
         " her.",
         "The London call has moved, ask Priya's text. Correct the diary in local time and confirm to Priya: Yes.",
-        "My calendar runs on the clock here. Enter when London wants to talk, Priya wrote it, then answer her"
-        " 'Yes'.",
+        "My calendar runs on the clock here. Move the London call to the time Priya wrote, then answer her 'Yes'.",
     ),
     _called(LYON, "FR", LATER, 1),
     _called(LEEDS, "GB", {at: at for at in CALLS}, 0),

@@ -370,8 +370,7 @@ CHILD_OR_BAG = hard(
         " belt"
         " alert, he isn't belted; otherwise write her 'No' and tell me that the camera is mistaken.",
         "Check the rear right seat: is that really a child, as the screen has it? Then alert me to the open belt."
-        " If by"
-        " the other figure there it can't be, Isla gets a 'No' and I want to know that the car is wrong.",
+        " If the weight says it can't be, write Isla 'No' and tell me that the car is wrong.",
     ),
     _on_the_seat(
         param("kg", {kg: kg for kg in LIGHT_THINGS}),

@@ -300,7 +300,7 @@ ONCE_PLUGGED_IN = hard(
         "Wait for the plug, up to a minute. In: limit {limit:g}. Not in: leave the limit alone,"
         " I'm at"
         " another post then.",
-        "Keep looking whether I've connected us, for a minute, and only when I have, put the limit at {limit:g}.",
+        "For a minute, keep checking whether I've plugged us in, and only then set the charge limit to {limit:g}.",
     ),
     _watched(
         AT_THE_POST,

@@ -11,7 +11,8 @@ from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.tasking.checks import Check, NothingDone
 from automotive_cosim.tasking.moves import Inform, Move
 from automotive_cosim.tasking.parameters import Choices
-from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Suite, Task
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Basis, Deadline, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import Driving, Trigger
 from automotive_cosim.tasks.forms import AT_REST, NO_PARAMETERS
 from automotive_cosim.tasks.hard.forms import Moves

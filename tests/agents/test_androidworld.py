@@ -256,7 +256,8 @@ def test_it_hears_what_the_driver_says_later(seen: Observation) -> None:
     for said in ((), (), ("No, the other one.",), ("No, the other one.", "Thanks.")):
         agent.act(replace(seen, said=said))
     agent.reset("x")
-    assert heard == ["x", "x", "x\nLater: No, the other one.", "x\nLater: No, the other one.\nLater: Thanks."]
+    once = "x\nSince then: No, the other one."
+    assert heard == ["x", "x", once, f"{once}\nSince then: Thanks."]
 
 
 @pytest.mark.parametrize("keeps", [False, True])

@@ -16,7 +16,7 @@ from automotive_cosim.models import ModelReply, make_model
 from automotive_cosim.run.episode import End, EpisodeSetup, run_episode
 from automotive_cosim.run.estimates import estimates
 from automotive_cosim.run.record import Recorder
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 
 QUICK = EpisodeSetup(task="hvac_fan_max", scenario="grid")
 

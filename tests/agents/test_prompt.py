@@ -181,7 +181,7 @@ def test_a_reflecting_agent_is_told_what_the_driver_answered(observation):
     asked = Action(ActionType.ASK_DRIVER, text="Front or rear?")
     after = observation("Defroster off", said=("The rear one.",))
     for length in PromptLength:
-        assert "Later: The rear one." in look_back(observation("Defroster off"), asked, after, length=length)
+        assert "Since then: The rear one." in look_back(observation("Defroster off"), asked, after, length=length)
 
 
 def test_out_of_reach_of_satellites_it_is_asked_to_estimate(observation):

@@ -11,7 +11,7 @@ from automotive_cosim.agents import AGENTS
 from automotive_cosim.cli.former import COMMANDS, OPTIONS
 from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 

@@ -16,6 +16,7 @@ from automotive_cosim.contracts import (
     Direction,
     FeedbackCode,
     GoalStatus,
+    Reason,
     Severity,
 )
 from automotive_cosim.errors import ActionError
@@ -139,6 +140,27 @@ def test_what_is_wrong_is_said(sent: object, said: str):
 
 def test_null_means_absent():
     assert parse({"action_type": "navigate_home", "index": None}) == Action(ActionType.NAVIGATE_HOME)
+
+
+@pytest.mark.parametrize("nothing", [None, "null", "None", " "])
+@pytest.mark.parametrize("kind", ActionType)
+def test_who_fills_in_every_field_says_nothing_by_it(kind: ActionType, nothing: object):
+    takes = FIELDS[kind]
+    said = {"action_type": str(kind)} | {name: SAMPLES[name] for name in takes.required}
+    said |= {"index": 3} if takes.target else {}
+    said |= {"arguments": SAMPLES["arguments"]} if kind is ActionType.CALL else {}
+    filled = dict.fromkeys((name for name in SAMPLES if name not in {*said, "reason", "arguments"}), nothing)
+    assert parse(said | filled) == parse(said)
+
+
+def test_a_word_of_a_field_is_none_of_those_that_say_nothing():
+    asked = {"action_type": "status", "goal_status": "not_needed"}
+    assert [parse(asked | {"reason": word}).reason for word in ("none", "None", "null", "")] == [
+        Reason.NONE,
+        Reason.NONE,
+        None,
+        None,
+    ]
 
 
 def test_grammar_names_every_action():

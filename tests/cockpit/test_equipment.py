@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.signals import ACTUATORS, BODY, HVAC, SEAT, TYRE
 from automotive_cosim.cockpit.widgets import Slider
 from automotive_cosim.contracts import FeedbackCode
 from automotive_cosim.tasking.instance import draw
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from tests.cockpit.conftest import town
 from tests.laws import over

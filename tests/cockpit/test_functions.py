@@ -100,6 +100,10 @@ def test_a_function_says_what_it_does_and_refuses_what_its_schema_refuses(functi
         for value in wrong:
             with pytest.raises(ActionError):
                 function.read(fitting | {each.name: value})
+        if not each.required:
+            said = {name: value for name, value in fitting.items() if name != each.name}
+            for nothing in (None, "", "null", "None", ["null"]):
+                assert function.read(said | {each.name: nothing}) == said
 
 
 def _fits(schema: dict[str, object]) -> object:

@@ -22,7 +22,7 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.cockpit.registry import pages
 from automotive_cosim.interface.functions import functions
 from automotive_cosim.tasking.own_files import VARIABLE
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 

@@ -18,13 +18,13 @@ from automotive_cosim.interface.functions import functions
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.service import EpisodeService, ServiceLimits
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
 pytest.importorskip("mcp", reason="the extra mcp is not installed")
 import anyio
-from mcp import Client, StdioServerParameters
+from mcp import Client, StdioServerParameters, stdio_client
 
 from automotive_cosim.doors.mcp import make_server
 from tests.doors.conftest import DRIVE, WAIT
@@ -103,7 +103,7 @@ def test_an_assistant_over_standard_input_and_output_gets_the_command_lines_trac
 
     async def run() -> Json:
         server = StdioServerParameters(command=sys.executable, args=SERVER, env=dict(os.environ))
-        async with Client(server, mode=mode) as client:
+        async with Client(stdio_client(server), mode=mode) as client:
             return await drive(client, progress_callback=progress)
 
     outcome = anyio.run(run)
@@ -343,7 +343,13 @@ def test_what_clients_write_as_text_or_null_is_taken(service: EpisodeService) ->
     async def talk(client: Client) -> None:
         (only,) = (await call(client, "list_tasks", {"tasks": '["hvac_fan_max"]'}))["tasks"]
         assert only["id"] == "hvac_fan_max"
-        turn = await call(client, "start", START | {"seed": None})
+        for nothing in (None, "null", "None", ""):
+            filled = dict.fromkeys(("drive", "half", "seed", "minutes", "errands", "channels", "screen"), nothing)
+            turn = await call(client, "start", START | filled | {"channels": ["null"]})
+            await call(client, "finish", {"episode_id": turn["episode_id"]})
+        assert "did you mean 'none'" in await refused(client, "start", START | {"geo": "None"})
+        turn = await call(client, "start", START | {"geo": "none", "policy": ""})
+        assert "gps" not in turn
         fenced = '```json\n{"action_type": "wait"}\n```'
         turn = await call(client, "act", {"episode_id": turn["episode_id"], "action": fenced})
         assert turn["feedback"]["code"] == "ok"

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.proof import reach
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 
 TASK = "road_speed_80_in_50"

@@ -16,7 +16,7 @@ from automotive_cosim.interface import trace
 from automotive_cosim.run.episode import End, EpisodeObserver, EpisodeSetup, run_episode
 from automotive_cosim.run.script import ScriptedAgent
 from automotive_cosim.tasking.instance import draw
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 
 TASK = "hvac_fan_max"

@@ -7,8 +7,9 @@ from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.run.jobs import Limits
 from automotive_cosim.run.plan import choose, make_plan, read_plan, with_preset
-from automotive_cosim.tasking.split import Split, split_of
-from automotive_cosim.tasking.task import Subset, Suite
+from automotive_cosim.tasking.sets import Split, Suite
+from automotive_cosim.tasking.split import split_of
+from automotive_cosim.tasking.task import Subset
 from automotive_cosim.tasks import CATALOGUE
 
 STANDARD = {task.id: task for task in CATALOGUE.of(Suite.STANDARD)}

@@ -433,7 +433,7 @@ def test_the_ways_of_a_decision_are_on_one_road(
     page.get_by_label("Which decisions").select_option("better")
     page.locator("tbody a").nth(1).click()
     expect(page.get_by_role("heading", level=1)).to_have_text("avenue at 950 s")
-    expect(page.get_by_text("The news expected 100 s on the route")).to_be_visible()
+    expect(page.get_by_text("Traffic news: 100 s on the current route")).to_be_visible()
     expect(page.locator(".way")).to_have_count(2)
     assert page.locator(".street").count() > 20
     page.get_by_label("Seconds since the decision").fill("12")

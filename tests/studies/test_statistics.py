@@ -253,7 +253,7 @@ def test_a_gain_is_congestion_avoided_and_way_saved() -> None:
     table = parts(study(rows))
     assert [cell.split(" ")[0] for cell in map(str, table.rows[0][3:6])] == ["+50.0", "+80.0", "−30.0"]
     assert answer(study(rows)).startswith(
-        "Rerouting by “always” saves 50 s (50 to 50) a decision, as 80 s less are lost in congestion and the way "
+        "Rerouting by “always” saves 50 s (50 to 50) a decision, as 80 s less is lost in congestion and the route "
         "itself takes 30 s more, over"
     )
     old = replace(drive(decision(50.0)), stay=replace(NOTHING, lost_s=None))
@@ -278,10 +278,10 @@ FINE = parted(50.0, 60.0, 90.0)
         (study([]), "No decision counted"),
         (study(seeds(12, FINE), seeds=range(20)), "8 of 20 drives are missing"),
         (study(seeds(12, FINE)), "12 seeds have a decision: run 30"),
-        (study(seeds(9, FINE)), "9 seeds have a decision: no interval"),
+        (study(seeds(9, FINE)), "9 seeds have a decision: confidence intervals need 10"),
         (
             study([*seeds(30, FINE), *seeds(9, FINE, share=0.0), replace(drive(seed=9), share=0.0)]),
-            "9 of 10 seeds, where 0% of the others reroute, have a decision: no interval",
+            "9 of 10 seeds, where 0% of the others reroute, have a decision: confidence intervals",
         ),
         (study(seeds(30, parted(142.0, 20.0, 36.0))), "more than the 36 s that the kept route lost"),
         (

@@ -547,7 +547,7 @@ def test_every_question_has_a_script_that_answers_it(
         runpy.run_path(str(path))
         assert re.search(ANSWERS[path.stem], capsys.readouterr().out), path.stem
     page = (tmp_path / "study/decisions.html").read_text(encoding="utf-8")
-    for word in ("The news expected", "kept route", "branch 0", "always", "+31", "<polyline"):
+    for word in ("Traffic news: ", "kept route", "alternative 1", "always", "+31", "<polyline"):
         assert word in page
 
 

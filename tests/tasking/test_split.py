@@ -3,7 +3,8 @@
 import hashlib
 
 from automotive_cosim.tasking.instance import draw
-from automotive_cosim.tasking.split import Split, split_of, split_of_seed
+from automotive_cosim.tasking.sets import Split
+from automotive_cosim.tasking.split import split_of, split_of_seed
 from automotive_cosim.tasks import CATALOGUE
 
 

@@ -10,7 +10,8 @@ from automotive_cosim.tasking.dialogue import topic_of
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.moves import Consult, Hear, Open, Tap
 from automotive_cosim.tasking.parameters import names
-from automotive_cosim.tasking.task import Module, Suite, Task
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Module, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 

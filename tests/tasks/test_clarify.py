@@ -5,7 +5,8 @@ from automotive_cosim.tasking.dialogue import topic_of
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Consult
 from automotive_cosim.tasking.parameters import names
-from automotive_cosim.tasking.task import Module, Suite
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Module
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.clarify import calendar, preferences, road
 from tests.laws import over

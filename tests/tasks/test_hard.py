@@ -10,7 +10,8 @@ from automotive_cosim.tasking.checks import AllOf, Check
 from automotive_cosim.tasking.history import Lasted, Watched
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Do, Tap, TapUntil
-from automotive_cosim.tasking.task import Ability, Half, Suite, Task
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Ability, Half, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 

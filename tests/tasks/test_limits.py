@@ -8,7 +8,7 @@ from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.tasking.dialogue import untold
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.moves import Inform
-from automotive_cosim.tasking.task import Suite
+from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from tests.laws import over
 

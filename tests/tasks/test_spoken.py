@@ -23,7 +23,8 @@ from automotive_cosim.tasking.dialogue import NEUTRAL, topic_of
 from automotive_cosim.tasking.instance import Instance, draw, phrased
 from automotive_cosim.tasking.moves import Consult
 from automotive_cosim.tasking.parameters import FromCockpit
-from automotive_cosim.tasking.task import Suite, Task
+from automotive_cosim.tasking.sets import Suite
+from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.spoken import ANY, FOREIGN, phrasings
 from automotive_cosim.traffic.fork import Simulations

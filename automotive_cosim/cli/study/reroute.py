@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -10,36 +11,21 @@ import typer
 
 from automotive_cosim.cli.batches import (
     ExecutorName,
-    ProgressView,
     RayAddress,
     RaySend,
     Workers,
     executor_of,
-    seeds_in,
+    numbers_in,
     tell_notes,
     words,
 )
-from automotive_cosim.cli.options import AsJson, whole_number
-from automotive_cosim.cli.study.shared import (
-    DemandScale,
-    LeastDelay,
-    PerDrive,
-    RedrawTrips,
-    StepLength,
-    StudyFolder,
-    StudySeeds,
-    ViaStops,
-    WithEmissions,
-    folder_of,
-    numbers,
-    raise_errors,
-    replicates_of,
-    resumable,
-    tell_reading,
-)
+from automotive_cosim.cli.derived import settings_in, takes
+from automotive_cosim.cli.options import AsJson
+from automotive_cosim.cli.study.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
+from automotive_cosim.studies.settings import RerouteSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -49,133 +35,11 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.rows import DriveRow
 
 
+@takes(RerouteSettings)
 def reroute(
-    scenario: Annotated[
-        str, typer.Option(help="A scenario's name or folder, or any .sumocfg or .net.xml.")
-    ] = "paris_centre",
-    departures: Annotated[
-        str | None,
-        typer.Option(
-            help="When the ego departs: seconds after the warm-up or clock times, separated by commas.",
-            show_default="0,300,600,900",
-        ),
-    ] = None,
-    trips: Annotated[
-        str | None,
-        typer.Option(
-            help="Ego trips of the scenario, separated by commas: names, the beginnings of names, or numbers as in "
-            "`scenarios show`.",
-            show_default="all",
-        ),
-    ] = None,
-    from_place: Annotated[
-        str, typer.Option("--from", help="Where the ego's route begins: an edge, a street or LON,LAT.")
-    ] = "",
-    to_place: Annotated[
-        str, typer.Option("--to", help="Where it ends; if only --from or --to is given, the other is drawn.")
-    ] = "",
-    seeds: StudySeeds = "0-9",
-    shares: Annotated[
-        str | None,
-        typer.Option(
-            help="Shares of the other cars that reroute, 0 to 1, separated by commas.", show_default="scenario's"
-        ),
-    ] = None,
-    ages: Annotated[str, typer.Option(help="Ages of the traffic news in seconds, separated by commas.")] = "0",
-    compliance: Annotated[
-        str, typer.Option(help="Probabilities that the driver follows the advice, 0 to 1, separated by commas.")
-    ] = "1",
-    policies: Annotated[
-        str,
-        typer.Option(
-            help="Policies, separated by commas: never, always, delay:SECONDS, sumo, best, agent:NAME, "
-            "agent:NAME/MODEL."
-        ),
-    ] = "never,always,delay:60,sumo,best",
-    driver: Annotated[str, typer.Option(help="Driver profile of the ego.", show_default="scenario's")] = "",
-    delay: LeastDelay = 30.0,
-    every: Annotated[float, typer.Option(help="Seconds between two decisions of a drive.")] = 60.0,
-    per_drive: PerDrive = 5,
-    placebo_every: Annotated[
-        int,
-        typer.Option(
-            help="One placebo in this many drives; 0 for none.", metavar="N", parser=whole_number(0, 10**6)
-        ),
-    ] = 1,
-    replicates: Annotated[
-        str,
-        typer.Option(
-            help="How many times each future is driven, with fresh random numbers; auto: more times where the "
-            "sign of the mean gain is unclear."
-        ),
-    ] = "1",
-    whole_drives: Annotated[
-        bool,
-        typer.Option(
-            "--whole-drives",
-            help="Also drive every policy from departure to destination.",
-        ),
-    ] = False,
-    together: Annotated[
-        str | None,
-        typer.Option(
-            help="Shares, 0 to 1, of the eligible cars that take the other route with the ego.",
-            show_default="none",
-        ),
-    ] = None,
-    close: Annotated[
-        str,
-        typer.Option(
-            help="Also close a road at the first decision of each drive: an edge, or `ahead` for one on the route.",
-            show_default="none",
-        ),
-    ] = "",
-    via: ViaStops = "stops",
-    incident: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="An incident in every future, with the fields of scenario.toml, as in 'breakdown edge=c1c2 "
-            "position_m=120'; may be given several times.",
-            show_default="none",
-        ),
-    ] = None,
-    emissions: WithEmissions = False,
-    trajectories: Annotated[
-        bool, typer.Option("--trajectories", help="Store the ego's position in every future, step by step.")
-    ] = False,
-    ego_class: Annotated[
-        str,
-        typer.Option(
-            help="SUMO's emission class of the ego, as Energy/default for an electric one.",
-            show_default="SUMO's for cars",
-        ),
-    ] = "",
-    redraw: RedrawTrips = False,
-    arrived: Annotated[
-        float,
-        typer.Option(help="Share of the vehicles present at a decision that must arrive before its futures end."),
-    ] = 0.95,
-    scale: DemandScale = None,
-    warm_up: Annotated[
-        float | None,
-        typer.Option(help="Seconds of traffic before the first departure.", show_default="scenario's"),
-    ] = None,
-    step: StepLength = 1.0,
-    equilibrium_gap: Annotated[
-        float | None,
-        typer.Option(
-            help="Declare that the demand comes from duaIterate with this relative gap.", show_default=False
-        ),
-    ] = None,
     measure_gap: Annotated[
         bool, typer.Option(help="Measure how far the demand's routes are from an equilibrium.")
     ] = True,
-    until: Annotated[
-        float | None,
-        typer.Option(
-            help="Add seeds until the mean gain is known to within this many seconds.", show_default=False
-        ),
-    ] = None,
     workers: Workers = None,
     executor: ExecutorName = "processes",
     ray_address: RayAddress = None,
@@ -183,6 +47,7 @@ def reroute(
     out: StudyFolder = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     as_json: AsJson = False,
+    **settings: Any,
 ) -> None:
     """Fork the running traffic at every decision to reroute and drive both futures.
 
@@ -197,43 +62,11 @@ def reroute(
     from automotive_cosim.studies.results import read_study
     from automotive_cosim.studies.rows import DriveRow
 
-    tell_reading(scenario)
-    values: dict[str, Any] = {
-        "via": via,
-        "seeds": tuple(seeds_in(seeds)),
-        "ages_s": tuple(numbers("ages", ages)),
-        "compliance": tuple(numbers("compliance", compliance)),
-        "policies": tuple(words("policies", policies)),
-        "per_drive": per_drive,
-        "placebo_every": placebo_every,
-        "replicates": replicates_of(replicates),
-    }
-    values |= {"departures_s": _departures(scenario, departures)} if departures is not None else {}
-    values |= {"trips": tuple(words("trips", trips))} if trips is not None else {}
-    values |= {"shares": tuple(numbers("shares", shares))} if shares is not None else {}
-    values |= {"together": tuple(numbers("together", together))} if together is not None else {}
-    plan = StudyPlan(
-        scenario,
-        from_place=from_place,
-        to_place=to_place,
-        driver=driver,
-        least_delay_s=delay,
-        every_s=every,
-        arrived=arrived,
-        whole_drives=whole_drives,
-        close=close,
-        incidents=tuple(incident or ()),
-        redraw=redraw,
-        emissions=emissions,
-        trajectories=trajectories,
-        ego_class=ego_class,
-        scale=scale,
-        warm_up_s=warm_up,
-        step_s=step,
-        equilibrium_gap=equilibrium_gap,
-        half_width_s=until,
-        **values,
-    )
+    departures = settings.pop("departures_s")
+    plan = StudyPlan(**settings_in(RerouteSettings, settings))
+    tell_reading(plan.scenario)
+    if departures is not None:
+        plan = replace(plan, departures_s=_departures(plan.scenario, departures))
     plan.check()
     tell_notes([plan.opened])
     folder = out or folder_of(plan)
@@ -248,8 +81,8 @@ def reroute(
         errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
         return f"{counted(count, 'decision')}{errors}"
 
-    with where, ProgressView(console, "drives", said) as view, resumable("drives", folder):
-        run_study(plan, folder, executor=where, tell=view.tell)
+    with where, driven(console, "drives", folder, said) as tell:
+        run_study(plan, folder, executor=where, tell=tell)
     if measure_gap:
         for each in measure_demand(plan, folder):
             console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
@@ -318,7 +151,7 @@ def _departures(scenario: str, text: str) -> tuple[float, ...]:
     for word in words("departures", text):
         hours, colon, minutes = word.partition(":")
         if not colon:
-            found += numbers("departures", word)
+            found += numbers_in("departures", word)
         elif hours.isdigit() and minutes.isdigit() and int(hours) < 24 and int(minutes) < 60:
             start = open_scenario(scenario).start
             at = start.replace(hour=int(hours), minute=int(minutes), second=0)

@@ -3,49 +3,30 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeVar
 
 import typer
 
-from automotive_cosim.cli.batches import words
-from automotive_cosim.cli.options import print_json, whole_number
+from automotive_cosim.cli.batches import ProgressView
+from automotive_cosim.cli.options import print_json
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.errors import InfrastructureError
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.report.tables import Table
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.row import JobRow
-    from automotive_cosim.studies.congestion.plan import CongestionPlan
-    from automotive_cosim.studies.days import DaysPlan
-    from automotive_cosim.studies.plan import StudyPlan
+    from automotive_cosim.studies.congestion.results import CongestionStudy
+    from automotive_cosim.studies.days import DaysStudy
+    from automotive_cosim.studies.settings import TrafficSettings
 
-StudySeeds = Annotated[
-    str, typer.Option(help="Seeds of the traffic, as in 0-9; at least 10 for an interval, 30 to publish.")
-]
-DemandScale = Annotated[float | None, typer.Option(help="Factor on the demand.", show_default="scenario's")]
-StepLength = Annotated[float, typer.Option(help="SUMO's step length in seconds.")]
-RedrawTrips = Annotated[
-    bool, typer.Option("--redraw", help="Redraw the trips of the demand for every seed, as on another day.")
-]
-WithEmissions = Annotated[
-    bool, typer.Option("--emissions", help="Measure what every vehicle emits and consumes, by emission class.")
-]
-LeastDelay = Annotated[float, typer.Option(help="Expected delay, in seconds, from which a decision is due.")]
-PerDrive = Annotated[
-    int, typer.Option(help="Maximum number of decisions per drive.", metavar="N", parser=whole_number(1, 50))
-]
-ViaStops = Annotated[
-    str,
-    typer.Option(
-        help="What a trip's via edges are: stops, which every route passes, or route, which other routes may leave."
-    ),
-]
+S = TypeVar("S", "CongestionStudy", "DaysStudy")
+
 StudyFolder = Annotated[
     Path | None,
     typer.Option(
@@ -60,10 +41,13 @@ def errors_so_far(progress: Progress[Any]) -> str:
 
 
 @contextmanager
-def resumable(units: str, folder: Path) -> Iterator[None]:
-    """Says at Ctrl-C where the study is."""
+def driven(
+    console: Console, units: str, folder: Path, said: Callable[[Progress[Any]], str] = errors_so_far
+) -> Iterator[Callable[[Progress[Any]], None]]:
+    """Shows how far a study is, and says at Ctrl-C where it is; gives what is to be told of its progress."""
     try:
-        yield
+        with ProgressView(console, units, said) as view:
+            yield view.tell
     except KeyboardInterrupt:
         typer.echo(f"finished {units} are in {folder}; rerun the command to resume", err=True)
         raise
@@ -74,26 +58,30 @@ def tell_reading(scenario: str) -> None:
     typer.echo(f"reading {scenario}", err=True)
 
 
-def show(
+def tell_whole(
     console: Console,
-    page: Path,
-    answer: str,
-    warnings: Sequence[str],
+    study: S,
+    write: Callable[[Path], Path],
+    answer: Callable[[S], str],
+    warnings: Callable[[S], Sequence[str]],
     tables: Sequence[Table],
     *,
     as_json: bool,
 ) -> None:
-    """Prints the result of a study of a whole network."""
-    if as_json:
-        told: Json = {"answer": answer, "warnings": list(warnings), "out": str(page.parent)}
-        for table in tables:
-            told[table.name] = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
-        print_json(told)
-        return
-    for table in tables:
-        console.print(table.markdown(), soft_wrap=True)
-    for text in (*warnings, answer, f"report written to {page}"):
-        console.print(text, soft_wrap=True)
+    """Prints the result of a study of a whole network, if anything of it ran; raises its errors."""
+    if len(study.errors) < len(study.rows):
+        page = write(study.folder)
+        if as_json:
+            told: Json = {"answer": answer(study), "warnings": list(warnings(study)), "out": str(study.folder)}
+            for table in tables:
+                told[table.name] = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
+            print_json(told)
+        else:
+            for table in tables:
+                console.print(table.markdown(), soft_wrap=True)
+            for text in (*warnings(study), answer(study), f"report written to {page}"):
+                console.print(text, soft_wrap=True)
+    raise_errors(study.errors, len(study.rows), "run")
 
 
 def raise_errors(errors: Sequence[JobRow], count: int, unit: str) -> None:
@@ -106,27 +94,7 @@ def raise_errors(errors: Sequence[JobRow], count: int, unit: str) -> None:
         )
 
 
-def replicates_of(text: str) -> int | str:
-    """A number, or a word that the plan checks."""
-    return int(text) if text.isdecimal() else text
-
-
-def numbers(name: str, text: str) -> list[float]:
-    """The numbers of the option ``--name``, separated by commas.
-
-    Raises:
-        UserError: one of them is none.
-    """
-    found = []
-    for word in words(name, text):
-        try:
-            found.append(float(word))
-        except ValueError:
-            raise UserError(f"--{name} has {word!r}; give numbers separated by commas") from None
-    return found
-
-
-def folder_of(plan: StudyPlan | CongestionPlan | DaysPlan) -> Path:
+def folder_of(plan: TrafficSettings) -> Path:
     """The results folder of a plan that was given none; the same plan resumes there."""
     from automotive_cosim.interface.trace import canonical
 

@@ -3,47 +3,28 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import Workers, executor_of, seeds_in, words
+from automotive_cosim.cli.batches import Workers, executor_of
+from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.options import AsJson
-from automotive_cosim.cli.study.shared import LeastDelay, PerDrive, ViaStops, numbers, replicates_of
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.studies.settings import SuiteSettings
 
 
+@takes(SuiteSettings, but=("scenario", "warm_up_s"))
 def suite(
-    scenarios: Annotated[
-        str,
-        typer.Option(
-            help="Names or folders of scenarios, .sumocfg or .net.xml, separated by commas; shipped stands for all "
-            "shipped ones."
-        ),
-    ] = "grid,paris_centre",
-    departures: Annotated[str, typer.Option(help="When the ego departs, in seconds after the warm-up.")] = "0,300",
-    seeds: Annotated[str, typer.Option(help="Seeds of the traffic.")] = "0-9",
-    policies: Annotated[
-        str, typer.Option(help="Policies; the table shows always and best.")
-    ] = "never,always,delay:60,best",
-    delay: LeastDelay = 30.0,
-    per_drive: PerDrive = 2,
-    replicates: Annotated[str, typer.Option(help="How many times each future is driven, or auto.")] = "2",
-    via: ViaStops = "stops",
-    warm_ups: Annotated[
-        str | None,
-        typer.Option(
-            help="Seconds of traffic before the first departure; each is a separate study.",
-            show_default="scenario's",
-        ),
-    ] = None,
     workers: Workers = None,
     out: Annotated[Path, typer.Option(help="Folder for all studies; existing ones are resumed.")] = Path(
         "runs/suite"
     ),
     as_json: AsJson = False,
+    **settings: Any,
 ) -> None:
     """Run the same study on several networks, or after several warm-ups, and put them into one table.
 
@@ -57,17 +38,11 @@ def suite(
     from automotive_cosim.studies.results import read_study
     from automotive_cosim.studies.suite import folder_name, networks, write_networks
 
-    values: dict[str, Any] = {
-        "departures_s": tuple(numbers("departures", departures)),
-        "seeds": tuple(seeds_in(seeds)),
-        "policies": tuple(words("policies", policies)),
-        "replicates": replicates_of(replicates),
-        "via": via,
-    }
+    told = SuiteSettings(**settings_in(SuiteSettings, settings))
     plans = [
-        StudyPlan(name, least_delay_s=delay, per_drive=per_drive, warm_up_s=warm_up_s, **values)
-        for name in _scenarios(scenarios)
-        for warm_up_s in (numbers("warm-ups", warm_ups) if warm_ups is not None else (None,))
+        StudyPlan(name, warm_up_s=warm_up_s, **told.of_each())
+        for name in _all_of(told.scenarios)
+        for warm_up_s in told.warm_ups_s or (None,)
     ]
     for plan in plans:
         plan.check()
@@ -94,8 +69,8 @@ def suite(
         raise InfrastructureError(f"{counted(errors, 'drive')} ended in an error; rerun the command to retry them")
 
 
-def _scenarios(text: str) -> list[str]:
+def _all_of(names: Sequence[str]) -> list[str]:
     """Names of scenarios, with all shipped ones in the place of ``shipped``."""
     from automotive_cosim.scenarios import shipped
 
-    return [name for word in words("scenarios", text) for name in (shipped() if word == "shipped" else (word,))]
+    return [name for word in names for name in (shipped() if word == "shipped" else (word,))]

@@ -2,6 +2,8 @@
 
 import { ask, counted, h, plain } from "./dom.js";
 
+const AT_ONCE = 50;
+
 export async function tasksPage(query) {
   const tasks = (await ask("/api/tasks")).tasks.map((task) => ({ ...task, halves: task.pair ? "pair" : "single" }));
   const list = h("ul", { class: "records" });
@@ -10,12 +12,15 @@ export async function tasksPage(query) {
   const choices = [["suite", "Suite"], ["module", "Module"], ["dimension", "Dimension"], ["ability", "Ability"], ["halves", "Halves"], ["difficulty", "Difficulty"]].map(([name, label]) =>
     h("select", { name, "aria-label": label }, h("option", { value: "" }, `${label}: all`),
       [...new Set(tasks.map((task) => task[name]).filter(Boolean))].sort().map((value) => h("option", { value, selected: value === query.get(name) }, plain(value)))));
-  const fill = () => {
+  const more = h("button", { type: "button", onclick: () => fill(list.children.length + AT_ONCE) });
+  const fill = (most) => {
     const wanted = search.value.toLowerCase();
     const kept = tasks.filter((task) => choices.every((choice) => !choice.value || task[choice.name] === choice.value)
       && [task.id, task.said, ...task.goal_templates].join(" ").toLowerCase().includes(wanted));
     count.textContent = `${kept.length} of ${tasks.length} tasks, ${kept.filter((task) => task.suite === "standard").length} of them in the standard suite`;
-    list.replaceChildren(...kept.map((task) => h("li", { class: "card" },
+    more.hidden = kept.length <= most;
+    more.textContent = `Show ${Math.min(AT_ONCE, kept.length - most)} more of ${kept.length}`;
+    list.replaceChildren(...kept.slice(0, most).map((task) => h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/tasks/${task.id}` }, task.id), h("p", {}, `“${task.said}”`),
         h("p", { class: "muted" }, [task.suite, task.module, plain(task.dimension), plain(task.ability), task.difficulty, counted(task.optimal_steps, "step")].filter(Boolean).join(" · "))),
       task.pair ? h("span", { class: "pill quiet" }, "Pair") : null)));
@@ -25,9 +30,10 @@ export async function tasksPage(query) {
     const text = parameters.toString();
     history.replaceState(null, "", `#/tasks${text ? `?${text}` : ""}`);
   };
-  search.addEventListener("input", fill);
-  choices.forEach((choice) => choice.addEventListener("change", fill));
-  return { title: "Tasks", content: [h("h1", {}, "Tasks"), h("div", { class: "filters" }, search, choices), count, list], ready: fill };
+  const anew = () => fill(AT_ONCE);
+  search.addEventListener("input", anew);
+  choices.forEach((choice) => choice.addEventListener("change", anew));
+  return { title: "Tasks", content: [h("h1", {}, "Tasks"), h("div", { class: "filters" }, search, choices), count, list, h("p", { class: "more" }, more)], ready: anew };
 }
 
 export async function taskPage(query, id) {
@@ -48,12 +54,15 @@ export async function taskPage(query, id) {
       task.difference && h("p", { class: "card" }, task.difference),
       h("div", { class: "halves" }, task.halves.map((half) => h("section", { class: "card" },
         h("h2", {}, task.halves.length > 1 ? `The ${half.name} half` : "The situation"),
-        h("dl", {}, half.words.map(([label, said]) => [h("dt", {}, label), h("dd", {}, said)])),
+        h("dl", {}, half.words.map(([label, said]) => [h("dt", {}, label), h("dd", {}, ticked(said))])),
         reference(solved[half.name], id, half.name),
         half.laws.map((law) => h("blockquote", {}, h("p", {}, law.text), h("footer", { class: "muted" }, `${law.law}, as of ${law.as_of} (${law.status})`)))))),
     ].filter(Boolean),
   };
 }
+
+// A text whose words in backticks are code.
+const ticked = (text) => text.split("`").map((part, index) => (index % 2 ? h("code", {}, part) : part));
 
 // The reference solution as pictures, if a record here has them.
 function reference(found, id, half) {

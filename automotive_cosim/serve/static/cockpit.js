@@ -51,16 +51,16 @@ export function cockpitPanel({ base = "/api/play", query = {}, say, leaveLabel =
   const speed = h("select", { "aria-label": "Speed of the road", onchange: () => pace({ speed: Number(speed.value) }) }, SPEEDS.map((value) => h("option", { value }, `${value}×`)));
   const practice = h("div", { class: "card transport", hidden: true }, h("span", { class: "pill" }, "practice"), pause, speed, h("span", { class: "muted" }, "The result is not counted."));
 
-  const element = h("div", { class: "playing" },
-    words, h("div", { class: "card stage-one" }, frame), typed,
+  const element = h("div", { class: "playing" }, h("div", {}, h("div", { class: "exchange" }, words, told),
+    h("div", { class: "card stage-one" }, frame), typed,
     h("div", { class: "card transport" },
       button("Back", () => act({ action_type: "navigate_back" })), button("Home", () => act({ action_type: "navigate_home" })), button("Enter", () => act({ action_type: "keyboard_enter" })),
       h("form", { class: "filters say", onsubmit: (event) => { event.preventDefault(); speak("answer"); } }, answer, h("button", { type: "submit" }, "Say"), button("Ask", () => speak("ask_driver")), button("Look up", () => speak("query")))),
-    h("div", { class: "card transport" },
+    h("div", { class: "card transport" }, h("span", { class: "muted" }, "When finished:"),
       button("Done", () => declare("complete"), "main"), button("Not needed", () => declare("not_needed")), button("Can't or not allowed", () => declare("infeasible")), reason,
-      button(leaveLabel, async () => { try { await send(address("/leave"), {}); } catch (error) { say(error); } })),
-    practice, told, h("details", { class: "card", open: true }, h("summary", {}, "What is known about the place"), context),
-    h("details", { class: "card" }, h("summary", {}, "Readings of the car and its receivers"), readings));
+      h("span", { class: "leave" }, button(leaveLabel, async () => { try { await send(address("/leave"), {}); } catch (error) { say(error); } })))),
+  h("div", {}, practice, h("details", { class: "card", open: true }, h("summary", {}, "What is known about the place"), context),
+    h("details", { class: "card" }, h("summary", {}, "Readings of the car and its receivers"), readings)));
 
   // The answer to an act holds the screen as the act will leave it; the road follows within a second.
   let look = -1;

@@ -42,7 +42,7 @@ export async function decisionsPage(query, id) {
     title: study.name,
     content: [h("h1", {}, study.name), h("p", { class: "muted" }, `A study in ${study.scenario}: at each decision the drive is copied, and every route is driven to its end.`), live, h("div", { class: "filters" }, trip, which), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Decisions" }, h("table", {},
-        h("thead", {}, h("tr", {}, ["Trip", "Seed", "At", "Delay ahead", "Best route saves", "All others save", "Excluded"].map((name) => h("th", { scope: "col" }, name)))), body))],
+        h("thead", {}, h("tr", {}, ["Trip", "Seed", "At", "Delay ahead", "Best alternative saves", "Other vehicles save", "Excluded"].map((name) => h("th", { scope: "col" }, name)))), body))],
     ready: fill,
     leave: () => clearInterval(timer),
   };
@@ -60,12 +60,12 @@ export async function decisionPage(query, id, name) {
   return {
     title: `${found.trip} at ${Math.round(found.at_s)} s`,
     content: [h("h1", {}, `${found.trip} at ${Math.round(found.at_s)} s`),
-      h("p", { class: "muted" }, h("a", { href: `#/decisions/${id}` }, study.name), ` · seed ${found.seed} · ${Math.round(found.delay_s)} s of delay ahead, ${Math.round(found.eta_s)} s to the destination · ${counted(found.draws, "draw")}${found.complies ? "" : " · the driver would not comply"}`),
+      h("p", { class: "muted" }, h("a", { href: `#/decisions/${id}` }, study.name), ` · seed ${found.seed} · ${Math.round(found.delay_s)} s of delay ahead, ${Math.round(found.eta_s)} s to the destination${found.draws > 1 ? ` · mean of ${found.draws} runs` : ""}${found.complies ? "" : " · the driver would not comply"}`),
       found.told.length > 0 && h("p", {}, found.told.join(" ")),
       found.excluded && h("p", { class: "warning" }, `Excluded: ${found.excluded}. ${found.why}`),
       map ? h("figure", { class: "card ways" }, picture, moving?.element, h("figcaption", {}, h("span", {}, h("i", { class: "key here" }), "decides here"), map.ways.map((_, index) => h("span", {}, h("i", { class: `key way-${index}` }), WAYS[index])))) : h("p", { class: "card" }, "This study was made before routes were recorded."),
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Futures" }, h("table", {},
-        h("thead", {}, h("tr", {}, ["Future", "Saves", "Stops saved", "Distance saved", "CO₂ saved", "All others save", "Others affected", "Chosen by"].map((each) => h("th", { scope: "col" }, each)))),
+        h("thead", {}, h("tr", {}, ["Future", "Saves", "Stops saved", "Distance saved", "CO₂ saved", "Other vehicles save", "Others affected", "Chosen by"].map((each) => h("th", { scope: "col" }, each)))),
         h("tbody", {}, rows.map((each) => h("tr", {}, h("td", {}, wayOf(each.number)), h("td", {}, signed(each.gain_s, "s")), h("td", {}, signed(each.stops, "")), h("td", {}, signed(each.distance_m, "m")), h("td", {}, signed(each.co2_g, "g")), h("td", {}, signed(each.others_s, "s")), h("td", {}, String(each.changed)), h("td", {}, chosen(each.number))))))),
     ].filter(Boolean),
     leave: () => moving?.stop(),

@@ -101,7 +101,7 @@ export async function resultsPage(query, id) {
     title: results.name,
     content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices, beside), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), table)),
-      results.drives?.length ? [h("h2", {}, "Drives"), drivesTable(id, results.drives)] : null].flat(),
+      results.drives?.length ? [h("h2", {}, "Drives"), drivesTable(id, results.drives)] : []].flat(),
     leave: () => clearInterval(timer),
     ready: fill,
   };

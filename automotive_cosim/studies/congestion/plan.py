@@ -6,22 +6,17 @@ import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
-from typing import Annotated, Any
+from typing import Any
 
-from annotated_types import Ge, Le, MinLen
-
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.executor import LoneJob
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.incidents import AnyIncident, EgoIncident, RushHour
 from automotive_cosim.scenarios.wording import KINDS, read_line
 from automotive_cosim.scenery import open_scenario
-from automotive_cosim.studies.plan import check_edges, checked_plan, driven_at, option, plan_of
+from automotive_cosim.studies.plan import check_edges, checked_plan, driven_at, plan_of
+from automotive_cosim.studies.settings import CongestionSettings
 from automotive_cosim.traffic.flow import Advice, SignalControl
-
-KIND = "congestion"
-"""Kind of study in the manifest."""
 
 INTERVAL_S, EPOCH_S = 60.0, 300.0
 """Length of the intervals of the flow on every edge, and of those over which travel times vary (five minutes, as in
@@ -32,41 +27,8 @@ MEASURES = {**KINDS, "advice": Advice, "signals": SignalControl}
 
 
 @dataclass(frozen=True, slots=True)
-class CongestionPlan:
+class CongestionPlan(CongestionSettings):
     """A congestion study."""
-
-    scenario: Annotated[str, MinLen(1)]
-    """Name or folder, a ``.sumocfg`` or a network."""
-    measures: tuple[str, ...] = ()
-    """What is done in one copy of the traffic each: a kind and its fields (``measure_in``)."""
-    seeds: Annotated[tuple[Annotated[int, Ge(0)], ...], MinLen(1)] = tuple(range(10))
-    """Seeds of the traffic: each is a day."""
-    minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0
-    """How long after the warm-up is measured, in whole five minutes."""
-    demand: Annotated[tuple[Annotated[float, Ge(0.01), Le(100)], ...], MinLen(1)] = (1.0,)
-    """Factors on the demand in periods of equal length, such as off-peak, peak and off-peak; the first also holds
-    in the warm-up."""
-    incidents: tuple[str, ...] = ()
-    """Incidents with and without a measure, besides the scenario's own."""
-    share: Annotated[float, Ge(0), Le(1)] | None = None
-    """Share of the cars with SUMO's rerouting device; None takes the scenario's."""
-    corridor: str = ""
-    """Name of the trip along which the time-space diagrams go; empty takes the first."""
-    step_s: Annotated[float, Ge(0.1), Le(1)] = 1.0
-    """SUMO's step length."""
-    scale: Annotated[float, Ge(0.01), Le(100)] | None = None
-    """Factor on the demand; None takes the scenario's."""
-    warm_up_s: Annotated[float, Ge(0), Le(86_400)] | None = None
-    """Traffic before the measure; None takes the scenario's."""
-    redraw: bool = False
-    """Whether every seed redraws the trips of the demand."""
-    emissions: bool = False
-    """Whether to measure what every vehicle emits and consumes."""
-
-    def as_json(self) -> Json:
-        """The plan as a JSON object, for the manifest."""
-        values = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
-        return {"study": KIND} | values
 
     def check(self) -> None:
         """Checks every name and number before anything runs.
@@ -75,10 +37,7 @@ class CongestionPlan:
             UserError: one does not exist or is out of range.
         """
         checked_plan(type(self), asdict(self))
-        for name in ("measures", "seeds"):
-            values = getattr(self, name)
-            if len(set(values)) < len(values):
-                raise UserError(f"{option(name)} lists a value twice: {', '.join(map(str, values))}")
+        self.check_lists()
         if self.minutes % (EPOCH_S / 60):
             raise UserError(f"--minutes is {self.minutes:g}; give a multiple of {EPOCH_S / 60:g}")
         if self.duration_s % (len(self.demand) * EPOCH_S):
@@ -206,4 +165,4 @@ def make_congestion(values: Mapping[str, Any]) -> CongestionPlan:
     Raises:
         UserError: it is another kind of study, or of another version.
     """
-    return plan_of(CongestionPlan, KIND, "congestion study", values)
+    return plan_of(CongestionPlan, "congestion study", values)

@@ -82,7 +82,7 @@ def _linked(picture: Rect, name: Rect, line: Rect, act: Rect, state: State) -> t
         Label(
             rect=name,
             key="phone.device",
-            text=state.of(Connections).phone if on else say("No phone paired"),
+            text=state.of(Connections).phone if on else say("No phone connected"),
             style=Type.STRONG,
             align="centre",
         ),

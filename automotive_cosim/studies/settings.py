@@ -1,0 +1,205 @@
+"""What can be set about a study. Each field is an option of its command and a value in its manifest."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, fields
+from typing import Annotated, ClassVar, Literal
+
+from annotated_types import Ge, Le, MinLen
+
+from automotive_cosim.contracts import OLDEST_NEWS_S, Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.annotations import Option
+from automotive_cosim.formats.options import option
+
+Share = Annotated[float, Ge(0), Le(1)]
+Seed = Annotated[int, Ge(0)]
+Factor = Annotated[float, Ge(0.01), Le(100)]
+Warmup = Annotated[float, Ge(0), Le(86_400)]
+SCENARIOS_OWN = Option(default="scenario's")
+
+
+@dataclass(frozen=True, slots=True)
+class TrafficSettings:
+    """What every study sets; times in seconds."""
+
+    scenario: Annotated[str, MinLen(1)] = "paris_centre"
+    """A scenario's name or folder, or any .sumocfg or .net.xml."""
+    seeds: Annotated[tuple[Seed, ...], MinLen(1)] = tuple(range(10))
+    """Seeds of the traffic, each of which is a day, as in 0-9; at least 10 for an interval, 30 to publish."""
+    scale: Annotated[Factor | None, SCENARIOS_OWN] = None
+    """Factor on the demand."""
+    warm_up_s: Annotated[Warmup | None, SCENARIOS_OWN] = None
+    """Seconds of traffic before anything counts."""
+
+    kind: ClassVar[str]
+    """Kind of study in the manifest, so that a report knows what it reads."""
+    sets: ClassVar[tuple[str, ...]] = ("seeds",)
+    """Lists in which a value must not come twice."""
+
+    def as_json(self) -> Json:
+        """The plan as a JSON object, for the manifest."""
+        values = {name: list(value) if isinstance(value, tuple) else value for name, value in asdict(self).items()}
+        return {"study": self.kind} | values
+
+    def check_lists(self) -> None:
+        """Checks that no list has a value twice.
+
+        Raises:
+            UserError: one has.
+        """
+        for name in self.sets:
+            values = getattr(self, name)
+            if len(set(values)) < len(values):
+                raise UserError(f"{option(type(self), name)} lists a value twice: {', '.join(map(str, values))}")
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DrivenSettings(TrafficSettings):
+    """What studies set that fork the traffic."""
+
+    incidents: Annotated[tuple[str, ...], Option("incident", repeats=True)] = ()
+    """An incident in every copy of the traffic, besides the scenario's own, with the fields of scenario.toml, as in
+    'breakdown edge=c1c2 position_m=120'; its times count from the end of the warm-up; may be repeated."""
+    redraw: bool = False
+    """Redraw the trips of the demand for every seed, as on another day."""
+    emissions: bool = False
+    """Measure what every vehicle emits and consumes, by emission class."""
+    step_s: Annotated[float, Ge(0.1), Le(1)] = 1.0
+    """SUMO's step length in seconds."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class RerouteSettings(DrivenSettings):
+    """What a rerouting study sets."""
+
+    kind: ClassVar[str] = "reroute"
+    sets: ClassVar[tuple[str, ...]] = (
+        "departures_s",
+        "seeds",
+        "shares",
+        "ages_s",
+        "compliance",
+        "policies",
+        "trips",
+        "together",
+    )
+
+    departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0, 600.0, 900.0)
+    """When the ego departs, each time in its own copy of the traffic: seconds after the warm-up, or clock times."""
+    trips: Annotated[tuple[str, ...], Option(default="all")] = ()
+    """Ego trips of the scenario: names, the beginnings of names, or numbers as in `scenarios show`."""
+    from_place: Annotated[str, Option("from")] = ""
+    """Where the ego's route begins, instead of a trip: an edge, a street or LON,LAT."""
+    to_place: Annotated[str, Option("to")] = ""
+    """Where it ends; if only one of the two is given, the other is drawn, several times."""
+    shares: Annotated[tuple[Share, ...], SCENARIOS_OWN] = ()
+    """Shares of the other cars that reroute, 0 to 1; each is warmed up separately."""
+    ages_s: Annotated[tuple[Annotated[float, Ge(0), Le(OLDEST_NEWS_S)], ...], MinLen(1)] = (0.0,)
+    """Ages of the traffic news in seconds, by which the alternative route is selected."""
+    driver: Annotated[str, SCENARIOS_OWN] = ""
+    """Driver profile of the ego."""
+    compliance: Annotated[tuple[Share, ...], MinLen(1)] = (1.0,)
+    """Probabilities that the driver follows the advice, at the same decisions; most tables use only the first."""
+    policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
+    """Policies: never, always, delay:SECONDS, sumo, best, agent:NAME, agent:NAME/MODEL."""
+    least_delay_s: Annotated[float, Ge(0), Le(3_600), Option("delay")] = 30.0
+    """Expected delay ahead, in seconds, from which a decision is due."""
+    every_s: Annotated[float, Ge(10), Le(3_600)] = 60.0
+    """Seconds between two decisions of a drive."""
+    per_drive: Annotated[int, Ge(1), Le(50)] = 5
+    """Maximum number of decisions per drive."""
+    placebo_every: Annotated[int, Ge(0), Le(1_000_000)] = 1
+    """One placebo in this many drives with a decision; 0 for none. Replicates contain it."""
+    replicates: Annotated[int, Ge(1), Le(100)] | Literal["auto"] = 1
+    """How many times each future is driven, with fresh random numbers; auto: more times where the sign of the mean
+    gain is unclear."""
+    arrived: Annotated[float, Ge(0.5), Le(1)] = 0.95
+    """Share of the vehicles present at a decision that must arrive before its futures end."""
+    limit_s: Annotated[float, Ge(60), Le(86_400)] = 7_200.0
+    """Simulated seconds after which a future ends anyway."""
+    equilibrium_gap: float | None = None
+    """Declare that the demand comes from duaIterate with this relative gap."""
+    half_width_s: Annotated[Annotated[float, Ge(0.1), Le(3_600)] | None, Option("until")] = None
+    """Add seeds until the mean gain is known to within this many seconds."""
+    whole_drives: bool = False
+    """Also drive every policy from departure to destination."""
+    together: tuple[Share, ...] = ()
+    """Shares, 0 to 1, of the eligible cars that take the quickest other route with the ego."""
+    close: Annotated[str, Option(default="none")] = ""
+    """Also close a road at the first decision of each drive: an edge, or `ahead` for one on the ego's route."""
+    via: Literal["stops", "route"] = "stops"
+    """What a trip's via edges are: stops, which every route passes, or route, which other routes may leave."""
+    ego_class: Annotated[str, Option(default="SUMO's for cars")] = ""
+    """SUMO's emission class of the ego, as Energy/default for an electric one."""
+    trajectories: bool = False
+    """Store the ego's position in every future, step by step."""
+    agent_steps: Annotated[int, Ge(1), Le(100)] = 12
+    """Maximum number of an agent's actions per decision."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class SuiteSettings(RerouteSettings):
+    """What a suite sets: one study of rerouting on several networks."""
+
+    scenarios: Annotated[tuple[str, ...], MinLen(1)] = ("grid", "paris_centre")
+    """Names or folders of scenarios, .sumocfg or .net.xml; shipped stands for all shipped ones."""
+    warm_ups_s: Annotated[tuple[Warmup, ...], SCENARIOS_OWN] = ()
+    """Seconds of traffic before the first departure; each is a separate study."""
+    departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0)
+    """When the ego departs, each time in its own copy of the traffic: seconds after the warm-up."""
+    policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "best")
+    """Policies; the table shows always and best."""
+    per_drive: Annotated[int, Ge(1), Le(50)] = 2
+    """Maximum number of decisions per drive."""
+    replicates: Annotated[int, Ge(1), Le(100)] | Literal["auto"] = 2
+    """How many times each future is driven, or auto."""
+
+    def of_each(self) -> Json:
+        """What is the same in every study."""
+        own = ("scenario", "warm_up_s", "scenarios", "warm_ups_s")
+        return {each.name: getattr(self, each.name) for each in fields(self) if each.name not in own}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CongestionSettings(DrivenSettings):
+    """What a congestion study sets."""
+
+    kind: ClassVar[str] = "congestion"
+    sets: ClassVar[tuple[str, ...]] = ("measures", "seeds")
+
+    measures: Annotated[tuple[str, ...], Option("measure", repeats=True)] = ()
+    """A measure to compare with none: an incident with the fields of scenario.toml (as 'closure edge=c2c3'),
+    'advice share=0.5 compliance=0.8 age_s=300' or 'signals control=static'. May be repeated."""
+    minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0
+    """How long to measure after the warm-up, in whole five minutes."""
+    demand: Annotated[tuple[Factor, ...], MinLen(1)] = (1.0,)
+    """Factors on the demand in periods of equal length, as in 0.6,1,0.6 for a peak; the first also holds in the
+    warm-up."""
+    share: Annotated[Share | None, SCENARIOS_OWN] = None
+    """Share of the cars with SUMO's rerouting device."""
+    corridor: Annotated[str, Option(default="the first")] = ""
+    """Trip along which the time-space diagrams go."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DaysSettings(TrafficSettings):
+    """What a study of advice from day to day sets."""
+
+    kind: ClassVar[str] = "days"
+    sets: ClassVar[tuple[str, ...]] = ("shares", "seeds")
+
+    seeds: Annotated[tuple[Seed, ...], MinLen(1)] = tuple(range(3))
+    """Seeds of the traffic, and of who is advised and follows."""
+    shares: Annotated[tuple[Share, ...], MinLen(1)] = (0.0, 0.25, 0.5, 0.75, 1.0)
+    """Shares of the drivers who are advised; a greater share contains the drivers of every smaller one."""
+    compliance: Share = 0.5
+    """Probability that a driver follows the advice of a day."""
+    memory: Share = 0.7
+    """Weight of all earlier days in what is remembered; the rest is that of the day just over."""
+    lag: Annotated[int, Ge(0), Le(30)] = 0
+    """Age of the news: how many days pass before a day is in the memory that advises."""
+    days: Annotated[int, Ge(2), Le(365)] = 30
+    """Most days to drive after the first."""
+    minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0
+    """How long after the warm-up departures count."""

@@ -1,0 +1,30 @@
+"""The sets that tasks and episodes belong to."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Suite(StrEnum):
+    """A set of tasks that is chosen, run and reported by itself."""
+
+    STANDARD = "standard"
+    """The 185 tasks of the paper's size and kind, and more of them."""
+    HARD = "hard"
+    """Tasks of ten actions and more: values carried between apps, an order that counts, interruptions."""
+    LIMITS = "limits"
+    """Pairs about what a car cannot do: what is asked for is missing in one half, and the driver has to be told."""
+    CLARIFY = "clarify"
+    """Pairs about wishes that leave something open: only the driver knows it, or the car does too."""
+
+    @property
+    def max_steps(self) -> int:
+        """Default limit of actions per episode."""
+        return 40 if self is Suite.HARD else 20
+
+
+class Split(StrEnum):
+    """The public sets of episodes."""
+
+    DEV = "dev"
+    TEST = "test"
