@@ -364,6 +364,8 @@ class EgoRoad:
         self._round = round_
         self._leg = 0
         """The next leg of the round."""
+        self._goal, self._beyond = "", 0
+        """The present destination, and how many edges before it there is no way on."""
         self.now: Instant = KnownInstant(sensor.read(hazard_lights=False, vehicle_count=world.vehicle_count).state)
         """The newest instant."""
 
@@ -406,22 +408,32 @@ class EgoRoad:
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
 
     def _go_on(self, round_: Round) -> tuple[Event, ...]:
-        """Sets the next destination near the present one, and says so. From a place without a way back, as one that
-        the driver was guided to on request, it is set before the car is there."""
+        """Sets the next destination near the present one, if there is a way to it, and says so. From a place
+        without a way back, to which the driver was guided on request, it is set where one can last turn off."""
         sumo, route = self._sumo, self._sensor.route
-        here = sumo.edge_of(EGO)
-        if route.length_m - self._sensor.position_m > ONWARD_M or here.startswith(":"):
+        if sumo.edge_of(EGO).startswith(":"):
             return ()
-        rest = route.edge_ids[sumo.route_index(EGO) :]
-        leg, self._leg = self._leg, self._leg + 1
-        backwards = range(len(rest) - 1, -1, -1)
-        ways = ((count, round_.following(self._world.always_open, rest[count], leg)) for count in backwards)
-        count, way = next((found for found in ways if found[1]), (0, ()))
+        if route.edge_ids[-1] != self._goal:
+            self._goal, self._beyond = route.edge_ids[-1], self._edges_beyond(round_)
+        last = len(route.edge_ids) - 1 - self._beyond
+        here = sumo.route_index(EGO)
+        end_m = route.position_m(last, self._world.network.edges[route.edge_ids[last]].length_m)
+        if last < here or end_m - self._sensor.position_m > ONWARD_M:
+            return ()
+        way = round_.following(self._world.always_open, route.edge_ids[last], self._leg)
+        self._leg += 1
         if not way:
             return ()
-        sumo.set_route(EGO, (*rest[:count], *way))
+        sumo.set_route(EGO, (*route.edge_ids[here:last], *way))
         goal = self._world.network.edges[way[-1]].name or "the next destination"
         return (Event(sumo.time(), "driver_goes_on", f"driver goes on to {goal}"),)
+
+    def _edges_beyond(self, round_: Round) -> int:
+        """How many edges at the end of the route are beyond the last from which a way leads on."""
+        for beyond, edge_id in enumerate(reversed(self._sensor.route.edge_ids)):
+            if round_.following(self._world.always_open, edge_id, 0):
+                return beyond
+        return 0
 
     def _mishaps(self) -> tuple[EgoEnd | None, tuple[Event, ...]]:
         """Why the ego's drive ended in this step, if it did, and events of other vehicles."""
