@@ -289,9 +289,10 @@ LOST_CAR = '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/></vehicle>'
             edit(
                 "grid.rou.xml",
                 "</routes>",
-                '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/></vehicle></routes>',
+                '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/>'
+                '<param key="has.rerouting.device" value="false"/></vehicle></routes>',
             ),
-            "No connection between edge 'cwc0' and edge 'n3n4'",
+            "vehicle 'x' sets out at 1.1 s, but its class cannot drive its route 'cwc0 n3n4'",
         ),
         (edit("grid.sumocfg", "<processing>", '<processing><no-such-option value="1"/>'), "no-such-option"),
     ],
