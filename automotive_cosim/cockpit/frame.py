@@ -57,8 +57,9 @@ DOCKED: tuple[Signal[Any], ...] = (
 """Everything that the dock depends on, besides the present screen."""
 NOTICE_WIDTH = 640
 """At most; notices in a wider bar leave the rest free."""
-LAMP, FEW = 31, 5
-"""Width of a tell-tale, and how many the smallest status bar has room for."""
+LAMP, FEW, MANY = 31, 5, len(Telltale) - 1
+"""Width of a tell-tale, how many the smallest status bar has room for, and how many can be lit: low beam and high beam
+exclude each other."""
 BEFORE, AFTER = 212, 424
 """Widths of what is always in the status bar, left and right of what comes and goes."""
 _SIGNAL = (Icon.SIGNAL_0, Icon.SIGNAL_1, Icon.SIGNAL_2, Icon.SIGNAL_3, Icon.SIGNAL_3)
@@ -87,7 +88,7 @@ def _bar(size: ScreenSize) -> _Bar:
     lines = size.status.rows(size.bars, 0)
     left, between, right = row(lines[0], BEFORE, REST, AFTER)
     room = lines[1].inset(MARGIN, 0) if size.bars > 1 else between
-    many = FEW if size is ScreenSize.STANDARD else len(Telltale)
+    many = FEW if size is ScreenSize.STANDARD else MANY
     _, lamps, _, notice, _ = row(room, 4, many * LAMP, 1, REST, 12)
     _, clock, _, air, _, bell = row(left, MARGIN - 4, 76, 2, 68, -2, 48)
     mobile, _, fix, _, cell, _, charge, _, gear, _, pace, _, unit, _, sign, _ = row(
