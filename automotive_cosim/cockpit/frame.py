@@ -58,7 +58,7 @@ DOCKED: tuple[Signal[Any], ...] = (
 NOTICE_WIDTH = 640
 """At most; notices in a wider bar leave the rest free."""
 LAMP, FEW, MANY = 31, 5, len(Telltale) - 1
-"""Width of a tell-tale, how many the smallest status bar has room for, and how many can be lit: low beam and high beam
+"""Width of a tell-tale, how many the smallest status bar has room for, and how many can be lit: low and high beam
 exclude each other."""
 BEFORE, AFTER = 212, 424
 """Widths of what is always in the status bar, left and right of what comes and goes."""
