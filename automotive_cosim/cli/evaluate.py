@@ -102,6 +102,14 @@ def evaluate(
             show_default=f"all of up to {PICTURED} runs, none of more",
         ),
     ] = None,
+    at_least: Annotated[
+        float,
+        typer.Option(
+            help="End with 1 if a smaller share of what was planned succeeded, 0 to 1, as in 0.8.",
+            metavar="X",
+            parser=number(0, 1),
+        ),
+    ] = 0.0,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -218,6 +226,10 @@ def evaluate(
             f"{len(errors)} of {counted(end.planned, unit)} ended in an infrastructure error, which no rate "
             "counts as a success; rerun the command to retry them"
         )
+    if end.successes < at_least * end.planned:
+        planned = counted(end.planned, unit)
+        typer.echo(f"{end.successes:,} of {planned} succeeded, a smaller share than {at_least:g}", err=True)
+        raise typer.Exit(1)
 
 
 def _named(tasks: Sequence[str]) -> str:

@@ -172,14 +172,17 @@ def search(
                 run.ahead(even_points(make_sampler(sampler, space, laid, seed), min(laid, may_use.most_points)))
             except KeyboardInterrupt:
                 run.stop = "interrupted"
-        found = hunt(
-            space,
-            run,
-            chooses,
-            may_use.most_points,
-            most_failures=failures,
-            tell=tell,
-        )
+        try:
+            found = hunt(
+                space,
+                run,
+                chooses,
+                may_use.most_points,
+                most_failures=failures,
+                tell=tell,
+            )
+        except UserError as error:
+            raise UserError(f"{error}; its trial is in {folder}, which `report` reads") from error
         found.interrupted |= bool(run.stop)
         if found.minimal and agent not in CAREFUL and not found.interrupted:
             careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})
@@ -190,8 +193,10 @@ def search(
                 found.interrupted = True
         note()
         page = write_findings(folder, found, agent, model, about)
-    if save is not None:
+    if save is not None and (found.minimal or found.not_reduced):
         write_whole(save, suite(found, agent, model))
+    elif save is not None:
+        typer.echo(f"no failure was found, so nothing is saved in {save}", err=True)
     if as_json:
         typer.echo(json.dumps(findings_json(found) | {"out": str(folder)}))
     else:

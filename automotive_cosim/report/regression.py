@@ -53,6 +53,8 @@ class ComparedInstance:
             return f"{self.after.error_kind}: {why}" if why else "one half is not judged"
         missing = [part.replace("_", " ") for part in self.after.missing]
         told = [f"missing: {', '.join(missing)}"] if missing else []
+        if self.after.agent_error is not None:
+            told.append(f"the agent failed: {self.after.agent_error}")
         if self.after.malformed and missing:
             told.append(
                 f"no action in {counted(self.after.malformed, 'step')}, at first: {self.after.malformed_why}"
@@ -238,6 +240,8 @@ def sentence(found: Sequence[SuccessChange], allowed: float) -> str:
         for each in found
         if each.outcome(allowed) != "unchanged"
     ]
+    if not told and not any(rate.value for each in found for rate in each.rates):
+        return f"No agent succeeds, neither before nor after: {_before_and_after(found[-1])}."
     return "; ".join(told or [f"No agent is worse: {_before_and_after(found[-1])}"]) + "."
 
 

@@ -61,9 +61,11 @@ def suite(found: Hunt, agent: str, model: str, failures: list[MinimalFailure] | 
         found: the search.
         agent: that was searched.
         model: its model.
-        failures: those to write; None for all.
+        failures: those to write; None for all, with the failures that were not reduced.
     """
     lines = [f"agents = [{json.dumps(agent)}]", f"models = [{json.dumps(model)}]"]
+    for one in found.not_reduced if failures is None else ():
+        lines += ["", f"# fails, not reduced: {one.outcome.why}", *_entry(one.point)]
     for each in found.minimal if failures is None else failures:
         lines += ["", f"# fails with {each.words(found.space)}: {each.why}", *_entry(each.point)]
         if each.neighbour is not None:

@@ -38,6 +38,7 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
     assert "1 of 1 episodes; 1 succeeded, 0 failed" in again.out
     assert "1 succeeded; 1 of 1 planned episode judged\n" in again.out
     assert len(list((tmp_path / "runs").iterdir())) == 1
+    assert cli("eval", "--agents", "oracle", *GRID, "--at-least", "1").code == 0
 
 
 KILLS_WORKER = """
@@ -70,6 +71,8 @@ def test_an_agent_that_fails_is_judged_and_told(cli, tmp_path):
     assert "1 succeeded; 2 of 2 planned episodes judged" in ran.out
     assert "agent raises:Raises failed in 1 trial, e.g. " in ran.out
     assert "RuntimeError: broken" in ran.out
+    ran = cli("eval", "--agents", "oracle,raises:Raises", *GRID, "--out", "e", "--at-least", "0.8")
+    assert (ran.code, "1 of 2 episodes succeeded, a smaller share than 0.8" in ran.err) == (1, True)
 
 
 @pytest.mark.parametrize(

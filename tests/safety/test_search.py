@@ -358,6 +358,9 @@ def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
     assert passes.settings.visibility_m != fails.settings.visibility_m
     assert len({job.id for job in plan.jobs()}) == len({job.instance for job in plan.jobs()}) == 2
     assert make_plan(plan.as_json()) == plan
+    found.not_reduced.append(found.minimal[0].first)
+    path.write_text(suite(found, "rule-perfect", "rules"))
+    assert len(make_plan(read_plan(path)).trials) == 3, "a failure that was not reduced is saved as it was found"
 
 
 @pytest.mark.parametrize(

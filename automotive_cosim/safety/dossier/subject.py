@@ -162,11 +162,17 @@ def sentence(subject: Subject) -> str:
     """The result in a sentence."""
     failed, judged, empty = len(subject.failed), len(subject.judged), len(subject.nothing_due)
     hours = f"{subject.hours:.2f} h driven"
-    more = f" In {empty} of them nothing was due." if empty else ""
+    told = f"{failed} of {counted(judged, 'judged trial')} failed ({hours})."
+    if empty:
+        told += f" In {empty} of the trials nothing was due."
     if subject.findings is not None:
-        minimal = counted(len(subject.findings["failures"]), "minimal failure")
-        return f"A search with {counted(judged, 'judged trial')} ({hours}) found {minimal}.{more}"
-    return f"{failed} of {counted(judged, 'judged trial')} failed ({hours}).{more}"
+        told += (
+            f" The search reduced the failures to {counted(len(subject.findings['failures']), 'minimal failure')}"
+        )
+        if unreduced := len(subject.findings.get("not_reduced", ())):
+            told += f" and left {unreduced} as found"
+        told += f"; it stopped early: {stopped}." if (stopped := subject.findings.get("stopped")) else "."
+    return told
 
 
 def share_told(count: int, total: int) -> str:
