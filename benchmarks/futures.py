@@ -132,7 +132,7 @@ def main() -> None:
         show(
             StudyPlan(
                 given.scenario,
-                tuple(given.departures),
+                departures_s=tuple(given.departures),
                 trips=tuple(given.trips),
                 seeds=tuple(range(given.seeds)),
                 shares=() if given.share is None else (given.share,),

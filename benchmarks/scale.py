@@ -100,7 +100,7 @@ def on_network(streets: int, trips: int) -> str:
         edges = 4 * streets * (streets - 1)
         plan = StudyPlan(
             str(grid(streets, Path(folder))),
-            (0.0,),
+            departures_s=(0.0,),
             seeds=(0,),
             policies=("never", "always"),
             least_delay_s=0.0,
@@ -246,7 +246,7 @@ def main() -> None:
     if given.workers or given.ray_nodes:
         plan = StudyPlan(
             "grid",
-            (300.0,),
+            departures_s=(300.0,),
             trips=("avenue",),
             seeds=tuple(range(given.seeds)),
             policies=("never", "always"),

@@ -252,7 +252,7 @@ def show_driven(seeds: int, draws: int, workers: int) -> None:
             (folder := Path(scratch) / "net").mkdir()
             plan = StudyPlan(
                 str(mirrored(folder, longer_m)),
-                (0.0, 130.0, 290.0),
+                departures_s=(0.0, 130.0, 290.0),
                 seeds=tuple(range(seeds)),
                 least_delay_s=0.0,
                 per_drive=1,

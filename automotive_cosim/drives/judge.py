@@ -20,9 +20,9 @@ from automotive_cosim.drives.events.tracker import DriveEvent
 
 REPEAT_S = 60.0
 """An alert about the same event, or the same alert while nothing is due, is a nuisance within this time, unless it
-has become worse."""
+has become worse, or it advises a clearly lower speed: fog thickens, and the driver follows the one told before."""
 WORSE = 1.25
-"""Ratio of severities from which an event has become worse."""
+"""Ratio of severities from which an event has become worse, and of the speeds advised."""
 SELF_ENDED_S = 1.5
 """An event that was over earlier than this before its deadline had passed by itself: a tick and a half."""
 HOLD_S = 120.0
@@ -342,6 +342,8 @@ class _Bench:
     """Signals that the agent has changed."""
     alerted_s: dict[AlertKind, float] = field(default_factory=dict)
     """When each kind of alert was given last."""
+    alerted_kmh: dict[AlertKind, float | None] = field(default_factory=dict)
+    """The speed that it advised."""
 
     def act(self, act: WatchAct) -> JudgedAct:
         """What an act was."""
@@ -353,6 +355,7 @@ class _Bench:
             judged = replace(judged, holds_s=self.hold_s)
         if act.alert is not None:
             self.alerted_s[act.alert] = act.time_s
+            self.alerted_kmh[act.alert] = act.speed_kmh
         return judged
 
     def _judged(self, act: WatchAct) -> JudgedAct:
@@ -397,7 +400,8 @@ class _Bench:
         something has supported it ever since."""
         about = min(supported, key=lambda kind: len(kind.alerts)).name if supported else ""
         told_s = self.alerted_s.get(act.alert) if act.alert is not None else None
-        if told_s is not None and act.time_s - told_s < REPEAT_S and self._lasts(meant, told_s, act.time_s):
+        recent = told_s is not None and act.time_s - told_s < REPEAT_S and not self._is_slower(act)
+        if told_s is not None and recent and self._lasts(meant, told_s, act.time_s):
             reason = f"told {act.time_s - told_s:.0f} s before"
             return JudgedAct(act.time_s, act.words, Worth.REPEAT, about, reason)
         return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, about)
@@ -423,13 +427,19 @@ class _Bench:
             else:
                 severity = event.severity_at(act.time_s)
                 recent = case.told_s is not None and act.time_s - case.told_s < REPEAT_S
-                again = recent and not unnamed and severity < WORSE * case.told_severity
+                worse = severity >= WORSE * case.told_severity or self._is_slower(act)
+                again = recent and not unnamed and not worse
                 worths.append(Worth.REPEAT if again and self._lasts(meant, before_s, act.time_s) else Worth.NEUTRAL)
             if act.alert is not None or act.said:
                 case.told_s, case.told_severity = act.time_s, event.severity_at(act.time_s)
         if unnamed and act.alert is not None:
             min(unnamed, key=_most_likely).is_named = True
         return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index), before_s
+
+    def _is_slower(self, act: WatchAct) -> bool:
+        """Whether an alert advises a clearly lower speed than the last one of its kind."""
+        before_kmh = self.alerted_kmh.get(act.alert) if act.alert is not None else None
+        return act.speed_kmh is not None and before_kmh is not None and act.speed_kmh * WORSE <= before_kmh
 
     def _lasts(self, meant: Sequence[EventKind], from_s: float, until_s: float) -> bool:
         """Whether at every second between two alerts something supported them."""

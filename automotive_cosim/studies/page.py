@@ -86,6 +86,9 @@ def answer(study: Study) -> str:
     verb = "saves" if found.value >= 0 else "costs"
     told = f"Rerouting by “{policy}” {verb} {abs(found.value):.0f} s{sure} a decision{_parts(chosen)}"
     over = f"{counted(found.count, 'decision')} of {counted(found.seeds, 'seed')}"
+    noise_s = study.noise().time_s
+    if bounds is None and abs(found.value) <= noise_s:
+        told += f", which is within the noise floor of {noise_s:.0f} s"
     return f"{told}, over {over}" + (
         "." if bounds else f", too few for an interval, which needs {LEAST_SEEDS} seeds."
     )

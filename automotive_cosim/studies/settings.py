@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, dataclass, fields
+from dataclasses import KW_ONLY, asdict, dataclass, fields
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le, MinLen
@@ -12,10 +12,10 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Option
 from automotive_cosim.formats.options import option
 
-Share = Annotated[float, Ge(0), Le(1)]
-Seed = Annotated[int, Ge(0)]
-Factor = Annotated[float, Ge(0.01), Le(100)]
-Warmup = Annotated[float, Ge(0), Le(86_400)]
+CarShare = Annotated[float, Ge(0), Le(1)]
+TrafficSeed = Annotated[int, Ge(0)]
+DemandScale = Annotated[float, Ge(0.01), Le(100)]
+WarmUpTime = Annotated[float, Ge(0), Le(86_400)]
 SCENARIOS_OWN = Option(default="scenario's")
 
 
@@ -25,11 +25,12 @@ class TrafficSettings:
 
     scenario: Annotated[str, MinLen(1)] = "paris_centre"
     """A scenario's name or folder, or any .sumocfg or .net.xml."""
-    seeds: Annotated[tuple[Seed, ...], MinLen(1)] = tuple(range(10))
+    _: KW_ONLY
+    seeds: Annotated[tuple[TrafficSeed, ...], MinLen(1)] = tuple(range(10))
     """Seeds of the traffic, each of which is a day, as in 0-9; at least 10 for an interval, 30 to publish."""
-    scale: Annotated[Factor | None, SCENARIOS_OWN] = None
+    scale: Annotated[DemandScale | None, SCENARIOS_OWN] = None
     """Factor on the demand."""
-    warm_up_s: Annotated[Warmup | None, SCENARIOS_OWN] = None
+    warm_up_s: Annotated[WarmUpTime | None, SCENARIOS_OWN] = None
     """Seconds of traffic before anything counts."""
 
     kind: ClassVar[str]
@@ -93,13 +94,13 @@ class RerouteSettings(DrivenSettings):
     """Where the ego's route begins, instead of a trip: an edge, a street or LON,LAT."""
     to_place: Annotated[str, Option("to")] = ""
     """Where it ends; if only one of the two is given, the other is drawn, several times."""
-    shares: Annotated[tuple[Share, ...], SCENARIOS_OWN] = ()
+    shares: Annotated[tuple[CarShare, ...], SCENARIOS_OWN] = ()
     """Shares of the other cars that reroute, 0 to 1; each is warmed up separately."""
     ages_s: Annotated[tuple[Annotated[float, Ge(0), Le(OLDEST_NEWS_S)], ...], MinLen(1)] = (0.0,)
     """Ages of the traffic news in seconds, by which the alternative route is selected."""
     driver: Annotated[str, SCENARIOS_OWN] = ""
     """Driver profile of the ego."""
-    compliance: Annotated[tuple[Share, ...], MinLen(1)] = (1.0,)
+    compliance: Annotated[tuple[CarShare, ...], MinLen(1)] = (1.0,)
     """Probabilities that the driver follows the advice, at the same decisions; most tables use only the first."""
     policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "sumo", "best")
     """Policies: never, always, delay:SECONDS, sumo, best, agent:NAME, agent:NAME/MODEL."""
@@ -124,7 +125,7 @@ class RerouteSettings(DrivenSettings):
     """Add seeds until the mean gain is known to within this many seconds."""
     whole_drives: bool = False
     """Also drive every policy from departure to destination."""
-    together: tuple[Share, ...] = ()
+    together: tuple[CarShare, ...] = ()
     """Shares, 0 to 1, of the eligible cars that take the quickest other route with the ego."""
     close: Annotated[str, Option(default="none")] = ""
     """Also close a road at the first decision of each drive: an edge, or `ahead` for one on the ego's route."""
@@ -144,7 +145,7 @@ class SuiteSettings(RerouteSettings):
 
     scenarios: Annotated[tuple[str, ...], MinLen(1)] = ("grid", "paris_centre")
     """Names or folders of scenarios, .sumocfg or .net.xml; shipped stands for all shipped ones."""
-    warm_ups_s: Annotated[tuple[Warmup, ...], SCENARIOS_OWN] = ()
+    warm_ups_s: Annotated[tuple[WarmUpTime, ...], SCENARIOS_OWN] = ()
     """Seconds of traffic before the first departure; each is a separate study."""
     departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0)
     """When the ego departs, each time in its own copy of the traffic: seconds after the warm-up."""
@@ -173,10 +174,10 @@ class CongestionSettings(DrivenSettings):
     'advice share=0.5 compliance=0.8 age_s=300' or 'signals control=static'. May be repeated."""
     minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0
     """How long to measure after the warm-up, in whole five minutes."""
-    demand: Annotated[tuple[Factor, ...], MinLen(1)] = (1.0,)
+    demand: Annotated[tuple[DemandScale, ...], MinLen(1)] = (1.0,)
     """Factors on the demand in periods of equal length, as in 0.6,1,0.6 for a peak; the first also holds in the
     warm-up."""
-    share: Annotated[Share | None, SCENARIOS_OWN] = None
+    share: Annotated[CarShare | None, SCENARIOS_OWN] = None
     """Share of the cars with SUMO's rerouting device."""
     corridor: Annotated[str, Option(default="the first")] = ""
     """Trip along which the time-space diagrams go."""
@@ -189,13 +190,13 @@ class DaysSettings(TrafficSettings):
     kind: ClassVar[str] = "days"
     sets: ClassVar[tuple[str, ...]] = ("shares", "seeds")
 
-    seeds: Annotated[tuple[Seed, ...], MinLen(1)] = tuple(range(3))
+    seeds: Annotated[tuple[TrafficSeed, ...], MinLen(1)] = tuple(range(3))
     """Seeds of the traffic, and of who is advised and follows."""
-    shares: Annotated[tuple[Share, ...], MinLen(1)] = (0.0, 0.25, 0.5, 0.75, 1.0)
+    shares: Annotated[tuple[CarShare, ...], MinLen(1)] = (0.0, 0.25, 0.5, 0.75, 1.0)
     """Shares of the drivers who are advised; a greater share contains the drivers of every smaller one."""
-    compliance: Share = 0.5
+    compliance: CarShare = 0.5
     """Probability that a driver follows the advice of a day."""
-    memory: Share = 0.7
+    memory: CarShare = 0.7
     """Weight of all earlier days in what is remembered; the rest is that of the day just over."""
     lag: Annotated[int, Ge(0), Le(30)] = 0
     """Age of the news: how many days pass before a day is in the memory that advises."""

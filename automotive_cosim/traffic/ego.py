@@ -36,7 +36,7 @@ from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.base import EgoPlan, Event, HaltAt
 from automotive_cosim.traffic.instant import Instant
 from automotive_cosim.traffic.profiles import DriverProfile, profile
-from automotive_cosim.traffic.reasons import Reason, View, reason_for
+from automotive_cosim.traffic.reasons import AdviceReason, RoadView, reason_for
 from automotive_cosim.traffic.road_weather import DRY, Forecast, RoadCondition
 
 REACTION_SPREAD = 0.25
@@ -290,7 +290,7 @@ class Driver:
     """When the driver no longer keeps to what was asked or advised."""
     _longest_until_s: float = math.inf
     """When not even for its reason."""
-    _reason: Reason | None = None
+    _reason: AdviceReason | None = None
     """What the last advice on a drive is for, beyond the road here."""
     _search_until_s: float = -math.inf
     """Until when the driver looks for a place to stop, as asked."""
@@ -471,7 +471,7 @@ class Driver:
             kind, goes = ("driver_holds", "no faster than the limit") if self._law_abiding else (GOES_ON, "on")
             yield Event(now.time_s, kind, f"driver goes {goes}; the advised speed has ended")
 
-    def _keep_to_reason(self, reason: Reason, now: Instant) -> Iterator[Event]:
+    def _keep_to_reason(self, reason: AdviceReason, now: Instant) -> Iterator[Event]:
         """Keeps to advice as long as what it is for is there."""
         bounds = self._bounds
         if now.time_s >= self._longest_until_s:
@@ -498,9 +498,9 @@ class Driver:
         words = f"driver will go {kmh:.0f} km/h from {bounds.to_place_m:.0f} m ahead on, {after}"
         return Event(state.time_s, "driver_slows", words)
 
-    def _view(self, state: DrivingState) -> View:
+    def _view(self, state: DrivingState) -> RoadView:
         ahead = state.ahead
-        return View(
+        return RoadView(
             state.speed_mps,
             state.road.limit.mps,
             None if ahead.next_limit is None else ahead.next_limit.mps,

@@ -25,7 +25,7 @@ PASSED_M = 15.0
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class RoadView:
     """What a driver knows of the road; distances in metres, None without such a thing."""
 
     speed_mps: float
@@ -48,13 +48,13 @@ class View:
         return away_m is not None and away_m <= max(WITHIN_M, WITHIN_S * self.speed_mps)
 
 
-class Reason(Protocol):
+class AdviceReason(Protocol):
     """Why a driver keeps to advice."""
 
     to_place_m: float
     """How far its place is; 0 in it, and where it has none."""
 
-    def lasts(self, view: View) -> bool:
+    def lasts(self, view: RoadView) -> bool:
         """Whether it is still there; called at each look."""
         ...
 
@@ -65,8 +65,8 @@ class PoorRoad:
 
     to_place_m: float = 0.0
 
-    def lasts(self, view: View) -> bool:
-        """See ``Reason``."""
+    def lasts(self, view: RoadView) -> bool:
+        """See ``AdviceReason``."""
         return view.is_poor
 
 
@@ -77,8 +77,8 @@ class LowerLimit:
     limit_mps: float
     to_place_m: float
 
-    def lasts(self, view: View) -> bool:
-        """See ``Reason``."""
+    def lasts(self, view: RoadView) -> bool:
+        """See ``AdviceReason``."""
         if view.limit_mps == self.limit_mps:
             self.to_place_m = 0.0
         elif self.to_place_m > 0.0 and view.next_limit_mps == self.limit_mps and view.to_limit_m is not None:
@@ -89,15 +89,15 @@ class LowerLimit:
 
 
 @dataclass(slots=True)
-class StandsAhead:
+class StandingAhead:
     """A breakdown or roadworks ahead, with the lower limit there."""
 
     limit_mps: float | None
     """The limit before it."""
     to_place_m: float
 
-    def lasts(self, view: View) -> bool:
-        """See ``Reason``."""
+    def lasts(self, view: RoadView) -> bool:
+        """See ``AdviceReason``."""
         away_m = view.to_standing_m
         if self.to_place_m > 0.0 and away_m is not None and away_m <= self.to_place_m + PASSED_M:
             self.to_place_m = away_m
@@ -112,23 +112,23 @@ class JamAhead:
 
     to_place_m: float
 
-    def lasts(self, view: View) -> bool:
-        """See ``Reason``."""
+    def lasts(self, view: RoadView) -> bool:
+        """See ``AdviceReason``."""
         self.to_place_m = view.to_jam_m or 0.0
         return view.is_near(view.to_jam_m)
 
 
-def reason_for(kind: AlertKind | None, view: View) -> Reason | None:
+def reason_for(kind: AlertKind | None, view: RoadView) -> AdviceReason | None:
     """What an alert of a kind, or a request for a speed, is for; None if it is for this road as it is."""
     if kind in WEATHER_KINDS:
         return PoorRoad() if view.is_poor else None
-    found: list[Reason] = []
+    found: list[AdviceReason] = []
     if view.to_limit_m is not None and (kind is None or kind in LIMIT_KINDS):
         lower_mps = view.next_limit_mps
         if lower_mps is not None and lower_mps < (view.limit_mps or math.inf):
             found.append(LowerLimit(lower_mps, view.to_limit_m))
     if view.to_standing_m is not None and (kind is None or kind in STANDING_KINDS):
-        found.append(StandsAhead(view.limit_mps, view.to_standing_m))
+        found.append(StandingAhead(view.limit_mps, view.to_standing_m))
     if view.to_jam_m is not None and (kind is None or kind in QUEUE_KINDS):
         found.append(JamAhead(view.to_jam_m))
     near = [reason for reason in found if view.is_near(reason.to_place_m)]

@@ -252,6 +252,15 @@ def test_what_is_true_and_was_just_told_is_a_repeat() -> None:
     assert worths == [Worth.NEUTRAL, Worth.REPEAT, Worth.NEUTRAL]
 
 
+def test_thicker_fog_may_be_told_again_with_a_clearly_lower_speed() -> None:
+    told = [
+        replace(warn(at_s, AlertKind.VISIBILITY), speed_kmh=kmh)
+        for at_s, kmh in ((300.0, 80.0), (320.0, 50.0), (335.0, 45.0))
+    ]
+    worths = [act.worth for act in judged(*told, true=("weather_speed",)).acts]
+    assert worths == [Worth.NEUTRAL, Worth.NEUTRAL, Worth.REPEAT]
+
+
 def test_what_was_just_told_of_another_case_is_no_repeat() -> None:
     """Two vehicles that brake ahead, half a minute apart, and nobody in between."""
 

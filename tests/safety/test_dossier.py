@@ -121,7 +121,7 @@ def test_drives_with_nothing_due_neither_pass_nor_fail(tmp_path: Path) -> None:
     subject = replace(subject, rows=rows)
     assert (len(subject.passed), len(subject.failed), len(subject.nothing_due)) == (0, 1, 5)
     assert failing(subject)[:2] == (1, 1)
-    assert dossier(subject).sentence.endswith("In 5 of them nothing was due.")
+    assert dossier(subject).sentence.endswith("In 5 of the trials nothing was due.")
     nothing = replace(subject, rows=tuple(row for row in rows if not row.missing))
     assert failing(nothing) == (0, 0, 1.0)
     assert claims(nothing).status == "limited"

@@ -120,4 +120,4 @@ def two_ways(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Draw:
 @pytest.fixture(scope="session")
 def small(two_ways: Draw) -> StudyPlan:
     """One drive with one decision."""
-    return StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1)
+    return StudyPlan(str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1)

@@ -65,7 +65,12 @@ def steady(folder: Path) -> dict[str, Json]:
 def plan(two_ways: Draw) -> StudyPlan:
     """Two seeds, two departures, and trips that have nothing to decide."""
     return StudyPlan(
-        str(two_ways(more=MORE_TRIPS)), (0.0, 70.0), seeds=(0, 1), per_drive=2, every_s=20.0, ages_s=(0.0, 600.0)
+        str(two_ways(more=MORE_TRIPS)),
+        departures_s=(0.0, 70.0),
+        seeds=(0, 1),
+        per_drive=2,
+        every_s=20.0,
+        ages_s=(0.0, 600.0),
     )
 
 
@@ -86,7 +91,9 @@ def test_order_and_number_of_workers_do_not_show(plan: StudyPlan, folder: Path, 
 @pytest.mark.slow
 def test_replicates_are_rows_that_come_out_equal_wherever_they_ran(two_ways: Draw, tmp_path: Path) -> None:
     """Also resumed after a kill; cars that dawdle make every draw another one."""
-    plan = StudyPlan(str(two_ways(DAWDLING)), (0.0,), seeds=(0, 1), per_drive=1, least_delay_s=0.0, replicates=3)
+    plan = StudyPlan(
+        str(two_ways(DAWDLING)), departures_s=(0.0,), seeds=(0, 1), per_drive=1, least_delay_s=0.0, replicates=3
+    )
     run_study(plan, tmp_path / "one")
     run_study(plan, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "two") == steady(tmp_path / "one")
@@ -294,7 +301,13 @@ def test_compliance_is_swept_at_the_same_decisions(folder: Path, tmp_path: Path)
 
 def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> None:
     plan = StudyPlan(
-        str(two_ways(JAMMED)), (600.0,), seeds=(0,), per_drive=1, least_delay_s=0.0, placebo_every=0, limit_s=300.0
+        str(two_ways(JAMMED)),
+        departures_s=(600.0,),
+        seeds=(0,),
+        per_drive=1,
+        least_delay_s=0.0,
+        placebo_every=0,
+        limit_s=300.0,
     )
     run_study(plan, tmp_path / "jam")
     study = read_study(tmp_path / "jam")
@@ -304,7 +317,9 @@ def test_gridlocked_traffic_is_kept_apart(two_ways: Draw, tmp_path: Path) -> Non
 
 
 def test_each_share_is_traffic_of_its_own(two_ways: Draw, tmp_path: Path) -> None:
-    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, shares=(0.0, 1.0), placebo_every=0)
+    plan = StudyPlan(
+        str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1, shares=(0.0, 1.0), placebo_every=0
+    )
     run_study(plan, tmp_path / "shares")
     study = read_study(tmp_path / "shares")
     assert [row.share for row in study.rows] == [0.0, 1.0]
@@ -319,7 +334,7 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
     policies = ("never", "always", "delay:3000", "sumo", "best")
     plan = StudyPlan(
         scenario,
-        (0.0,),
+        departures_s=(0.0,),
         seeds=(0,),
         per_drive=1,
         policies=policies,
@@ -355,7 +370,7 @@ def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None
     """Sending nobody along is the ego's branch; sending all along changes it, and nobody is counted twice."""
     plan = StudyPlan(
         str(two_ways(DAWDLING)),
-        (0.0,),
+        departures_s=(0.0,),
         seeds=(0,),
         per_drive=2,
         every_s=10.0,
@@ -380,7 +395,7 @@ def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None
 @pytest.mark.slow
 def test_a_closure_costs_who_would_have_driven_there(two_ways: Draw, tmp_path: Path) -> None:
     """With the other way closed, the ego that wanted to take it drives as if it had not."""
-    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, placebo_every=0, close="back")
+    plan = StudyPlan(str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1, placebo_every=0, close="back")
     run_study(plan, tmp_path / "closed")
     (row,) = read_study(tmp_path / "closed").rows
     assert not row.error
@@ -405,7 +420,7 @@ def test_a_closure_needs_an_edge(two_ways: Draw) -> None:
 def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways: Draw, tmp_path: Path) -> None:
     plan = StudyPlan(
         str(two_ways()),
-        (0.0,),
+        departures_s=(0.0,),
         seeds=(0,),
         per_drive=1,
         placebo_every=0,
@@ -433,7 +448,7 @@ def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways
 
 
 def test_an_emission_class_that_sumo_lacks_is_named(two_ways: Draw, tmp_path: Path) -> None:
-    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, ego_class="Steam/big")
+    plan = StudyPlan(str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1, ego_class="Steam/big")
     run_study(plan, tmp_path / "steam", retries=0)
     (row,) = read_study(tmp_path / "steam").rows
     assert "Steam/big" in (row.error or "")
@@ -446,7 +461,9 @@ def test_seeds_are_added_only_until_enough_is_known(
     """Without chance every seed finds the same gain, so the fewest that an interval takes are enough: four here."""
     monkeypatch.setattr(batch, "LEAST_SEEDS", 4)
     monkeypatch.setattr(intervals, "LEAST_SEEDS", 4)
-    plan = StudyPlan(str(two_ways()), (0.0,), seeds=tuple(range(8)), per_drive=1, placebo_every=0, half_width_s=1.0)
+    plan = StudyPlan(
+        str(two_ways()), departures_s=(0.0,), seeds=tuple(range(8)), per_drive=1, placebo_every=0, half_width_s=1.0
+    )
     run_study(plan, tmp_path / "until", executor=Processes(2))
     assert {row.seed for row in read_study(tmp_path / "until").rows} == set(range(4))
 
@@ -487,7 +504,7 @@ def test_an_agent_gains_what_its_taps_do_and_one_that_does_nothing_changes_nothi
     policies = ("never", "always", "agent:mine:Idle", "agent:mine:Taps")
     plan = StudyPlan(
         str(two_ways()),
-        (0.0,),
+        departures_s=(0.0,),
         seeds=(0,),
         per_drive=1,
         policies=policies,
@@ -555,7 +572,7 @@ def test_the_reference_agents_get_there_faster(two_ways: Draw, tmp_path: Path) -
     """They hear the question, open the map and tap: the car takes the way that the news called quicker."""
     names = ("t3a", "asurada")
     policies = ("never", "always", "best", *(f"agent:{name}" for name in names))
-    plan = StudyPlan(str(two_ways()), (0.0,), seeds=(0,), per_drive=1, policies=policies)
+    plan = StudyPlan(str(two_ways()), departures_s=(0.0,), seeds=(0,), per_drive=1, policies=policies)
     run_study(plan, tmp_path / "agent")
     study = read_study(tmp_path / "agent")
     (point,) = study.decisions
@@ -664,7 +681,13 @@ def test_a_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:
 def test_a_sumo_configuration_is_studied_as_it_is_between_places(two_ways: Draw, tmp_path: Path) -> None:
     configuration = two_ways() / "two.sumocfg"
     plan = StudyPlan(
-        str(configuration), (0.0,), seeds=(0,), per_drive=1, from_place="access", to_place="exit", least_delay_s=0.0
+        str(configuration),
+        departures_s=(0.0,),
+        seeds=(0,),
+        per_drive=1,
+        from_place="access",
+        to_place="exit",
+        least_delay_s=0.0,
     )
     plan.check()
     before = {path.name: path.read_bytes() for path in configuration.parent.iterdir()}

@@ -76,10 +76,16 @@ def answer(study: CongestionStudy) -> str:
         if f"{found.travel_time:.2f}" != f"{after.travel_time:.2f}"
         else f"the travel time index stays at {after.travel_time:.2f}"
     )
+    cut = sum(outcome.cut_short for _, outcome in study.outcomes(best))
+    lacks = (
+        f"; {counted(cut, 'trip')} ended before the closed road, and the rest of their way is in no figure"
+        if cut
+        else ""
+    )
     return (
         f"“{name_of(best)}”{of} {_told(total)}: {abs(lost_h):.1f} {'more' if lost_h >= 0 else 'fewer'} are lost in "
         f"congestion{share} and detours take {abs(detours_h):.1f} {'more' if detours_h >= 0 else 'fewer'}; "
-        f"{index}, {over}."
+        f"{index}, {over}{lacks}."
     )
 
 
