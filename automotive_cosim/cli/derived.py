@@ -13,7 +13,7 @@ import typer
 
 from automotive_cosim.cli.batches import numbers_in, whole_numbers_in, words
 from automotive_cosim.formats.docs import inherited_field_docs
-from automotive_cosim.formats.options import plain_name, shown_as
+from automotive_cosim.formats.options import option_name, shown_as
 
 F = TypeVar("F", bound=Callable[..., Any])
 
@@ -62,11 +62,10 @@ def _parameters(kind: type) -> Iterator[inspect.Parameter]:
 
 def _parameter(each: Field[Any], hint: Any, text: str) -> inspect.Parameter:
     option, bare = shown_as(hint), _bare(hint)
-    named = f"--{option.name or plain_name(each.name)}"
     given: Any = bool if bare is bool else list[str] if option.repeats else str
     told = option.default or _told(each.default)
     made = typer.Option(
-        named,
+        f"--{option_name(each.name, hint)}",
         help=text.replace("`", ""),
         metavar=None if bare is bool or option.repeats else _form(bare),
         show_default=told or ("none" if option.repeats else False),
@@ -114,14 +113,14 @@ def _told(default: Any) -> str:
 
 
 def _value(name: str, hint: Any, given: Any) -> Any:
-    bare, option = _bare(hint), plain_name(name)
+    bare = _bare(hint)
     if isinstance(given, list):
         return tuple(given)
     if not isinstance(given, str):
         return given
     if (item := _item(bare)) is not None:
         read: Any = {int: whole_numbers_in, float: numbers_in}.get(item, words)
-        return tuple(read(shown_as(hint).name or option, given))
+        return tuple(read(option_name(name, hint), given))
     with suppress(ValueError):
         return bare(given) if bare in (int, float) else given
     return given

@@ -400,8 +400,8 @@ class _Bench:
         something has supported it ever since."""
         about = min(supported, key=lambda kind: len(kind.alerts)).name if supported else ""
         told_s = self.alerted_s.get(act.alert) if act.alert is not None else None
-        recent = told_s is not None and act.time_s - told_s < REPEAT_S and not self._is_slower(act)
-        if told_s is not None and recent and self._lasts(meant, told_s, act.time_s):
+        recent = told_s is not None and act.time_s - told_s < REPEAT_S
+        if told_s is not None and recent and not self._is_slower(act) and self._lasts(meant, told_s, act.time_s):
             reason = f"told {act.time_s - told_s:.0f} s before"
             return JudgedAct(act.time_s, act.words, Worth.REPEAT, about, reason)
         return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, about)

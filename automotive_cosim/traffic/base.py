@@ -89,6 +89,11 @@ class EgoPlan:
     settles_s: float = 0.0
     """Over how many seconds the road takes on the grip of other weather; by default at once."""
 
+    @property
+    def advice_ends(self) -> bool:
+        """Whether what was asked or advised ends, as on a drive."""
+        return self.advice_s < math.inf
+
 
 @dataclass(frozen=True, slots=True)
 class Event:

@@ -355,7 +355,7 @@ class Driver:
             if due:
                 self._intents = [intent for intent in self._intents if intent not in due]
                 events += tuple(event for intent in due for event in self._act(intent, now.state))
-        if self.plan.advice_s < math.inf:
+        if self.plan.advice_ends:
             events += tuple(self._end_advice(now))
         if now.time_s >= self._corridor_until_s:
             self._corridor_until_s = math.inf
@@ -390,14 +390,14 @@ class Driver:
                 return tuple(self._heed(request, state, f"{after} the alert"))
             case SlowDown(speed_kmh):
                 limit_mps = state.road.limit.mps
-                if self.plan.advice_s < math.inf and takes_back(speed_kmh, state):
+                if self.plan.advice_ends and takes_back(speed_kmh, state):
                     return (self._release(state.time_s, f"advice taken back, {after} the request"),)
                 self._keep_to(None, state)
                 if self._reason is not None:
                     return (self._name(speed_kmh / KMH_PER_MPS, state, f"{after} the request"),)
                 self._bounds.asked, self._bounds.asked_under = speed_kmh / KMH_PER_MPS, limit_mps
                 return (self._slows(state, f"{after} the request"),)
-            case PullOver() if self.plan.advice_s < math.inf:
+            case PullOver() if self.plan.advice_ends:
                 self._search_until_s = state.time_s + SEARCH_S
                 return (Event(state.time_s, "driver_pulls_over", f"driver looks for a place to stop, {after} it"),)
             case PullOver():
@@ -440,7 +440,7 @@ class Driver:
     def _is_told_to_stop(self, alert: Alert) -> bool:
         """By the red warning of the car itself: a leaking tyre, an open tailgate."""
         is_red = alert.kind is AlertKind.VEHICLE and alert.severity is Severity.CRITICAL
-        return is_red and self.plan.advice_s < math.inf
+        return is_red and self.plan.advice_ends
 
     def _end_advice(self, now: Instant) -> Iterator[Event]:
         """Stops where asked to, and drives as before once what was asked or advised has ended."""
@@ -484,7 +484,7 @@ class Driver:
     def _keep_to(self, kind: AlertKind | None, state: DrivingState) -> None:
         """Keeps to advice from now on: two minutes, or on a drive as long as its reason is there."""
         self._advised_until_s = state.time_s + self.plan.advice_s
-        if self.plan.advice_s < math.inf:
+        if self.plan.advice_ends:
             self._reason = reason_for(kind, self._view(state)) or self._reason
             self._longest_until_s = state.time_s + LONGEST_ADVICE_S
 
@@ -529,8 +529,7 @@ class Driver:
             if pedals.change_lane(1, MOVE_OVER_S):
                 return Event(state.time_s, "driver_moves_over", f"driver goes one lane away from the kerb, {after}")
             limit_mps = state.road.limit.mps or state.speed_mps
-            on_drive = self.plan.advice_s < math.inf
-            slowest_mps = PASS_SHARE * limit_mps if on_drive else SLOWEST_MOVE_OVER_MPS
+            slowest_mps = PASS_SHARE * limit_mps if self.plan.advice_ends else SLOWEST_MOVE_OVER_MPS
             speed_mps = max(slowest_mps, limit_mps - MOVE_OVER_MPS)
             if alert.speed_kmh is not None:
                 speed_mps = alert.speed_kmh / KMH_PER_MPS
@@ -618,7 +617,7 @@ class Driver:
             self._condition = condition
             self._choose_speed()
             self.pedals.set_grip(condition.friction)
-            if self.plan.advice_s < math.inf:
+            if self.plan.advice_ends:
                 self.pedals.set_traction(condition.friction)
             self.pedals.set_headway(self._headway_s * self._adapted(condition.headway_ratio))
 

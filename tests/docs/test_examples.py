@@ -61,6 +61,14 @@ def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(ev
     assert worse.returncode == 1, worse.stderr
     assert ElementTree.parse(tmp_path / "second/compare.xml").findall(".//failure")
     assert "**Lost" in (tmp_path / "second/compare.md").read_text(encoding="utf-8")
+    agent.write_text(
+        "class Careful:\n    def reset(self, goal): raise ValueError('no config')\n    def act(self, seen): ...\n",
+        encoding="utf-8",
+    )
+    alone = evaluate("checkout", "checkout/plan.toml", "third")
+    assert alone.returncode == 1, alone.stderr
+    told = (tmp_path / "third/compare.md").read_text(encoding="utf-8")
+    assert "No agent succeeds, neither before nor after" in told
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a script for bash")

@@ -23,6 +23,7 @@ from automotive_cosim.drives.driver import IN_FORCE_S, SETS_OFF, STOPS
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
 from automotive_cosim.drives.events.law import REACTION_S, certain, may_say, seen, speed_kmh, time_left_s
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
+from automotive_cosim.traffic.ego import EASING_MPS2
 
 NEAR_M = 500.0
 """A tunnel is announced on the map from this distance."""
@@ -39,8 +40,6 @@ STANDS_FROM_MPS = 5.0
 """Slower than this nothing is due for it."""
 PASS_SHARE = 0.6
 """A car passes what stands at the roadside at this share of its speed."""
-GENTLE_MPS2 = 1.5
-"""How hard a driver brakes who is warned in time (``traffic.ego.EASING_MPS2``)."""
 CLOSE_S = 1.0
 """A time gap below this leaves no time to react (mean reaction 1.1 s)."""
 GAP_HOLD_S = 3.0
@@ -154,7 +153,7 @@ class JamTail(EventKind):
 
 def _urgency(away_m: float, mps: float, to_mps: float) -> float:
     """How hard the car must brake by now, as a share of braking gently; 1 as long as that is enough."""
-    return max(1.0, (mps**2 - to_mps**2) / (2 * max(away_m, 1.0)) / GENTLE_MPS2)
+    return max(1.0, (mps**2 - to_mps**2) / (2 * max(away_m, 1.0)) / EASING_MPS2)
 
 
 class RearEnd(EventKind):
