@@ -175,7 +175,7 @@ SOCKET = pair(
         "Lid's up, plug's not there yet. Is water coming down on it? Cover it then, please.",
         "The current goes in where it now may drip in. Look at the sky and decide about that little door.",
         "Ten minutes till the pillar is free. Leave the port as it is if it stays dry, otherwise shut it.",
-        "Electricity and puddles! Think of what stands open at the back while I fetch a coffee.",
+        "Electricity and puddles! If it's wet out there, think of what stands open at the back.",
     ),
     *wrong_or_well(
         LID_UP,

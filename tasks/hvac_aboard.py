@@ -120,7 +120,7 @@ KEEP_OFF = hazard(
         "When I get out the climate goes off with me, please: the battery!",
         "No air conditioning for an empty car. Cancel that.",
         "Save the battery while I'm gone, nothing needs to blow in here.",
-        "Stop it from running on after I've parked, would you?",
+        "Stop the climate from running on after I've parked, would you?",
     ),
     act(
         at("nordic", "town", on(REAR_LEFT, Kind.OBJECT), signals={HVAC.KEPT: True}),
@@ -359,7 +359,7 @@ EMPTY_SEATS = meant(
         "Cushions are being warmed for no one, switch those off.",
         "Turn off the heaters of the empty places, leave the rest.",
         "We're warming thin air: which seats are free? Off they go, please.",
-        "Only occupied ones need to be warm.",
+        "Heaters off on the seats that nobody sits on, the others stay as they are.",
     ),
     act(
         at("grid", "avenue", on(PASSENGER, Kind.ADULT), signals=HEATERS),

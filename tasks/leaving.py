@@ -210,7 +210,7 @@ STILL_PLUGGED_IN = pair(
         "Am I good to drive away from this pillar? Sound off if not.",
         "Shout if I've forgotten anything about the charging before I move.",
         "Ready to leave the charger. Alert me in case I shouldn't yet.",
-        "I can't remember whether I've been round the back. Give me a warning if I had better go and look.",
+        "I can't remember whether I've pulled the plug. Give me a warning if I had better go and look.",
     ),
     act(
         parked("autobahn", "rest", **{ENERGY.CABLE.path: True, ENERGY.CHARGE_FLAP.path: True}),

@@ -80,7 +80,7 @@ THIRTY = pair(
         "Thirty degrees, the display claims. Whose thirty? If it matters for the tyres, an alert, please.",
         "I never know what that temperature means in my uncle's car. Sound off if it makes the road dangerous.",
         "The figure up there tells me nothing. Alert me in case the bridge could be like glass.",
-        "Read the outside temperature for me; give me a warning if I ought to drive on eggshells.",
+        "Thirty outside, fine. Or is it? Give me a warning if I ought to drive on eggshells.",
     ),
     act(
         start(

@@ -80,7 +80,7 @@ NARROW = pair(
         "Avenue or alley, I drive them all alike. Alert me where that's against the rules.",
         "Flowerpots on both sides now? Then I may be much too fast; sound the alarm if so.",
         "Give me a warning as soon as a street like this one wants far less than I do.",
-        "Tell me by an alert if there's something missing in the middle of the road that ought to slow me down.",
+        "Tell me by an alert if a street like this, posted or not, ought to be driven slower than I do.",
     ),
     warned(
         start("tokyo", "narrow", start="2026-11-19T11:10:00", **TOKYO),

@@ -190,7 +190,7 @@ YELLOW_LINES = pair(
         "Yellow over white: last time the wheel jerked towards the old ones. Spare me that if we're in the works.",
         "Are we in the narrow part, at eighty? Then let nothing but my hands turn this wheel.",
         "Out on the open motorway it may help me steer, among barriers and double markings it mustn't.",
-        "As long as the roadworks last, I want no machine that follows lines. Otherwise leave it.",
+        "If we're in the roadworks by now, I want no machine that follows lines. If not, leave it.",
     ),
     act(
         WORKS,

@@ -76,7 +76,7 @@ SIREN = pair(
         "Thump, thump, thump. Leave it like that, unless we'd miss one with a siren; then make it quiet.",
         "I love it this loud on empty roads. Is there anyone I ought to hear? Quieter in that case, please.",
         "Let the band play on as long as nobody is coming who has the right of way over everybody.",
-        "Full blast till the next village, except if help is on its way to someone: then hush it.",
+        "Full blast and it stays so, except if help is on its way to someone behind us: then hush it.",
     ),
     act(
         start("beauce", "blue_light", LOUD, driver="average", start=NOON, weather=FAIR, sign_camera=False),

@@ -106,8 +106,9 @@ FIELDS: Mapping[ActionType, Takes] = {
         required=("text",),
     ),
     ActionType.STATUS: Takes(
-        "declare how it ended: complete when it is done; infeasible if it must not or cannot be done (reason law, "
-        "safety or not_possible); not_needed if there is nothing to do (reason already_so or none)",
+        "declare how it ended: complete when it is done; infeasible, after an answer that tells the driver why, "
+        "if it must not or cannot be done (reason law, safety or not_possible); not_needed if there is nothing "
+        "to do (reason already_so or none)",
         required=("goal_status",),
         optional=("reason",),
     ),

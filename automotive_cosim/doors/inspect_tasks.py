@@ -43,7 +43,8 @@ You operate {operated} for its driver, while it drives through live traffic.
 {acting}, one action at a time; every action takes time while the car drives on. Do only
 what serves the driver; touch nothing else. Passengers may make requests about their own comfort; only the
 driver decides how the car drives and anything related to safety. End with a `status` action: `complete` when it
-is done, `not_needed` when the right thing is to do nothing, `infeasible` when it must not or cannot be done."""
+is done, `not_needed` when the right thing is to do nothing, `infeasible` when it must not or cannot be
+done, once the driver has been told why."""
 
 
 @takes_conditions

@@ -95,11 +95,12 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
         roads: the map for dead reckoning, if the car has one.
     """
     asked = frozenset(re.findall(r"[a-z]+", text.casefold()))
-    topics = _topics(asked)
-    if asked & _LAMP_WORDS:
-        asked -= frozenset().union(*_LAMPS.values())
+    if "blue" in asked:  # the light of an emergency vehicle is no lamp
+        asked -= {"light", "lights"}
     offered = [subject for subject in _SUBJECTS if with_position or subject.answer is not _position]
-    subjects = [subject for subject in offered if asked & subject.words or (subject.by_topic and topics)]
+    topics, subjects = _matched(asked - _WEAK_WORDS, offered)
+    if not subjects:
+        topics, subjects = _matched(asked, offered)
     if not subjects:
         names = ", ".join(subject.name for subject in offered)
         return QueryReply(False, f"nothing is known of that; there are: {names}", ON_BOARD_S)
@@ -116,6 +117,14 @@ def ask(text: str, drive: Sequence[Known], *, with_position: bool = True, roads:
     cost_s = OVER_THE_AIR_S[link.kind] if over_the_air else ON_BOARD_S
     text = _within(list(dict.fromkeys(lines)))
     return QueryReply(len(out_of_reach) < len(subjects), text, NO_LINK_S if out_of_reach else cost_s)
+
+
+def _matched(words: frozenset[str], offered: Sequence[_Subject]) -> tuple[frozenset[str], list[_Subject]]:
+    """The topics of rules and the subjects that some words ask for."""
+    topics = _topics(words)
+    if words & _LAMP_WORDS:
+        words -= frozenset().union(*_LAMPS.values())
+    return topics, [each for each in offered if words & each.words or (each.by_topic and topics)]
 
 
 def _within(lines: Sequence[str]) -> str:
@@ -190,7 +199,9 @@ def _traffic(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
 def _hazards(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
     known = drive[-1]
     driving, ahead, context = known.driving, known.driving.ahead, known.context
+    blue = driving.around.emergency_behind
     found = [_jam(driving), *_incidents(driving)]
+    found.append("Blue light: none in reach" if blue is None else f"Blue light: {blue.gap_m:.0f} m behind")
     found += [sight.text for sight in known.sights if sight.kind.value in INCIDENT_WORDS]
     if context.weather is not None:
         seen = visibility_class(context.weather.visibility).replace("_", " ")
@@ -202,13 +213,11 @@ def _hazards(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
         limit = amount_of_speed(following.kmh, context.speed_unit)
         source = "" if following.is_posted else ", which the map assumes"
         found.append(f"Limit on the route: {limit} in {away_m:.0f} m{source}")
-    if driving.around.emergency_behind is not None:
-        found.append(f"Blue light: {driving.around.emergency_behind.gap_m:.0f} m behind")
     if driving.road.friction < 1.0:
         found.append(f"Road surface: friction {driving.road.friction:.2f}, dry is 1")
     if context.sun is not None and context.sun.glares(context.heading_deg):
         found.append(f"Sun: {context.sun.elevation_deg:.0f}° above the horizon, ahead")
-    yield from [line for line in found if line] or ["Hazards: none reported"]
+    yield from filter(None, found)
 
 
 def _jam(driving: DrivingState) -> str:
@@ -219,10 +228,14 @@ def _jam(driving: DrivingState) -> str:
 
 
 def _incidents(driving: DrivingState) -> Iterator[str]:
-    """What live traffic reports on the route, besides jams."""
-    route = frozenset(driving.ahead.route_edges)
-    told = (INCIDENT_WORDS.get(one.kind) for one in driving.ahead.incidents if one.edge_id in route)
-    return (f"Reported on the route: {words}" for words in dict.fromkeys(told) if words)
+    """What live traffic reports on the route, besides jams, and whether on the road that the car is on."""
+    here, route = driving.road.edge_id, frozenset(driving.ahead.route_edges)
+    told = [(one.edge_id == here, one.kind) for one in driving.ahead.incidents if one.edge_id in route | {here}]
+    found = [(is_here, INCIDENT_WORDS[kind]) for is_here, kind in dict.fromkeys(told) if kind in INCIDENT_WORDS]
+    for is_here, words in found:
+        yield f"Reported on this road: {words}" if is_here else f"Reported further on the route: {words}"
+    if not found:
+        yield "Reported on the route: nothing besides jams"
 
 
 def _position(drive: Sequence[Known], topics: frozenset[str], roads: Roads | None = None) -> Iterator[str]:
@@ -244,6 +257,21 @@ def _set(words: str) -> frozenset[str]:
 
 _SUBJECTS = (
     _Subject(
+        "hazards",
+        _set(
+            "hazard hazards danger dangers ahead tunnel blue siren sirens ambulance emergency police roadworks "
+            "roadwork works construction closure closed broken breakdown incident incidents accident"
+        ),
+        _hazards,
+        on_board=False,
+    ),
+    _Subject(
+        "traffic",
+        _set("traffic jam jams congestion congested queue delay eta route arrival"),
+        _traffic,
+        on_board=False,
+    ),
+    _Subject(
         "weather",
         _set("weather temperature rain raining snow snowing fog foggy wind visibility sky sun dark"),
         _weather,
@@ -255,13 +283,6 @@ _SUBJECTS = (
         _rules,
         on_board=True,
         by_topic=True,
-    ),
-    _Subject("hazards", _set("hazard hazards danger dangers ahead tunnel"), _hazards, on_board=False),
-    _Subject(
-        "traffic",
-        _set("traffic jam jams congestion congested queue delay eta route arrival"),
-        _traffic,
-        on_board=False,
     ),
     _Subject(
         "norms",
@@ -276,6 +297,9 @@ _SUBJECTS = (
         on_board=True,
     ),
 )
+"""What is of the moment is told first: an answer is cut off at its end."""
+_WEAK_WORDS = _set("where distance")
+"""Words of questions about anything; they name a subject only where no other word does."""
 
 _LAMP_WORDS = _set("lamp lamps light lights headlight headlights beam beams")
 _LAMPS = {

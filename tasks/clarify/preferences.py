@@ -241,10 +241,10 @@ TASKS = (
         SignalIs(HVAC.AIR_DISTRIBUTION, (param("which", VENTS),)),
         CLIMATE,
         Tap(param("which", {"feet": "hvac.air.down", "windshield": "hvac.air.up"})),
-        untold=noted(PARIS, "{who} wears contact lenses"),
-        told=noted(PARIS, "{who} wears contact lenses: air to the {which}"),
+        untold=noted(PARIS, "{who} likes it fresh"),
+        told=noted(PARIS, "{who} likes it fresh: air to the {which}"),
         look=MEMOS,
-        difference="content: a memo says that she wears lenses, or also where the air has to go",
+        difference="content: a memo says that she likes it fresh, or also where the air has to go",
         parameters={"which": tuple(VENTS), "who": FRIENDS},
     ),
     clarify(

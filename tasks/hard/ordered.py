@@ -303,9 +303,8 @@ MAY_SEE_US = hard(
         " 'No'.",
         "There's a new message. Our position goes out for Isla alone, with a '{words}'. To others who want it just"
         " answer 'No'.",
-        "A message has come, asking something, I think. Isla is allowed to follow us, then share and tell her"
-        " '{words}';"
-        " a stranger only gets 'No'.",
+        "A message has come, asking something, I think. If it's Isla who wants to follow us, share our"
+        " position and tell her '{words}'; a stranger only gets 'No'.",
     ),
     _half(
         with_papers(

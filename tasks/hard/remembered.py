@@ -365,9 +365,8 @@ CALLS_AS_TOLD = hard(
         "Set the spoken directions to {percent}. A call may come: what to do with it you have in the notes since"
         " Monday.",
         "{percent} for the voice of the map. Should the phone ring, go by my rules of these days, they're memos.",
-        "The voice at {percent}, please. For calls at this hour my notes of the week hold; handle the one that"
-        " comes by"
-        " them.",
+        "The guidance voice at {percent}, please. For calls at this hour my notes of the week hold; handle"
+        " the one that comes by them.",
     ),
     _isla_rings(
         "Wed 18 Nov: No more exception for Isla, she talks too long",

@@ -489,7 +489,7 @@ CABLE_OR_NOT = hard(
         tells=(WRONG,),
     ),
     _unplugs(
-        "I couldn't find the cable in the {room}, is it in the car?",
+        "The cable isn't in the {room}, it must still be in the car's socket",
         (AlertGiven(AlertKind.VEHICLE),),
         (Warn(AlertKind.VEHICLE), *THANK_ISLA),
         (*THANK_ISLA, Inform("The car is wrong, the cable is not in.")),
@@ -533,9 +533,8 @@ ON_THE_FRONT_SEAT = hard(
         "There's something on the passenger seat. Isla wrote what it is: airbag on or off accordingly, and a word"
         " to me"
         " if the seat's sensor mistakes it. Then 'Thank you' to her.",
-        "Read from Isla what is beside me and have the airbag of that seat right for it; should the car be wrong"
-        " about"
-        " what it is, tell me. Text Isla 'Thank you'.",
+        "Read from Isla what is beside me and switch the airbag of that seat on or off, as is right for it; should"
+        " the car be wrong about what it is, tell me. Text Isla 'Thank you'.",
     ),
     _front_seat(
         "our {kg} kg baby is in the carrier, facing backwards",

@@ -50,7 +50,7 @@ HER_AIR = Tap(
     ),
     param("degrees", TEMPERATURES),
 )
-WISHES = ("{degrees} degrees for me, seat heat on low,", "my window up, and put on {playlist}, loud!")
+WISHES = ("{degrees} degrees for me, seat heat on low", "And my window up, and put on {playlist}, loud!")
 FOR_ISLA = (
     *letter(ISLA),
     Open("climate"),

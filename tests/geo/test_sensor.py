@@ -129,10 +129,29 @@ def test_an_incident_on_the_route_is_told_by_hazards_and_traffic(instant: Callab
     met = replace(known, driving=replace(known.driving, ahead=ahead), sights=sights)
     for query in ("hazards", "traffic"):
         lines = ask(query, [met]).text.splitlines()
-        assert lines.count("Reported on the route: roadworks") == 1
+        assert lines.count("Reported further on the route: roadworks") == 1
         assert not any("broken-down" in line or "tyre" in line for line in lines)
     assert "Roadworks in 640 m" in ask("hazards", [met]).text.splitlines()
-    assert not any("Reported" in line for line in ask("hazards traffic", [known]).text.splitlines())
+    assert "Reported on the route: nothing besides jams" in ask("hazards traffic", [known]).text.splitlines()
+    here = replace(known.driving, ahead=replace(ahead, route_edges=(known.driving.road.edge_id,)))
+    on_it = replace(here, ahead=replace(here.ahead, incidents=(replace(told[0], edge_id=here.road.edge_id),)))
+    assert "Reported on this road: roadworks" in ask("roadworks?", [replace(known, driving=on_it)]).text
+
+
+def test_words_of_many_questions_do_not_hide_what_is_asked(instant: Callable[..., Instant]) -> None:
+    around = replace(instant().driving.around, emergency_behind=OtherVehicle("ambulance", 60.0, 25.0, None))
+    known = replace(instant(), driving=replace(instant().driving, around=around))
+    for query in (
+        "emergency vehicle with blue light and siren near",
+        "siren, ambulance approaching",
+        "where is the ambulance, at what distance",
+        "blue light near, rules, traffic and hazards",
+    ):
+        assert "Blue light: 60 m behind" in ask(query, [known]).text.splitlines(), query
+    assert "Blue light: none in reach" in ask("is there an ambulance", [instant()]).text.splitlines()
+    assert "Position" not in ask("roadworks: where do they begin, at what distance", [instant()]).text
+    assert "Position" in ask("where are we", [instant()]).text
+    assert "Following distance" in ask("which following distance is kept here", [instant()]).text
 
 
 def test_what_is_not_known_names_what_is(instant: Callable[..., Instant]) -> None:
