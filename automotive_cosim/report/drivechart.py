@@ -11,7 +11,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.drives.faults import clock
+from automotive_cosim.drives.faults import beside, clock, label
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -97,7 +97,7 @@ def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:
         rows = len(kinds) + 2
         axes.set_ylim(rows - 0.3 + below_in / ROW_IN, -0.7)
         axes.set_yticks(range(rows), ["acts", "wakes", *(kind.replace("_", " ") for kind in kinds)])
-        _events(axes, row.events, kinds, end_s)
+        _events(axes, row, kinds, end_s)
         _acts(axes, row, end_s * NUMBER_IN / width_in)
         _say_unwatched(axes, timeline, rows)
         for time_s, _ in timeline.get("wakes", ()):
@@ -168,7 +168,8 @@ def _told(number: int, act: JudgedAct, events: Sequence[JudgedEvent], timeline: 
         if act.time_s <= time_s <= act.time_s + ANSWER_S
     ]
     what = f"{act.worth}" + (f": {act.about.replace('_', ' ')}" if act.about else "")
-    what += f" ({act.reason})" if act.reason else ""
+    reasons = "; ".join(filter(None, (act.reason, *beside(act, events))))
+    what += f" ({reasons})" if reasons else ""
     if act.worth is Worth.RIGHT and _came_to_nothing(act, events):
         what += ", which was never due: no point"
     return f"{number}. {clock(act.time_s)} {act.words}: {what}" + (f"; {answers[0]}" if answers else "")
@@ -207,8 +208,8 @@ NAMED = frozenset(
 """Outcomes that stand beside their bars, in words."""
 
 
-def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str], end_s: float) -> None:
-    for event in events:
+def _events(axes: Axes, row: DriveTrialRow, kinds: Sequence[str], end_s: float) -> None:
+    for event in row.events:
         if event.kind not in kinds:
             continue
         place = kinds.index(event.kind) + 2
@@ -235,7 +236,7 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str], end
             right = event.observable_s + length_s < 0.85 * end_s
             at_s = event.observable_s + (length_s if right else 0.0)
             axes.annotate(
-                str(event.outcome),
+                label(event, row.acts),
                 (at_s, place),
                 (5 if right else -5, 0),
                 textcoords="offset points",

@@ -128,7 +128,8 @@ def _faults(drives: Sequence[DriveTrialRow]) -> Table:
     more = len(every) - len(lines)
     note = (
         "When: minutes and seconds since departure at which something was due, or the agent acted. Why: what was "
-        "there, and until when there was time; of a needless act, what speaks against it of what could be known."
+        "there, from when to when something was due, and what came; of a needless act, what speaks against it of "
+        "what could be known, and when it would have been right."
         + (f" {more} more are in the trials of the data." if more else "")
     )
     heads = "Drive", "When", "What", "Event or act", "Why"
