@@ -103,7 +103,7 @@ def search(
     from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.record import write_whole
-    from automotive_cosim.safety.budget import LAID, SearchBudget
+    from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
     from automotive_cosim.safety.findings import as_json as findings_json
     from automotive_cosim.safety.hunt import hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
@@ -151,13 +151,10 @@ def search(
             return
         margin = "nothing was due" if last.nothing_due else "not judged"
         margin = margin if last.margin is None else f"margin {last.margin:+.2f}"
-        count, left = f"{found.run}", ""
-        if may_use.points:
-            each_s = (run.limit.used_s() - used_s) / run.ran if run.ran else 0.0
-            left_s = each_s * (may_use.points - found.run)
-            count += f" of {may_use.points}"
-            left = f"; about {counted(round(left_s / 60), 'minute')} left for the points" if left_s >= 60 else ""
-        console.print(f"{count}; {margin}; {counted(len(found.minimal), 'minimal failure')}{left}", soft_wrap=True)
+        now_s = run.limit.used_s()
+        each_s = (now_s - used_s) / run.ran if run.ran else 0.0
+        told = progress_in_words(may_use, found.run, now_s, each_s)
+        console.print(f"{told}; {margin}; {counted(len(found.minimal), 'minimal failure')}", soft_wrap=True)
 
     with where, trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s) as run:
 
@@ -229,8 +226,11 @@ def _told_before(
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.safety.forecast import RUNS_A_FAILURE, of_a_failure, search_forecast
 
+    if may_use.hours is not None:
+        minutes = counted(round(60 * may_use.hours), "minute")
+        yield f"{minutes} at most, with earlier starts: no run begins after that"
     if may_use.points is None:
-        yield f"until the budget is spent; results in {folder}"
+        yield f"as many points as the budget allows; results in {folder}"
     else:
         known = len(read_trials(folder)) if (folder / "manifest.json").is_file() else 0
         needs = search_forecast(space, plan, max(0, may_use.points - known), workers)

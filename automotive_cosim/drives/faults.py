@@ -33,6 +33,8 @@ class Fault:
     """The kind of event, or the act, in words."""
     why: str
     """The fact, from when to when something was due, and what came; or what speaks against the act."""
+    kind: str = ""
+    """The kind of event; empty for an act."""
 
     @property
     def line(self) -> str:
@@ -104,7 +106,7 @@ def _of_event(event: JudgedEvent, acts: Sequence[JudgedAct]) -> Fault:
     if event.outcome is EventOutcome.MISSED and kind is not None and kind.alerts:
         *others, last = (alert.replace("_", " ") for alert in sorted(kind.alerts))
         told.append(f"right: an alert of {', '.join(others)}{' or ' if others else ''}{last}")
-    return Fault(_due_s(event), str(event.outcome), event.kind.replace("_", " "), _joined(*told))
+    return Fault(_due_s(event), str(event.outcome), event.kind.replace("_", " "), _joined(*told), event.kind)
 
 
 def _due_s(event: JudgedEvent) -> float:

@@ -138,6 +138,17 @@ class FailureRule:
     ttc_below_s: Annotated[float, Ge(0)] | None = None
     """Fails too if the time to collision with the vehicle in front was ever below this."""
 
+    @property
+    def words(self) -> str:
+        """What counts as a failure of a drive, in words."""
+        kinds = ", ".join(self.events).replace("_", " ")
+        of_kinds = f"an event that was not met in time, of these kinds alone: {kinds}"
+        every = of_kinds if self.events else "an event of any kind that was not met in time, or a nuisance"
+        if self.drive_value_below is not None:
+            every = f"a value below {self.drive_value_below:g}"
+        near = f", or a time to collision below {self.ttc_below_s:g} s" if self.ttc_below_s is not None else ""
+        return f"{every}{near}"
+
 
 @dataclass(frozen=True, slots=True)
 class Space:
