@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import counted, rounded
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
@@ -47,7 +47,7 @@ class UnseenBound:
 
 def percent(share: float) -> str:
     """A share in words."""
-    return f"{100 * share:.0f} %" if share >= 0.1 else f"{100 * share:.2g} %"
+    return f"{100 * share:.0f} %" if share >= 0.1 else f"{rounded(100 * share, 2)} %"
 
 
 def judged(tried: Sequence[Tried]) -> list[Tried]:

@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from annotated_types import Ge, Le
 
+from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -299,4 +300,4 @@ def told(value: FactorValue) -> str:
     """A value in words."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:g}" if isinstance(value, int | float) else str(value)
+    return rounded(value, 6).replace(",", "") if isinstance(value, int | float) else str(value)

@@ -12,9 +12,9 @@ from automotive_cosim.safety.dossier.subject import (
     Subject,
     failing,
     number_told,
-    percent,
     sentence,
 )
+from automotive_cosim.safety.findings import percent
 
 CLAIMS = (
     "Each claim is about this run. Supported: the run has evidence for it and none against it. Contradicted: "

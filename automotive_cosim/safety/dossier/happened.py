@@ -8,6 +8,7 @@ from statistics import median
 
 import numpy as np
 
+from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import clock, faults
 from automotive_cosim.drives.judge import EventOutcome
@@ -158,7 +159,7 @@ def _faults(subject: Subject, *, in_space: bool) -> Table:
 
 
 def _told(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    return rounded(value, 6) if isinstance(value, float) else str(value)
 
 
 MEASURES: tuple[tuple[str, str, bool, float | None], ...] = (

@@ -8,7 +8,7 @@ from functools import cached_property
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import counted, rounded
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.report.results import NOT_RANKED, Results, contestant, read_results
@@ -225,14 +225,9 @@ def share_told(count: int, total: int) -> str:
     return f"{100 * count / total:.0f} ({100 * bounds.low:.0f} to {100 * bounds.high:.0f})"
 
 
-def percent(share: float) -> str:
-    """A share in words."""
-    return f"{100 * share:.0f} %" if share >= 0.1 else f"{100 * share:.2g} %"
-
-
 def number_told(value: float) -> str:
     """A rate in words."""
-    return f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
+    return f"{value:,.0f}" if value >= 10 else rounded(value, 2)
 
 
 def fact_table(name: str, title: str, lines: Iterable[tuple[str, str]], note: str = "") -> Table:
