@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,6 +16,7 @@ from automotive_cosim.cli.batches import (
     RaySend,
     Workers,
     check_prices,
+    clock,
     executor_of,
     forecast_in_words,
     minutes_in_words,
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
     from automotive_cosim.safety.hunt import Hunt
     from automotive_cosim.safety.space import Space
 
+TELL_S = 60.0
+"""Wall time without a new point after which the runs are told: a failure is repeated and reduced meanwhile."""
 CAREFUL = ("rule-perfect", "oracle")
 """The references on drives and on tasks."""
 CAREFUL_FOLDER = "careful"
@@ -145,7 +149,11 @@ def search(
             typer.echo(json.dumps({"out": str(folder), "dry_run": True}))
         return
 
+    said_s = time.monotonic()
+
     def tell(found: Hunt) -> None:
+        nonlocal said_s
+        said_s = time.monotonic()
         last = found.samples[-1].outcome
         if last.is_unrunnable:
             return
@@ -159,6 +167,10 @@ def search(
     with where, trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s) as run:
 
         def note(row: TrialRow | None = None) -> None:
+            nonlocal said_s
+            if row is not None and time.monotonic() - said_s >= TELL_S:
+                said_s, used = time.monotonic(), clock(run.limit.used_s())
+                console.print(f"{counted(run.ran, 'run')} in {used}; still at the same point", soft_wrap=True)
             noted = about | {"budget": laid, "used_s": round(run.limit.used_s(), 1)}
             write_whole(folder / SETTINGS, json.dumps(noted, indent=1))
 
