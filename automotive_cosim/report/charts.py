@@ -39,6 +39,8 @@ WIDE_IN, NARROW_IN = 9.6, 4.0
 """A page is at most 1040 pixels wide, a phone about 390; an inch is 96 pixels."""
 DIGITS = 6
 """Significant digits along an axis: more than ticks have, fewer than rounding errors show."""
+LARGE = 1000.0
+"""From here on, numbers along an axis have commas between thousands."""
 
 
 def charts(results: Results) -> dict[str, tuple[str, str, str]]:
@@ -206,17 +208,23 @@ def _write_plainly(figure: Figure) -> None:
     from matplotlib.ticker import Formatter, LogFormatter, ScalarFormatter
 
     class Plain(Formatter):
-        """Shows what another formatter does, in other digits."""
+        """Shows what another formatter does; large numbers, and those of a logarithmic axis, in other digits."""
 
-        def __init__(self, before: Formatter) -> None:
+        def __init__(self, before: LogFormatter | ScalarFormatter) -> None:
             self._before = before
+            self._keeps = LARGE if isinstance(before, ScalarFormatter) else 0.0
+            if isinstance(before, ScalarFormatter):
+                before.set_scientific(False)
+                before.set_useOffset(False)
 
         def __call__(self, x: float, pos: int | None = None) -> str:
-            return rounded(x, DIGITS) if self._before(x, pos) else ""
+            return self._told(x, self._before(x, pos))
 
         def format_ticks(self, values: Sequence[float]) -> list[str]:
-            texts = self._before.format_ticks(values)
-            return [text and rounded(value, DIGITS) for text, value in zip(texts, values, strict=True)]
+            return list(map(self._told, values, self._before.format_ticks(values)))
+
+        def _told(self, value: float, text: str) -> str:
+            return text if not text or abs(value) < self._keeps else rounded(value, DIGITS)
 
     for axis in figure.findobj(Axis):
         for before, replace in (

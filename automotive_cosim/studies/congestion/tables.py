@@ -102,12 +102,12 @@ def whole(study: CongestionStudy) -> Table:
     )
     note = (
         "Means over the seeds. Delay: vehicle-hours of time lost on the road (SUMO's time loss, signals included) "
-        "and of waiting outside for room to enter. Change: of the delay, seed by seed, against the copy of the "
-        f"same traffic without the measure; in brackets 95 % t intervals, from {LEAST_SEEDS} seeds. Detours: what is driven more, in "
-        "vehicle-hours without congestion; negative if less is driven, as in a jam. Travel time index: time of all "
-        "vehicles divided by that of the same distances without congestion; planning time index: its 95th "
-        "percentile over all five minutes of all seeds; buffer index: what that exceeds the mean by. Queues: mean "
-        "total length; longest: of a lane, in any seed."
+        "and of waiting outside for room to enter. Change: of the delay, seed by seed, against the copy of the same"
+        f" traffic without the measure; in brackets 95 % t intervals, from {LEAST_SEEDS} seeds. Detours: what is "
+        "driven more, in vehicle-hours without congestion; negative if less is driven, as in a jam. Travel time "
+        "index: time of all vehicles divided by that of the same distances without congestion; planning time index:"
+        " its 95th percentile over all five minutes of all seeds; buffer index: what that exceeds the mean by. "
+        "Queues: mean total length; longest: of a lane, in any seed."
     )
     return Table("whole", "The network with each measure", columns, tuple(rows), note)
 
