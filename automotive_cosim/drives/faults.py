@@ -16,8 +16,9 @@ ACTS = {
     Worth.REPEAT: "needless repeat",
 }
 """What a charged act was, in words."""
-NEAR_S = 300.0
-"""An alert this long before or after what it tells of was still meant for it: five minutes, which is our choice."""
+NEAR_S = 120.0
+"""An alert this long before a warning would hold, or after the end, was still meant for what it tells of: two
+minutes, which is our choice."""
 NOTHING = "nothing came"
 
 
@@ -133,14 +134,15 @@ def times(event: JudgedEvent, acts: Sequence[JudgedAct]) -> list[str]:
 
 def _warned(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
     """Which warning of its kind came nearest, before it was due or after its deadline."""
-    due_s, deadline_s = _due_s(event), event.deadline_s
-    warned_s = [act.time_s for act in acts if event.kind in _meant(act) and abs(act.time_s - due_s) <= NEAR_S]
+    due_s, deadline_s, kind = _due_s(event), event.deadline_s, KINDS.get(event.kind)
+    lasts_s = 0.0 if kind is None else kind.lasts_s
+    from_s, to_s = due_s - lasts_s - NEAR_S, event.ends_s + NEAR_S
+    warned_s = [act.time_s for act in acts if event.kind in _meant(act) and from_s <= act.time_s <= to_s]
     before_s = max((time_s for time_s in warned_s if time_s < due_s), default=None)
     if before_s is not None:
-        lasts = f"a warning holds for {kind.lasts_s:.0f} s" if (kind := KINDS.get(event.kind)) else ""
         unseen = before_s < event.observable_s - EARLY_S
-        why = "before it could be known" if unseen else lasts
-        return f"warned {due_s - before_s:.0f} s before, too early" + (f" ({why})" if why else "")
+        why = "before it could be known" if unseen else f"a warning holds for {lasts_s:.0f} s"
+        return f"warned {due_s - before_s:.0f} s before, too early ({why})"
     after_s = min((time_s for time_s in warned_s if deadline_s is not None and time_s > deadline_s), default=None)
     if after_s is not None and deadline_s is not None:
         return f"warned {after_s - deadline_s:.0f} s after the deadline"

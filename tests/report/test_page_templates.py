@@ -9,6 +9,7 @@ from automotive_cosim.report.templates import render
 
 def test_a_manifest_lists_what_was_given_and_no_none() -> None:
     plan = {
+        "scenario": "grid",
         "scale": None,
         "via": [],
         "step_s": 1.0,
@@ -16,12 +17,12 @@ def test_a_manifest_lists_what_was_given_and_no_none() -> None:
         "seeds": [0, 1],
         "limits": {"a": 2, "b": None},
     }
-    page = render(
-        "studies/network.html", title="", about="", answer="", errors=0, missing=0, warnings=(), tables=(), plots={},
-        plan=plan, starts=[{"started": "", "platform": "", "git": None, "versions": {}}],
-    )  # fmt: skip
+    starts = [{"started": "", "platform": "", "git": None, "versions": {}}]
+    nothing = dict.fromkeys(("title", "about", "answer"), "") | dict.fromkeys(("warnings", "tables"), ())
+    page = render("studies/network.html", **nothing, plots={}, errors=0, missing=0, plan=plan, starts=starts)
     told = dict(re.findall("<tr><th>(.*?)</th><td>(.*?)</td></tr>", page))
     assert {name: told.get(name) for name in plan} == {
+        "scenario": "grid",
         "scale": None,
         "via": None,
         "step_s": "1",
