@@ -19,7 +19,6 @@ ACTS = {
 NEAR_S = 120.0
 """An alert this long before a warning would hold, or after the end, was still meant for what it tells of: two
 minutes, which is our choice."""
-NOTHING = "nothing came"
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,13 +72,6 @@ def became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
         acts: the acts of its drive, likewise.
     """
     return _joined(str(event.outcome), *times(event, acts))
-
-
-def label(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
-    """What became of an event in a few words, to stand beside its bar in a plot; arguments as of ``became``."""
-    came = times(event, acts)[-1].partition(" (")[0] if _is_lost(event) else ""
-    is_told = event.outcome in (EventOutcome.MISSED, EventOutcome.LATE) and came != NOTHING
-    return f"{event.outcome}: {came}" if is_told else str(event.outcome)
 
 
 def was(act: JudgedAct, events: Sequence[JudgedEvent]) -> str:
@@ -146,7 +138,7 @@ def _warned(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
     after_s = min((time_s for time_s in warned_s if deadline_s is not None and time_s > deadline_s), default=None)
     if after_s is not None and deadline_s is not None:
         return f"warned {after_s - deadline_s:.0f} s after the deadline"
-    return NOTHING
+    return "nothing came"
 
 
 def beside(act: JudgedAct, events: Sequence[JudgedEvent]) -> list[str]:
