@@ -207,7 +207,7 @@ def _write_plainly(figure: Figure) -> None:
     from matplotlib.axis import Axis
     from matplotlib.ticker import Formatter, LogFormatter, ScalarFormatter
 
-    class Plain(Formatter):
+    class WrittenOut(Formatter):
         """Shows what another formatter does; large numbers, and those of a logarithmic axis, in other digits."""
 
         def __init__(self, before: LogFormatter | ScalarFormatter) -> None:
@@ -220,7 +220,7 @@ def _write_plainly(figure: Figure) -> None:
         def __call__(self, x: float, pos: int | None = None) -> str:
             return self._told(x, self._before(x, pos))
 
-        def format_ticks(self, values: Sequence[float]) -> list[str]:
+        def format_ticks(self, values: list[float]) -> list[str]:
             return list(map(self._told, values, self._before.format_ticks(values)))
 
         def _told(self, value: float, text: str) -> str:
@@ -232,7 +232,7 @@ def _write_plainly(figure: Figure) -> None:
             (axis.get_minor_formatter(), axis.set_minor_formatter),
         ):
             if isinstance(before, LogFormatter | ScalarFormatter):
-                replace(Plain(before))
+                replace(WrittenOut(before))
 
 
 def drawn(name: str, drawing: Drawing, width_in: float) -> str:
