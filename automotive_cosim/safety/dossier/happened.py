@@ -8,7 +8,6 @@ from statistics import median
 
 import numpy as np
 
-from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.faults import clock, faults
 from automotive_cosim.drives.judge import EventOutcome
@@ -90,17 +89,16 @@ def failures(subject: Subject) -> Section:
                 str(number),
                 each["words"],
                 each["why"],
-                "–"
-                if each["neighbour"] is None
-                else f"{each['differs']} {_told(each['neighbour'][each['differs']])}",
+                each.get("beside") or "no neighbour found",
                 f"failures/{number:02d}.toml",
             )
             for number, each in enumerate(subject.findings["failures"], 1)
         )
-        heads = "No.", "Fails with", "What is missing", "Passes with", "Replay"
+        heads = "No.", "Fails with", "What is missing", "Beside it", "Replay"
         note = (
             "Each failed three times of three; factors that are not named are nominal. Replay: automotive-cosim "
-            "eval --plan with that file, which also has the nearest passing neighbour."
+            "eval --plan with that file, which also has what is beside the failure: the nearest point that does not "
+            "fail."
         )
         if cases:
             made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=5))
@@ -156,10 +154,6 @@ def _faults(subject: Subject, *, in_space: bool) -> Table:
         return Table("faults", "Missed, late and needless", heads, lines, note, heads=5)
     title = "Missed, late and needless in what the space does not count"
     return Table("faults_beside", title, heads, lines, note, heads=5)
-
-
-def _told(value: object) -> str:
-    return rounded(value, 6) if isinstance(value, float) else str(value)
 
 
 MEASURES: tuple[tuple[str, str, bool, float | None], ...] = (

@@ -204,9 +204,9 @@ def sentence(subject: Subject) -> str:
     if subject.rule is not None and subject.drives:
         told += f" The space counts {subject.rule.words}."
     if beside := len(subject.failed_beside):
-        told += f" {counted(beside, 'more trial')} failed only in what the space does not count."
+        told += f" Of the others, {beside} failed in what the space does not count."
     if empty:
-        told += f" In {empty} of the trials nothing was due."
+        told += f" In {empty} of the trials nothing {'of that ' if subject.rule is not None else ''}was due."
     if subject.findings is not None:
         told += (
             f" The search reduced the failures to {counted(len(subject.findings['failures']), 'minimal failure')}"
