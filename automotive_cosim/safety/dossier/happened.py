@@ -97,8 +97,7 @@ def failures(subject: Subject) -> Section:
         heads = "No.", "Fails with", "What is missing", "Beside it", "Replay"
         note = (
             "Each failed three times of three; factors that are not named are nominal. Replay: automotive-cosim "
-            "eval --plan with that file, which also has what is beside the failure: the nearest point that does not "
-            "fail."
+            "eval --plan with that file, which also has what is beside it: the nearest point that does not fail."
         )
         if cases:
             made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=5))
