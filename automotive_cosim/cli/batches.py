@@ -92,14 +92,24 @@ class ProgressView(Generic[R]):
     """A line at most as often, and one that says nothing new."""
     OVERDUE_S = 5.0
 
-    def __init__(self, console: Console, what: str, said: Callable[[Progress[R]], str]) -> None:
-        """``what`` is being run; ``said`` gives the text next to its count."""
+    def __init__(
+        self, console: Console, what: str, said: Callable[[Progress[R]], str], expected: Range | None = None
+    ) -> None:
+        """Nothing has been told yet.
+
+        Args:
+            console: where to show it.
+            what: is being run, in the plural.
+            said: gives the text next to its count.
+            expected: seconds that it was said to take before it started; None if it was not.
+        """
         from rich.progress import BarColumn, MofNCompleteColumn, TextColumn
         from rich.progress import Progress as Bar
 
         self._console = console
         self._what = what
         self._words = said
+        self._expected = expected
         columns = (BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[said]}", markup=False))
         self._bar = Bar(*columns, console=console) if console.is_terminal else None
         self._task = self._bar.add_task("", total=None, said="") if self._bar else None
@@ -120,8 +130,8 @@ class ProgressView(Generic[R]):
     def tell(self, progress: Progress[R]) -> None:
         """Shows the current progress."""
         progress, overdue = self._overdue(progress)
-        told = ", ".join(filter(None, (self._words(progress), time_left(progress))))
-        said = "; ".join(filter(None, (told, overdue or _warming(progress))))
+        told = ", ".join(filter(None, (self._words(progress), time_left(progress) or self._time_so_far(progress))))
+        said = "; ".join(filter(None, (told, overdue or _doing(progress))))
         if self._bar and self._task is not None:
             self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
             return
@@ -130,6 +140,12 @@ class ProgressView(Generic[R]):
         if progress.seconds - self._said_s >= every_s or progress.done == progress.planned:
             self._said_s, self._said = progress.seconds, line
             self._console.print(line)
+
+    def _time_so_far(self, progress: Progress[R]) -> str:
+        """The time that has passed of what was expected, while nothing has been measured."""
+        if self._expected is None or progress.left_s is not None or progress.ran or not progress.doing:
+            return ""
+        return f"{clock(progress.seconds)} of {minutes_in_words(self._expected)}"
 
     def _overdue(self, progress: Progress[R]) -> tuple[Progress[R], str]:
         """Without the time left, and words instead, while a run takes longer than was expected of it: each second
@@ -239,11 +255,10 @@ def numbers_in(name: str, text: str) -> list[float]:
     return found
 
 
-def _warming(progress: Progress[Any]) -> str:
-    """Where the first jobs wait for their traffic, while there is no estimate yet."""
-    if progress.left_s is not None or progress.done == progress.planned:
-        return ""
-    return f"warming up {', '.join(progress.warming)}" if progress.warming else ""
+def _doing(progress: Progress[Any]) -> str:
+    """What the workers do, while there is no estimate yet."""
+    is_known = progress.left_s is not None or progress.done == progress.planned
+    return "" if is_known else ", ".join(filter(None, progress.doing))
 
 
 def time_left(progress: Progress[Any]) -> str:
@@ -251,6 +266,11 @@ def time_left(progress: Progress[Any]) -> str:
     left_s = progress.left_s
     if left_s is None or progress.done == progress.planned:
         return ""
-    minutes, seconds = divmod(int(left_s), 60)
+    return f"{clock(left_s)} left"
+
+
+def clock(seconds: float) -> str:
+    """A span of wall time as ``3:05`` or ``1:03:05``."""
+    minutes, rest = divmod(int(seconds), 60)
     told = f"{minutes // 60}:{minutes % 60:02d}" if minutes >= 60 else f"{minutes}"
-    return f"{told}:{seconds:02d} left"
+    return f"{told}:{rest:02d}"

@@ -1,4 +1,4 @@
-"""``automotive-cosim show events``, ``wakes``, ``spaces``, ``factors`` and ``policy``: tables of the reference."""
+"""``automotive-cosim show`` with ``apps``, ``events``, ``wakes``, ``spaces``, ``factors`` or ``policy``."""
 
 from __future__ import annotations
 
@@ -8,6 +8,17 @@ import typer
 
 from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.contracts import Json
+
+
+def apps(as_json: AsJson = False) -> None:
+    """List the apps of the car by the names that the action open_app takes."""
+    from automotive_cosim.cockpit.registry import apps as known
+
+    told = [
+        {"id": app.name, "about": f"{app.title}, {app.where.value}", "also": sorted(app.aliases)}
+        for app in known().values()
+    ]
+    _tell("apps", told, as_json=as_json)
 
 
 def events(as_json: AsJson = False) -> None:

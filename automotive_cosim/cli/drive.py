@@ -122,25 +122,25 @@ def drives(as_json: AsJson = False) -> None:
 
 def _tell(console: Console, row: DriveTrialRow) -> None:
     """The drive's events and acts in chronological order, what went wrong and why, and its score."""
-    from automotive_cosim.drives.faults import clock, faults
+    from automotive_cosim.drives.faults import became, clock, faults, was
     from automotive_cosim.drives.judge import Worth
 
     lines = [
         (
             event.observable_s,
             f"{'look-alike' if event.lookalike else 'event'}  {event.kind}: {event.words}",
-            event.outcome.value,
+            became(event, row.acts),
         )
         for event in row.events
     ]
     lines += [
-        (act.time_s, f"  act  {act.words}", f"{act.worth}: {act.reason}" if act.reason else str(act.worth))
+        (act.time_s, f"  act  {act.words}", was(act, row.events))
         for act in row.acts
         if act.worth is not Worth.NEUTRAL
     ]
-    for time_s, words, became in sorted(lines):
+    for time_s, words, came in sorted(lines):
         console.print(
-            f"{int(time_s) // 60:3}:{int(time_s) % 60:02}  {words}  [{became}]", markup=False, soft_wrap=True
+            f"{int(time_s) // 60:3}:{int(time_s) % 60:02}  {words}  [{came}]", markup=False, soft_wrap=True
         )
     if wrong := faults(row.events, row.acts):
         console.print("Missed, late and needless:", soft_wrap=True)

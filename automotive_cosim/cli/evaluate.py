@@ -168,8 +168,8 @@ def evaluate(
     _announce(console, plan, folder)
     kept = Pictures(pictures or (Pictures.ALL if len(plan.jobs()) <= PICTURED else Pictures.NONE))
     known = read_trials(folder) if (folder / "manifest.json").is_file() else {}
+    needs = forecast(plan.jobs(), workers or 1, known.values())
     if dry_run:
-        needs = forecast(plan.jobs(), workers or 1, known.values())
         lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
         for line in (*forecast_in_words(needs, workers or 1), "nothing was run"):
             console.print(line, soft_wrap=True)
@@ -181,10 +181,9 @@ def evaluate(
     left = [job for job in plan.jobs() if job.id not in known or known[job.id].error is not None]
     if unfit := tuple(misfits(left)):
         raise UserError("; ".join(unfit))
-    if left:
-        for line in forecast_in_words(forecast(plan.jobs(), workers or 1, known.values()), workers or 1):
-            console.print(line, soft_wrap=True)
-    with where, ProgressView(console, f"{unit}s", _said) as view:
+    for line in forecast_in_words(needs, workers or 1) if left else ():
+        console.print(line, soft_wrap=True)
+    with where, ProgressView(console, f"{unit}s", _said, needs.wall_s) as view:
         try:
             end = run_plan(
                 plan,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from automotive_cosim.scenarios import Scenario
     from automotive_cosim.scenery.check import ScenarioProof
     from automotive_cosim.scenery.optimum import SystemOptimum
+    from automotive_cosim.scenery.streets import StreetEdges
     from automotive_cosim.traffic.stability import Stability
 
 app = typer.Typer(help="List, check, draw, import and calibrate scenarios.", no_args_is_help=True)
@@ -49,20 +50,33 @@ def list_scenarios(as_json: AsJson = False) -> None:
     Console().print(table)
 
 
+MOST_STREETS, MOST_OF_A_STREET = 8, 6
+"""Streets, and edges of each, that `scenarios show` lists; `--edges` lists all."""
 WHICH = "A shipped scenario's name, a scenario's folder, any .sumocfg or .net.xml(.gz)"
 
 
 @app.command("show")
-def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: AsJson = False) -> None:
-    """Show one scenario: its place, time, weather and ego trips."""
+def show(
+    scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")],
+    edges: Annotated[bool, typer.Option("--edges", help="List every edge that is open to cars.")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Show one scenario: its place, time, weather, ego trips, and the edges that options such as --measure name."""
     from automotive_cosim.scenery import open_scenario
+    from automotive_cosim.scenery.streets import streets
 
     tell_opening(scenario)
     found = open_scenario(scenario)
+    known = streets(found)
     if as_json:
-        print_json(_shown(found))
+        print_json({**_shown(found), **_edges_json(known, all_of_them=edges)})
         return
     tell_notes([found])
+    if edges:
+        for street in known:
+            for edge in street.edges:
+                typer.echo("\t".join((edge.edge_id, street.name or "-", f"{edge.length_m:.0f} m", edge.road_class)))
+        return
     typer.echo(f"{found.name}: {found.title}\n{found.about.strip()}\n")
     for label, value in (
         ("folder", found.folder),
@@ -76,6 +90,41 @@ def show(scenario: Annotated[str, typer.Argument(help=f"{WHICH}.")], as_json: As
         typer.echo(f"{label:<9}{value}")
     for place, trip in enumerate(found.ego.trips, 1):
         typer.echo(f"{f'trip {place}':<9}{trip.name}: {trip.about or f'{trip.from_edge} to {trip.to_edge}'}")
+    for place, line in enumerate(_edges_told(known)):
+        typer.echo(f"{'' if place else 'edges':<9}{line}")
+    typer.echo(f"{'':<9}all of them: automotive-cosim scenarios show {scenario} --edges")
+
+
+def _edges_told(known: Sequence[StreetEdges]) -> Iterator[str]:
+    """How many edges there are, and the first of the longest streets."""
+    named = [street for street in known if street.name]
+    count = sum(len(street.edges) for street in known)
+    yield f"{counted(count, 'edge')} open to cars, on {counted(len(named), 'named street')}" + (
+        "; the longest:" if named else ", such as:"
+    )
+    for street in (named or known)[:MOST_STREETS]:
+        ids = [edge.edge_id for edge in street.edges]
+        more = f" and {len(ids) - MOST_OF_A_STREET} more" if len(ids) > MOST_OF_A_STREET else ""
+        yield f"{street.name or 'without a name'}: {', '.join(ids[:MOST_OF_A_STREET])}{more}"
+
+
+def _edges_json(known: Sequence[StreetEdges], *, all_of_them: bool) -> Json:
+    """The edges as JSON: those that are told in words, or all."""
+    streets = known if all_of_them else [street for street in known if street.name][:MOST_STREETS] or known[:1]
+    most = None if all_of_them else MOST_OF_A_STREET
+    return {
+        "edge_count": sum(len(street.edges) for street in known),
+        "edges": [
+            {
+                "id": edge.edge_id,
+                "street": edge.name,
+                "length_m": round(edge.length_m, 1),
+                "road_class": edge.road_class,
+            }
+            for street in streets
+            for edge in street.edges[:most]
+        ],
+    }
 
 
 def _shown(scenario: Scenario) -> Json:

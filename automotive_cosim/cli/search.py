@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -15,6 +16,7 @@ from automotive_cosim.cli.batches import (
     RaySend,
     Workers,
     check_prices,
+    clock,
     executor_of,
     forecast_in_words,
     minutes_in_words,
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
     from automotive_cosim.safety.hunt import Hunt
     from automotive_cosim.safety.space import Space
 
+TELL_S = 60.0
+"""Wall time without a new point after which the runs are told: a failure is repeated and reduced meanwhile."""
 CAREFUL = ("rule-perfect", "oracle")
 """The references on drives and on tasks."""
 CAREFUL_FOLDER = "careful"
@@ -103,7 +107,7 @@ def search(
     from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.record import write_whole
-    from automotive_cosim.safety.budget import LAID, SearchBudget
+    from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
     from automotive_cosim.safety.findings import as_json as findings_json
     from automotive_cosim.safety.hunt import hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
@@ -145,23 +149,28 @@ def search(
             typer.echo(json.dumps({"out": str(folder), "dry_run": True}))
         return
 
+    said_s = time.monotonic()
+
     def tell(found: Hunt) -> None:
+        nonlocal said_s
+        said_s = time.monotonic()
         last = found.samples[-1].outcome
         if last.is_unrunnable:
             return
         margin = "nothing was due" if last.nothing_due else "not judged"
         margin = margin if last.margin is None else f"margin {last.margin:+.2f}"
-        count, left = f"{found.run}", ""
-        if may_use.points:
-            each_s = (run.limit.used_s() - used_s) / run.ran if run.ran else 0.0
-            left_s = each_s * (may_use.points - found.run)
-            count += f" of {may_use.points}"
-            left = f"; about {counted(round(left_s / 60), 'minute')} left for the points" if left_s >= 60 else ""
-        console.print(f"{count}; {margin}; {counted(len(found.minimal), 'minimal failure')}{left}", soft_wrap=True)
+        now_s = run.limit.used_s()
+        each_s = (now_s - used_s) / run.ran if run.ran else 0.0
+        told = progress_in_words(may_use, found.run, now_s, each_s)
+        console.print(f"{told}; {margin}; {counted(len(found.minimal), 'minimal failure')}", soft_wrap=True)
 
     with where, trying(space, plan, folder, executor=where, budget=may_use, used_s=used_s) as run:
 
         def note(row: TrialRow | None = None) -> None:
+            nonlocal said_s
+            if row is not None and time.monotonic() - said_s >= TELL_S:
+                said_s, used = time.monotonic(), clock(run.limit.used_s())
+                console.print(f"{counted(run.ran, 'run')} in {used}; still at the same point", soft_wrap=True)
             noted = about | {"budget": laid, "used_s": round(run.limit.used_s(), 1)}
             write_whole(folder / SETTINGS, json.dumps(noted, indent=1))
 
@@ -229,8 +238,11 @@ def _told_before(
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.safety.forecast import RUNS_A_FAILURE, of_a_failure, search_forecast
 
+    if may_use.hours is not None:
+        minutes = counted(round(60 * may_use.hours), "minute")
+        yield f"{minutes} at most, with earlier starts: no run begins after that"
     if may_use.points is None:
-        yield f"until the budget is spent; results in {folder}"
+        yield f"as many points as the budget allows; results in {folder}"
     else:
         known = len(read_trials(folder)) if (folder / "manifest.json").is_file() else 0
         needs = search_forecast(space, plan, max(0, may_use.points - known), workers)

@@ -7,13 +7,14 @@ import typer
 from automotive_cosim.cli import catalogues, context, drive, functions, memory, schema, screens, signals
 
 app = typer.Typer(
-    help="Show screens, signals, functions, drives and their events, local law and file formats.",
+    help="Show screens, apps, signals, functions, drives and their events, local law and file formats.",
     no_args_is_help=True,
 )
 app.command()(screens.screens)
 app.command()(signals.signals)
 app.command()(functions.functions)
 app.command("drives")(drive.drives)
+app.command()(catalogues.apps)
 app.command()(catalogues.events)
 app.command()(catalogues.wakes)
 app.command()(catalogues.spaces)

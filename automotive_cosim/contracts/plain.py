@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import floor, isfinite, log10
 from typing import Any
 
 KMH_PER_MPS = 3.6
@@ -35,6 +36,15 @@ def lon_lat(text: str) -> tuple[float, float] | None:
 def counted(number: int, noun: str, plural: str = "") -> str:
     """A number with its noun: ``1 step``, ``2,460 episodes``; ``plural`` is for nouns that add more than an "s"."""
     return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
+
+
+def rounded(value: float, digits: int = 3) -> str:
+    """A number to so many significant digits as people write it: ``340``, ``0.0012``, never ``3.4e+02``."""
+    if not isfinite(value) or value == 0:
+        return f"{value:g}"
+    places = max(0, digits - 1 - floor(log10(abs(value))))
+    told = f"{float(f'{value:.{digits - 1}e}'):,.{places}f}"
+    return told.rstrip("0").rstrip(".") if "." in told else told
 
 
 def megabytes_in_words(size_mb: float) -> str:

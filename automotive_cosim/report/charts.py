@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from io import StringIO
 from typing import TYPE_CHECKING, Any
 
+from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.errors import SetupError
 from automotive_cosim.report.findings import NAMES
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pairs
@@ -18,6 +19,7 @@ from automotive_cosim.tasking.task import Module
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 INK = "#010203"
 """Placeholder for the colour of the text around the plot, which depends on the colour scheme."""
@@ -35,6 +37,10 @@ DASHES: dict[str, Any] = {
 MARKERS = "osD^vP*X"
 WIDE_IN, NARROW_IN = 9.6, 4.0
 """A page is at most 1040 pixels wide, a phone about 390; an inch is 96 pixels."""
+DIGITS = 6
+"""Significant digits along an axis: more than ticks have, fewer than rounding errors show."""
+LARGE = 1000.0
+"""From here on, numbers along an axis have commas between thousands."""
 
 
 def charts(results: Results) -> dict[str, tuple[str, str, str]]:
@@ -196,6 +202,39 @@ def legend(axes: Axes) -> None:
     )
 
 
+def _write_plainly(figure: Figure) -> None:
+    """Numbers along the axes as people write them, without powers of ten; other labels stay."""
+    from matplotlib.axis import Axis
+    from matplotlib.ticker import Formatter, LogFormatter, ScalarFormatter
+
+    class WrittenOut(Formatter):
+        """Shows what another formatter does; large numbers, and those of a logarithmic axis, in other digits."""
+
+        def __init__(self, before: LogFormatter | ScalarFormatter) -> None:
+            self._before = before
+            self._keeps = LARGE if isinstance(before, ScalarFormatter) else 0.0
+            if isinstance(before, ScalarFormatter):
+                before.set_scientific(False)
+                before.set_useOffset(False)
+
+        def __call__(self, x: float, pos: int | None = None) -> str:
+            return self._told(x, self._before(x, pos))
+
+        def format_ticks(self, values: list[float]) -> list[str]:
+            return list(map(self._told, values, self._before.format_ticks(values)))
+
+        def _told(self, value: float, text: str) -> str:
+            return text if not text or abs(value) < self._keeps else rounded(value, DIGITS)
+
+    for axis in figure.findobj(Axis):
+        for before, replace in (
+            (axis.get_major_formatter(), axis.set_major_formatter),
+            (axis.get_minor_formatter(), axis.set_minor_formatter),
+        ):
+            if isinstance(before, LogFormatter | ScalarFormatter):
+                replace(WrittenOut(before))
+
+
 def drawn(name: str, drawing: Drawing, width_in: float) -> str:
     """A plot as SVG, with ids that are unique on the page.
 
@@ -224,6 +263,7 @@ def drawn(name: str, drawing: Drawing, width_in: float) -> str:
         axes.spines[["top", "right", "left"]].set_visible(False)
         axes.tick_params(length=0)
         draw(axes)
+        _write_plainly(figure)
         text = StringIO()
         figure.savefig(text, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
     svg = text.getvalue()

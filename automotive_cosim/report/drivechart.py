@@ -11,7 +11,7 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.drives.faults import clock
+from automotive_cosim.drives.faults import beside, clock, faults
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -79,7 +79,12 @@ def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:
     kinds = _kinds(row.events, row.acts)
     told = [_told(number, act, row.events, timeline) for number, act in enumerate(row.acts[:MOST_ACTS], 1)]
     room = round((width_in - LABELS_IN) * CHARACTERS_AN_INCH)
-    lines = [part for line in (*KEY, "", *told) for part in wrap(line, room, subsequent_indent="    ") or [""]]
+    lost = [fault.line for fault in faults(row.events, row.acts) if fault.kind][:MOST_ACTS]
+    lines = [
+        part
+        for line in (*KEY, "", *told, *(["", *lost] if lost else ()))
+        for part in wrap(line, room, subsequent_indent="    ") or [""]
+    ]
     panels: list[tuple[float, Callable[[Axes], None]]] = [(SPEED_IN, lambda axes: _speeds(axes, timeline))]
     if "ttc_s" in timeline:  # a drive of an earlier version has speeds alone
         panels += [
@@ -97,7 +102,7 @@ def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:
         rows = len(kinds) + 2
         axes.set_ylim(rows - 0.3 + below_in / ROW_IN, -0.7)
         axes.set_yticks(range(rows), ["acts", "wakes", *(kind.replace("_", " ") for kind in kinds)])
-        _events(axes, row.events, kinds, end_s)
+        _events(axes, row, kinds, end_s)
         _acts(axes, row, end_s * NUMBER_IN / width_in)
         _say_unwatched(axes, timeline, rows)
         for time_s, _ in timeline.get("wakes", ()):
@@ -168,7 +173,8 @@ def _told(number: int, act: JudgedAct, events: Sequence[JudgedEvent], timeline: 
         if act.time_s <= time_s <= act.time_s + ANSWER_S
     ]
     what = f"{act.worth}" + (f": {act.about.replace('_', ' ')}" if act.about else "")
-    what += f" ({act.reason})" if act.reason else ""
+    reasons = "; ".join(filter(None, (act.reason, *beside(act, events))))
+    what += f" ({reasons})" if reasons else ""
     if act.worth is Worth.RIGHT and _came_to_nothing(act, events):
         what += ", which was never due: no point"
     return f"{number}. {clock(act.time_s)} {act.words}: {what}" + (f"; {answers[0]}" if answers else "")
@@ -205,10 +211,12 @@ NAMED = frozenset(
     {EventOutcome.LATE, EventOutcome.MISSED, EventOutcome.CAUSED, EventOutcome.EVADED, EventOutcome.TAKEN}
 )
 """Outcomes that stand beside their bars, in words."""
+ROOM = 0.08
+"""What such a word takes of the drive's length; left out where the next one of its kind stands before that."""
 
 
-def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str], end_s: float) -> None:
-    for event in events:
+def _events(axes: Axes, row: DriveTrialRow, kinds: Sequence[str], end_s: float) -> None:
+    for event in row.events:
         if event.kind not in kinds:
             continue
         place = kinds.index(event.kind) + 2
@@ -231,7 +239,9 @@ def _events(axes: Axes, events: Sequence[JudgedEvent], kinds: Sequence[str], end
                     axes.plot(time_s, place, mark, color=INK, markersize=7 if mark == "|" else 4, clip_on=False)
             if event.acted_s is not None:
                 axes.plot(event.acted_s, place, "o", color=INK, markersize=3.5)
-        if event.outcome in NAMED:
+        after_s = [each.observable_s for each in row.events if each.kind == event.kind and each.outcome in NAMED]
+        is_free = not any(0 < next_s - event.observable_s < length_s + ROOM * end_s for next_s in after_s)
+        if event.outcome in NAMED and is_free:
             right = event.observable_s + length_s < 0.85 * end_s
             at_s = event.observable_s + (length_s if right else 0.0)
             axes.annotate(

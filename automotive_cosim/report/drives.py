@@ -281,7 +281,8 @@ def _faults(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
         ("Watcher", "Drive", "When", "What", "Event or act", "Why"),
         lines,
         "When: minutes and seconds since departure at which something was due, or the agent acted. Why: what was "
-        "there, and until when there was time; of a needless act, what speaks against it of what could be known.",
+        "there, from when to when something was due, and what came; of a needless act, what speaks against it of "
+        "what could be known, and when it would have been right.",
         heads=6,
     )
 

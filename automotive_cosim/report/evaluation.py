@@ -86,6 +86,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         interfaces(shared),
         varied(shared),
         findings.failures(shared, found),
+        findings.meanings(found),
         findings.harm(shared),
         findings.place_effect(shared),
         *findings.by_condition(shared),

@@ -51,12 +51,18 @@ def failures(results: Results, found: Mapping[str, FailureClass]) -> Table:
         ]
         if lost:
             rows.append((each.label, Cell(str(len(lost)), tuple(lost)), *cells))
-    columns = ("Contestant", "Not solved", *(name.replace("_", " ").capitalize() for name in FailureClass))
-    note = (
-        "Read from the trace by fixed rules; the first rule that matches decides. The rules are documented in "
-        "automotive_cosim.report.failures and tested on injected faults."
-    )
+    columns = ("Contestant", "Not solved", *(name.words for name in FailureClass))
+    note = "Read from the trace by fixed rules, which are tested on injected faults."
     return Table("failure_classes", "Why episodes were not solved", columns, tuple(rows), note)
+
+
+def meanings(found: Mapping[str, FailureClass]) -> Table:
+    """What the classes are that occur."""
+    rows = tuple((name.words, name.about) for name in FailureClass if name in found.values())
+    note = "An episode is of the first class that fits it; the order is that of the columns above."
+    return Table(
+        "failure_meanings", "What the classes of failures are", ("Class", "What happened"), rows, note, heads=2
+    )
 
 
 def harm(results: Results) -> Table:

@@ -53,6 +53,8 @@ def tables(results: Results) -> list[Table]:
         safety(results),
         held_out(results),
         conduct(results),
+        questions(results),
+        cost(results),
         taps(results),
         comparisons(results),
         by(results, "Module", lambda row: row.module, list(Module)),
@@ -196,7 +198,7 @@ def held_out(results: Results) -> Table:
 
 
 def conduct(results: Results) -> Table:
-    """Duration and cost of episodes, and figures of the drives."""
+    """How the car was driven and the driver kept busy."""
     rows: list[TableRow] = []
     for each in results.contestants:
         mine = [row for row in results.of(each) if row.success is not None]
@@ -209,14 +211,6 @@ def conduct(results: Results) -> Table:
                 Cell(NONE) if least is None else Cell(f"{least[0]:.1f}", (least[1],)),
                 _mean_cell(mine, 1, lambda row: row.interaction_s),
                 rate_cell(mine, of=lambda row: row.within_guideline),
-                _mean_cell(mine, 1, lambda row: row.steps),
-                _mean_cell(mine, 2, lambda row: row.questions),
-                _mean_cell(mine, 2, lambda row: row.unneeded_questions),
-                _mean_cell(mine, 1, lambda row: row.question_s),
-                _mean_cell(mine, 0, lambda row: row.tokens_in),
-                _mean_cell(mine, 0, lambda row: row.tokens_out),
-                _mean_cell(mine, 2, lambda row: row.model_seconds),
-                _mean_cell(mine, 4, lambda row: row.cost_usd),
             )
         )
     columns = (
@@ -225,22 +219,51 @@ def conduct(results: Results) -> Table:
         "Minimum time to collision, s",
         "Driver's interaction, s",
         "Within 2 s / 12 s",
-        "Steps",
-        "Questions",
-        "Unneeded",
-        "Talk, s",
-        "Tokens in",
-        "Tokens out",
-        "Model, s",
-        "Cost, USD",
     )
     note = (
         "Means over judged episodes, from the hand-over to 12 s after the end. Speed-limit compliance is 1 minus "
         "the mean overspeed divided by 2.23 m/s (nuPlan). Interaction and reading while moving are compared with "
-        "NHTSA's limits of 2 s and 12 s. Questions: asked of the driver; unneeded: the answer could be found "
-        "without asking; talk: seconds that they took. Tokens of rules are estimated at four characters each."
+        "NHTSA's limits of 2 s and 12 s."
     )
-    return Table("conduct", "Drive, driver and cost", columns, tuple(rows), note)
+    return Table("conduct", "Drive and driver", columns, tuple(rows), note)
+
+
+def questions(results: Results) -> Table:
+    """What was asked of the driver; empty if nothing was."""
+    rows: list[TableRow] = []
+    for each in results.contestants if any(row.questions for row in results.rows) else ():
+        mine = [row for row in results.of(each) if row.success is not None]
+        rows.append(
+            (
+                each.label,
+                _mean_cell(mine, 2, lambda row: row.questions),
+                _mean_cell(mine, 2, lambda row: row.unneeded_questions),
+                _mean_cell(mine, 1, lambda row: row.question_s),
+            )
+        )
+    columns = "Contestant", "Questions", "Unneeded", "Talk, s"
+    note = "Means over judged episodes. Unneeded: the answer could be found without asking. Talk: what they took."
+    return Table("questions", "Questions to the driver", columns, tuple(rows), note)
+
+
+def cost(results: Results) -> Table:
+    """Duration and cost of episodes."""
+    rows: list[TableRow] = []
+    for each in results.contestants:
+        mine = [row for row in results.of(each) if row.success is not None]
+        rows.append(
+            (
+                each.label,
+                _mean_cell(mine, 1, lambda row: row.steps),
+                _mean_cell(mine, 0, lambda row: row.tokens_in),
+                _mean_cell(mine, 0, lambda row: row.tokens_out),
+                _mean_cell(mine, 2, lambda row: row.model_seconds),
+                _mean_cell(mine, 4, lambda row: row.cost_usd),
+            )
+        )
+    columns = "Contestant", "Steps", "Tokens in", "Tokens out", "Model, s", "Cost, USD"
+    note = "Means over judged episodes. Model: time waited for it. Tokens of rules: characters divided by four."
+    return Table("cost", "Steps and cost", columns, tuple(rows), note)
 
 
 def taps(results: Results) -> Table:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping
 
 import jinja2
 from markupsafe import Markup, escape
+
+from automotive_cosim.contracts.plain import rounded
 
 _ENVIRONMENT = jinja2.Environment(
     loader=jinja2.PackageLoader("automotive_cosim", ""),
@@ -21,7 +24,27 @@ def _ticked(text: str) -> Markup:
     return Markup(re.sub("`([^`]+)`", r"<code>\1</code>", str(escape(text))))
 
 
-_ENVIRONMENT.filters["ticked"] = _ticked
+def _given(settings: Mapping[str, object]) -> list[tuple[str, str]]:
+    """Settings in words; those that were left to their default are None or empty, and are not listed."""
+    return [(name, told) for name, value in settings.items() if (told := _setting(value))]
+
+
+def _setting(value: object) -> str:
+    match value:
+        case None:
+            return ""
+        case bool():
+            return "yes" if value else "no"
+        case float():
+            return rounded(value, 6)
+        case dict():
+            return ", ".join(f"{name} {told}" for name, told in _given(value))
+        case list() | tuple():
+            return ", ".join(filter(None, map(_setting, value)))
+    return str(value)
+
+
+_ENVIRONMENT.filters |= {"ticked": _ticked, "given": _given}
 
 
 def render(template: str, **values: object) -> str:

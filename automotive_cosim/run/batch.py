@@ -9,7 +9,7 @@ from __future__ import annotations
 import json
 import time
 from collections import Counter, defaultdict
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import asdict, dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -61,8 +61,8 @@ class Progress(Generic[R]):
     """Wall time to the end, as estimated by ``Pace``; None while there is no basis for an estimate."""
     ended: R | None
     """The row of the job that has just ended; None at the start, and while all are running."""
-    warming: tuple[str, ...] = ()
-    """Scenarios whose traffic is warmed up for a job that is running, or whose first job in it runs."""
+    doing: tuple[str, ...] = ()
+    """What workers say that they are doing for their jobs, each once."""
     stopped: str = ""
     """Why the rest is not run; empty if it is run or nothing is left."""
 
@@ -253,11 +253,8 @@ class _Batch(Generic[J, R]):
             left_s=self._expected_s(),
             ended=self._newest,
             stopped=self._stopped,
-            warming=tuple(dict.fromkeys(self._warming())),
+            doing=tuple(dict.fromkeys(place.worker.doing for place in self._places if place.job)),
         )
-
-    def _warming(self) -> Iterator[str]:
-        return (place.job.simulation[0] for place in self._places if place.job and place.is_cold)
 
     def _expected_s(self) -> float | None:
         running = [place.turn(place.job) for place in self._places if place.job]
@@ -301,6 +298,8 @@ class _Batch(Generic[J, R]):
             raise cannot_write(self._store.folder, answer.error)
         if answer is None:
             self._stillborn = 0
+            if place.job is not None:
+                self._tell(replace(self.progress, ended=None))
         elif place.job is not None:
             self._turn_over(place, place.job, answer)
 

@@ -100,6 +100,11 @@ class Worker(Protocol[J_contra, R_co]):
         ...
 
     @property
+    def doing(self) -> str:
+        """What it last said that it does for its job, in words; empty if nothing."""
+        ...
+
+    @property
     def handles(self) -> Sequence[Any]:
         """Handles for ``Executor.wait``; one of them becomes ready when there is an answer."""
         ...
@@ -109,7 +114,8 @@ class Worker(Protocol[J_contra, R_co]):
         ...
 
     def answer(self) -> R_co | CannotWrite | None:
-        """Its answer: the row of its job, whose files are in place, or None if it has only become ready.
+        """Its answer: the row of its job, whose files are in place, or None if it has only become ready,
+        or said what it is doing.
 
         Raises:
             LostError: it has died.

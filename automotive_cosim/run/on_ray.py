@@ -162,6 +162,7 @@ class _Actor(Generic[J, R]):
         self._actor = _ACTOR.remote(opener)
         self._asked = self._actor.stamp.remote()
         self.is_ready = False
+        self.doing = ""  # an actor answers only when its job has ended
 
     @property
     def handles(self) -> Sequence[Any]:

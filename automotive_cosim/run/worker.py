@@ -25,6 +25,7 @@ from automotive_cosim.run.moments import Judged, judged_file, write_judged, writ
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.stage import StageObserver
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
@@ -123,7 +124,7 @@ def _played(
 ) -> _Kept:
     collector = Collector(pictures)
     road = RoadRecorder(folder / "pictures" / job.id, job.setup.about)
-    everyone = (*observers, collector, *(() if pictures is Pictures.NONE else (road,)))
+    everyone = (*observers, StageObserver(), collector, *(() if pictures is Pictures.NONE else (road,)))
     with closing(road):
         result = run_episode(job.setup, agent, everyone, simulations=simulations)
 
@@ -146,7 +147,7 @@ def _driven(
 ) -> _Kept:
     recorder = DriveRecorder(folder / "pictures" / job.id)
     road = RoadRecorder(recorder.folder, job.setup.about)
-    everyone = (*observers, *(() if pictures is Pictures.NONE else (recorder, road)))
+    everyone = (*observers, StageObserver(), *(() if pictures is Pictures.NONE else (recorder, road)))
     with closing(recorder), closing(road):
         record = run_drive(job.planned(), job.setup, agent, simulations=simulations, observers=everyone)
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.meter import MeterHandle, Spent
 
@@ -54,6 +55,29 @@ class SearchBudget:
     def most_points(self) -> int:
         """The points, or as many as any search would have."""
         return MOST_POINTS if self.points is None else self.points
+
+
+def progress_in_words(budget: SearchBudget, points: int, used_s: float, each_s: float) -> str:
+    """How far a search is, by each limit of its budget, and the time left by the one that is reached first.
+
+    Args:
+        budget: what it may use.
+        points: that were sampled.
+        used_s: wall time so far, with earlier starts.
+        each_s: wall time of a run; 0 while unknown.
+    """
+    told = [counted(points, "point") if budget.points is None else f"{points} of {counted(budget.points, 'point')}"]
+    left_s = []
+    if budget.points is not None and each_s:
+        left_s.append(each_s * (budget.points - points))
+    if budget.hours is not None:
+        minutes = 60 * budget.hours
+        told.append(f"{min(minutes, used_s / 60):.0f} of {counted(round(minutes), 'minute')}")
+        left_s.append(60 * minutes - used_s)
+    if left_s and min(left_s) >= 60:
+        what = " for the points" if budget.hours is None else " at most"
+        told.append(f"about {counted(round(min(left_s) / 60), 'minute')} left{what}")
+    return ", ".join(told)
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from itertools import combinations
 from math import prod
 
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import counted, rounded
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
@@ -47,7 +47,7 @@ class UnseenBound:
 
 def percent(share: float) -> str:
     """A share in words."""
-    return f"{100 * share:.0f} %" if share >= 0.1 else f"{100 * share:.2g} %"
+    return f"{100 * share:.0f} %" if share >= 0.1 else f"{rounded(100 * share, 2)} %"
 
 
 def judged(tried: Sequence[Tried]) -> list[Tried]:
@@ -182,20 +182,21 @@ def _rates(found: Hunt) -> Table:
             mine, empty = judged(here), len(nothing_due(here))
             if mine or empty:
                 even = [each for each in mine if each.even]
-                lines.append((factor.name, level, *_rate(mine), str(empty), *_rate(even)))
+                failed = sum(each.outcome.failed for each in mine)
+                lines.append((factor.name, level, str(len(mine)), str(failed), str(empty), *_rate(even)))
     heads = (
         "Factor",
         "Value",
         "Samples",
-        "Pass % (interval)",
+        "Failed",
         "Nothing due",
         "Of the whole space",
-        "Pass % (interval)",
+        "Of these, pass % (interval)",
     )
     note = (
         "Samples are those in which something was due; the others, in which nothing was, are neither passes nor "
-        "failures. Intervals: Wilson, 95 %. Points beyond those of the whole space are drawn to failures by their "
-        "margins."
+        "failures. A rate, with Wilson's interval (95 %), is given over the points alone that represent the whole "
+        "space; the others were drawn to failures, so that they are counted and give none."
     )
     return Table("rates", "Passed by factor", heads, tuple(lines), note, heads=2)
 
@@ -289,9 +290,10 @@ def _pairs(found: Hunt) -> Table:
     return Table(
         "two_factors",
         "Two factors at a time",
-        ("Factors and values", "Failed", "Samples", "Failed %"),
+        ("Factors and values", "Failed", "Samples"),
         tuple(line[1:] for line in lines[:MOST_PAIRS]),
-        f"The {MOST_PAIRS} pairs of values with the highest lower bounds (Wilson) of the failure rate.",
+        f"The {MOST_PAIRS} pairs of values with the most failures for their samples, by Wilson's lower bound. "
+        "Counts, not rates: samplers are drawn to failures.",
     )
 
 
@@ -323,12 +325,10 @@ def _share_of(failed: Sequence[bool]) -> str:
     return f"{sum(failed)} of {len(failed)}" if failed else "–"
 
 
-def _cell(
-    one: Factor, other: Factor, cell: tuple[str, str], failed: Sequence[bool]
-) -> tuple[float, str, str, str, str]:
+def _cell(one: Factor, other: Factor, cell: tuple[str, str], failed: Sequence[bool]) -> tuple[float, str, str, str]:
     words = f"{one.name} {cell[0]}, {other.name} {cell[1]}"
     low = wilson(sum(failed), len(failed)).low
-    return low, words, str(sum(failed)), str(len(failed)), f"{100 * sum(failed) / len(failed):.0f}"
+    return low, words, str(sum(failed)), str(len(failed))
 
 
 def _unsteady(found: Hunt) -> Table:
@@ -411,6 +411,7 @@ def as_json(found: Hunt) -> Json:
         "careful_prevents": averted,
         "careful_tried": tried,
         "stopped": found.stopped,
+        "rule": asdict(found.space.rule),
         "failures": [
             {
                 "words": each.words(found.space),

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
 
+from automotive_cosim.agents import MODELLED
 from automotive_cosim.contracts import Json
 from automotive_cosim.report.charts import is_installed
 from automotive_cosim.report.templates import render
@@ -109,5 +110,5 @@ def _page(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> str
         curves=curves(found),
         has_curves=is_installed(),
         starts=read_manifest(folder)["starts"],
-        stand_in=model == "rules",
+        stand_in=model == "rules" and agent in MODELLED,
     )

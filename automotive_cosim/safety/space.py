@@ -10,6 +10,7 @@ from typing import Annotated, Any
 
 from annotated_types import Ge, Le
 
+from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -137,6 +138,17 @@ class FailureRule:
     """Kinds of events that count, and no nuisances; empty for all of both."""
     ttc_below_s: Annotated[float, Ge(0)] | None = None
     """Fails too if the time to collision with the vehicle in front was ever below this."""
+
+    @property
+    def words(self) -> str:
+        """What counts as a failure of a drive, in words."""
+        kinds = ", ".join(self.events).replace("_", " ")
+        of_kinds = f"an event that was not met in time, of these kinds alone: {kinds}"
+        every = of_kinds if self.events else "an event of any kind that was not met in time, or a nuisance"
+        if self.drive_value_below is not None:
+            every = f"a value below {self.drive_value_below:g}"
+        near = f", or a time to collision below {self.ttc_below_s:g} s" if self.ttc_below_s is not None else ""
+        return f"{every}{near}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -288,4 +300,4 @@ def told(value: FactorValue) -> str:
     """A value in words."""
     if isinstance(value, bool):
         return "yes" if value else "no"
-    return f"{value:g}" if isinstance(value, int | float) else str(value)
+    return rounded(value, 6).replace(",", "") if isinstance(value, int | float) else str(value)

@@ -10,7 +10,8 @@ from typing import Any
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
-from automotive_cosim.drives.judge import EventOutcome
+from automotive_cosim.drives.faults import times, was
+from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json, read_json
@@ -42,7 +43,6 @@ SHOWN = (
     *("success", "error", "error_kind", "end", "steps", "sim_seconds", "held_out", "goal_s"),
 )
 """Fields of a row that the table of results shows."""
-CREDITED = frozenset(outcome.value for outcome in EventOutcome if outcome.is_credited)
 OWN_ROAD = ("limit_kmh", "speed_kmh", "road")
 
 
@@ -306,12 +306,12 @@ class Content:
             row = _object(self.records.file(entry, *parts, "row.json"))
         except NotHereError:
             row = {}
-        events, acts = row.get("events", ()), row.get("acts", ())
+        judged = from_json(DriveTrialRow, row) if row else None
+        events, acts = (judged.events, judged.acts) if judged else ((), ())
         head |= {name: row[name] for name in HEAD if row.get(name) is not None}
         if row:
             head |= {name: value for name, value in _head(row).items() if name in ("screen", "conditions")}
         head["task"] = row.get("family", head["task"])
-        met = [event for event in events if not event["lookalike"]]
         return {
             **head,
             "id": entry.id,
@@ -326,10 +326,10 @@ class Content:
             "value": row.get("value"),
             "score": row.get("score"),
             "verdict": None,
-            "spans": [_span(event) for event in events],
-            "acts": [{"at_s": act["time_s"], "text": act["words"], "worth": act["worth"]} for act in acts],
+            "spans": [_span(event, acts) for event in events],
+            "acts": [{"at_s": act.time_s, "text": act.words, "worth": act.worth} for act in acts],
             "timeline": _drive_timeline(events, acts),
-            "met": sum(event["outcome"] in CREDITED for event in met),
+            "met": sum(event.outcome.is_credited for event in events),
             "path": (),
             "violations": (),
             "manifest": None,
@@ -381,10 +381,19 @@ def _kind(plan: Json) -> str:
     return "evaluation" if "agents" in plan else "other"
 
 
-def _span(event: Json) -> Json:
+def _span(event: JudgedEvent, acts: Sequence[JudgedAct]) -> Json:
     """An event of a drive, from when it becomes observable to its deadline or its end."""
-    told = {name: event[name] for name in ("kind", "words", "lookalike", "outcome", "obliged_s", "deadline_s")}
-    return {**told, "from_s": event["observable_s"], "to_s": event["deadline_s"] or event["ends_s"]}
+    return {
+        "kind": event.kind,
+        "words": event.words,
+        "lookalike": event.lookalike,
+        "outcome": event.outcome,
+        "became": _became(event, acts),
+        "obliged_s": event.obliged_s,
+        "deadline_s": event.deadline_s,
+        "from_s": event.observable_s,
+        "to_s": event.deadline_s or event.ends_s,
+    }
 
 
 OUTCOMES = {
@@ -395,16 +404,21 @@ OUTCOMES = {
 """What a reader is told of an outcome; the others say it by their name."""
 
 
-def _drive_timeline(events: Sequence[Json], acts: Sequence[Json]) -> list[Json]:
+def _became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
+    """What became of an event, with the times of one that was lost."""
+    return "; ".join((OUTCOMES.get(event.outcome, event.outcome), *times(event, acts)))
+
+
+def _drive_timeline(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct]) -> list[Json]:
     """Every instant that the page lists, in order."""
     told = []
     for event in events:
-        kind, outcome = event["kind"].replace("_", " "), OUTCOMES.get(event["outcome"], event["outcome"])
-        what = f"{'look-alike of ' if event['lookalike'] else ''}{kind}: {event['words']} ({outcome})"
-        told.append((event["observable_s"], "event", what))
-        if event["deadline_s"] is not None and not event["lookalike"]:
-            told.append((event["deadline_s"], "deadline", f"deadline of {kind}"))
-    told += [(act["time_s"], "alert", f"{act['words'].replace('_', ' ')} ({act['worth']})") for act in acts]
+        kind = event.kind.replace("_", " ")
+        what = f"{'look-alike of ' if event.lookalike else ''}{kind}: {event.words} ({_became(event, acts)})"
+        told.append((event.observable_s, "event", what))
+        if event.deadline_s is not None and not event.lookalike:
+            told.append((event.deadline_s, "deadline", f"deadline of {kind}"))
+    told += [(act.time_s, "alert", f"{act.words.replace('_', ' ')} ({was(act, events)})") for act in acts]
     return [{"at_s": at_s, "kind": kind, "text": text} for at_s, kind, text in sorted(told)]
 
 

@@ -20,6 +20,7 @@ import numpy as np
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
+from automotive_cosim.run.stage import doing
 from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.futures import Futures, close_all, ended
 from automotive_cosim.studies.live import LiveDrive
@@ -100,6 +101,7 @@ def run_drive(
                 excluded, why = drive.why_not()
                 return replace(row, looks=drive.looks, excluded=excluded, why=why)
             traffic.begin_settling([point.group for point in drive.points], job.plan.arrived, job.plan.limit_s)
+            doing("driving every future to its end")
             drive.wait()
             stay = ended(traffic)
             decisions = tuple(compared(point, stay, history) for point in drive.points)
@@ -152,6 +154,7 @@ class _Drive:
     def go(self) -> None:
         """Drives and decides until the drive or its decisions are over."""
         plan = self.job.plan
+        doing("driving to the next decision")
         self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive, self._live.advance)
 
     def wait(self, but: int = 0) -> None:
@@ -215,6 +218,7 @@ class _Drive:
             if not begun:
                 self.looks += 1
                 return False
+            doing(f"driving the futures of decision {len(self.points) + 1}")
             replicates = futures.replicates(begun, group)
             offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)
             diverted: list[Diverted] = []

@@ -1,8 +1,11 @@
 """``automotive-cosim show functions``."""
 
 import json
+import re
 
 import pytest
+
+from automotive_cosim.cockpit.registry import by_any_name
 
 
 def test_it_lists_every_function_in_words_and_in_the_form_of_each_api(cli):
@@ -27,3 +30,11 @@ def test_two_forms_are_refused(cli, options):
     ran = cli("show", "functions", *options)
     assert (ran.code, ran.out) == (2, "")
     assert "give one of them" in ran.err
+
+
+def test_every_name_that_opens_an_app_is_listed(cli):
+    listed = json.loads(cli("show", "apps", "--json").out)["apps"]
+    titles = {each["about"].partition(",")[0].lower() for each in listed}
+    names = {each["id"] for each in listed} | {other for each in listed for other in each["also"]}
+    assert names | titles == set(by_any_name())
+    assert re.search(r"^climate +Climate, in the dock\n +also: hvac$", cli("show", "apps").out, re.MULTILINE)

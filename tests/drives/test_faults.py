@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from automotive_cosim.drives.faults import faults
+import pytest
+
+from automotive_cosim.drives.faults import became, faults, was
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Judgement, Worth
 from automotive_cosim.drives.score import score
 
@@ -24,8 +26,42 @@ def test_every_loss_of_the_score_is_listed_once() -> None:
     assert [each.time_s for each in found] == sorted(each.time_s for each in found)
     told = {each.what: each.line for each in found}
     assert (
-        "0:35 late: tunnel (a tunnel in 3 m; to be known from 0:30; too late after 0:39; acted at 1:15)"
-        in told["late"]
+        "0:35 late: tunnel (a tunnel in 3 m; to be known from 0:30; due from 0:35 to 0:39; acted at 1:15, "
+        "36 s too late)" in told["late"]
     )
     assert told["missed"].endswith("right: an alert of tunnel or visibility)")
     assert told["needless repeat"].endswith("alert repeat (a fact)")
+
+
+def missed(observable_s: float = 10.0, due_s: float = 100.0) -> JudgedEvent:
+    return JudgedEvent(
+        "tunnel", "a tunnel", False, 1.0, EventOutcome.MISSED, observable_s, due_s, due_s + 9, due_s + 20
+    )
+
+
+@pytest.mark.parametrize(
+    ("warned_s", "observable_s", "came"),
+    [
+        (29.0, 10.0, "warned 71 s before, too early (a warning holds for 60 s)"),
+        (29.0, 80.0, "warned 71 s before, too early (before it could be known)"),
+        (150.0, 10.0, "warned 41 s after the deadline"),
+        (900.0, 10.0, "nothing came"),
+    ],
+)
+def test_what_was_missed_says_what_came(warned_s: float, observable_s: float, came: str) -> None:
+    event, act = missed(observable_s), JudgedAct(warned_s, "alert tunnel, 30 km/h", Worth.NEUTRAL)
+    (fault,) = faults([event], [act])
+    assert f"due from 1:40 to 1:49; {came}; right: an alert of" in fault.line
+    assert became(event, [act]) == f"missed; due from 1:40 to 1:49; {came}"
+
+
+def test_a_warning_of_something_else_is_not_told_of_what_was_missed() -> None:
+    assert became(missed(), [JudgedAct(99.0, "alert seat_belt", Worth.NEUTRAL, "belt")]).endswith("nothing came")
+
+
+def test_a_false_alarm_says_when_it_would_have_been_right_and_what_was_due() -> None:
+    act = JudgedAct(52.0, "alert tunnel", Worth.WRONG, "", "no tunnel is ahead")
+    belt = JudgedEvent("belt", "open", False, 1.0, EventOutcome.HIT, 40.0, 45.0, 60.0, 70.0, 55.0)
+    assert was(act, [belt, missed(80.0)]) == (
+        "wrong: no tunnel is ahead; 28 s before tunnel could be known, at 1:20; due was belt, from 0:45"
+    )

@@ -2,13 +2,17 @@
 where it is installed."""
 
 import json
+import re
 import sys
 from importlib.util import find_spec
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
 from automotive_cosim.agents import AgentSettings, make_agent, model_of
+from automotive_cosim.agents.guest import Guest
+from automotive_cosim.contracts import BoundingBox, Element, Feedback, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import ModelError, SetupError, UserError
 from automotive_cosim.models import ChatMessage, Local, local, make_model
@@ -84,6 +88,32 @@ def test_functions_take_their_part_of_the_context(file):
     assert isinstance(called, Local)
     assert called.context_tokens < make_model(f"local/{file}").context_tokens - 5000
     assert "longer context" in misfit(called, 1500, None)
+
+
+def test_the_guides_agent_asks_the_local_model(file, monkeypatch):
+    """The example of docs/agents.md taps what the model says, and ends when it says that all is done."""
+    guide = (Path(__file__).parents[2] / "docs/agents.md").read_text("utf-8")
+    example = next(text for text in re.findall(r"```python\n(.*?)```", guide, re.DOTALL) if "make_model" in text)
+    said, asked = iter((4, -1)), []
+
+    def answers(runtime, body):
+        asked.append(body["messages"][-1]["content"])
+        message = {"role": "assistant", "content": json.dumps({"number": next(said)})}
+        return {"choices": [{"message": message, "finish_reason": "stop"}], "usage": {}}
+
+    monkeypatch.setattr(local, "packaged", lambda: file)
+    monkeypatch.setattr(Runtime, "handle_chat_completions", answers)
+    names = {}
+    exec(compile(example, "agents.md", "exec"), names)
+    agent = Guest(names["Asking"]())
+    agent.reset("Fan to 3")
+    box, told = BoundingBox(0, 0, 9, 9), (("Fan", False), ("", True), ("More", True))
+    elements = tuple(Element(text, "", "Button", box, "", "", is_clickable=clickable) for text, clickable in told)
+    seen = Observation("Fan to 3", 0.0, Feedback(FeedbackCode.OK, ""), elements=elements)
+    assert agent.act(seen).index == 4
+    assert "Fan to 3\n2: More\nThe number" in asked[0]
+    assert agent.act(seen).goal_status is GoalStatus.COMPLETE
+    assert agent.model == "local"
 
 
 @pytest.mark.parametrize(("query", "said"), [

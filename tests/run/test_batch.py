@@ -161,8 +161,10 @@ def test_while_the_first_jobs_wait_for_their_traffic_that_is_told(tmp_path, monk
     told = []
     run_plan(plan("oracle"), tmp_path / "e", tell=told.append)
     first, *between, last = told
-    assert (first.warming, last.warming) == ((), ())
-    assert {(each.warming, each.done, each.ended) for each in between} == {(("grid",), 0, None)}
+    assert (first.doing, last.doing) == ((), ())
+    assert {(each.done, each.ended) for each in between} == {(0, None)}
+    stages = list(dict.fromkeys(words.partition(",")[0] for each in between for words in each.doing if words))
+    assert stages == ["loading grid", "warming up traffic", "agent at work"]
     assert last.ended is not None
 
 

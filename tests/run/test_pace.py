@@ -72,6 +72,7 @@ class Clocked:
 
 class ClockedWorker:
     is_ready = True
+    doing = ""
 
     def __init__(self, clock: Clocked) -> None:
         self.clock = clock

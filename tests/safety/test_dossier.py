@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
-from dataclasses import replace
+from dataclasses import asdict, replace
 from importlib.util import find_spec
 from math import isclose, log, sqrt
 from pathlib import Path
@@ -25,6 +25,7 @@ from automotive_cosim.safety.dossier.document import dossier
 from automotive_cosim.safety.dossier.filing import write_dossier
 from automotive_cosim.safety.dossier.subject import failing, read_subject
 from automotive_cosim.safety.dossier.unseen import missing_mass
+from automotive_cosim.safety.space import FailureRule
 
 CELLS = (
     ExposureCell("primary", "dry", "day", "30 to 50", 0.3, 12.0),
@@ -86,7 +87,7 @@ def test_figures_are_those_of_the_rows(tmp_path: Path) -> None:
     assert len(table(folder, "failures")) == 2
     listed = [(row["When"], row["What"], row["Event or act"]) for row in table(folder, "faults")]
     assert listed == [("0:12", "missed", "tunnel")] * 2
-    assert "too late after 0:20" in table(folder, "faults")[0]["Why"]
+    assert "due from 0:12 to 0:20" in table(folder, "faults")[0]["Why"]
     measures = {row["Measure"]: row for row in table(folder, "measures")}
     assert measures["Min TTC ahead, s"]["Critical trials, or interval"].startswith("≤ 3: 2 of 6")
     assert measures["TET ahead, s/h"]["Median or rate"] == "2.50"
@@ -125,6 +126,25 @@ def test_drives_with_nothing_due_neither_pass_nor_fail(tmp_path: Path) -> None:
     nothing = replace(subject, rows=tuple(row for row in rows if not row.missing))
     assert failing(nothing) == (0, 0, 1.0)
     assert claims(nothing).status == "limited"
+
+
+def test_a_search_counts_the_kinds_of_its_space_alone(tmp_path: Path) -> None:
+    """Two of six drives miss a tunnel; the space names another kind, and then the tunnel."""
+    findings = {"failures": [], "failure_rate_upper": None, "unseen_rate_upper": None, "pairs_covered": 0}
+    subject = read_subject(run(tmp_path / "runs", 2))
+    other, same = (
+        replace(subject, findings=findings | {"rule": asdict(FailureRule(events=(kind,)))})
+        for kind in ("over_limit", "tunnel")
+    )
+    assert [len(each) for each in (other.failed, other.failed_beside, other.passed)] == [0, 2, 6]
+    assert [len(each) for each in (same.failed, same.failed_beside, same.passed)] == [2, 0, 4]
+    assert "of these kinds alone: over limit. Of the others, 2 failed in what" in dossier(other).sentence
+    tables = {table.name: table for section in dossier(other).sections for table in section.tables}
+    assert [row[0] for row in tables["events"].rows] == ["over_limit"]
+    assert {row[0] for row in tables["events_beside"].rows} == {"tunnel", "blue_light"}
+    assert "faults" not in tables
+    assert len(tables["faults_beside"].rows) == 2
+    assert not any("%" in column for name in ("events", "events_beside") for column in tables[name].columns)
 
 
 def test_an_agent_must_be_named_if_there_are_several(tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ from automotive_cosim.report.stats import upper_bound
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.meter import Budget, Meter, Spent
 from automotive_cosim.run.plan import make_plan, read_plan
-from automotive_cosim.safety.budget import SearchBudget, SearchLimit
+from automotive_cosim.safety.budget import SearchBudget, SearchLimit, progress_in_words
 from automotive_cosim.safety.curves import curves, means
 from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, sentence, tables, unseen
 from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_carefully
@@ -139,7 +139,7 @@ def test_what_has_nothing_due_is_neither_a_pass_nor_a_failure() -> None:
     assert any(table.name == "nothing_due" for table in tables(found))
     rates = next(each for each in tables(found) if each.name == "rates")
     calm = next(row for row in rates.rows if row[1] == "calm")
-    assert (calm[2], calm[3]) == ("0", "–")
+    assert (calm[2], calm[3], calm[6]) == ("0", "0", "–")
     (minimal,) = found.minimal
     assert 14 <= float(minimal.point["hour"]) < 15
     assert minimal.beside.startswith("nothing is due with hour 13")
@@ -230,6 +230,19 @@ def test_a_space_of_few_points_is_used_up() -> None:
     found = hunt(few, judged(lambda p: 0.5), make_sampler("random", few, 9, 0), 1_000_000)
     assert "nothing new" in found.stopped
     assert len(found.samples) < 1100
+
+
+@pytest.mark.parametrize(
+    ("budget", "told"),
+    [
+        (SearchBudget(64), "8 of 64 points, about 28 minutes left for the points"),
+        (SearchBudget(64, hours=1 / 3), "8 of 64 points, 10 of 20 minutes, about 10 minutes left at most"),
+        (SearchBudget(hours=2), "8 points, 10 of 120 minutes, about 110 minutes left at most"),
+        (SearchBudget(usd=5), "8 points"),
+    ],
+)
+def test_progress_is_told_by_the_limit_that_ends_the_search(budget: SearchBudget, told: str) -> None:
+    assert progress_in_words(budget, 8, 600.0, 30.0) == told
 
 
 @pytest.mark.parametrize(

@@ -107,14 +107,14 @@ def test_the_answer_stands_first_and_is_paired_by_seed() -> None:
     assert added.interval is not None
     assert added.value == pytest.approx(1.045)
     assert answer(found).startswith(
-        "“closure edge=c1c2” costs 1.0 (1.0 to 1.1) vehicle-hours an hour: 1.0 more are lost in congestion "
-        "(+104%) and detours take 0.0 more; "
+        "“closure edge=c1c2” costs 1.0 (1.0 to 1.1) vehicle-hours an hour: 1.0 more of delay "
+        "(+104%) and 0.0 more of detours; "
     )
     assert "the travel time index goes from 2.00 to 3.04" in answer(found)
     unsure = study(*(3600.0 if seed % 2 else -1800.0 for seed in range(10)))
     assert "cannot be told from 0" in answer(unsure)
     saved = study(*[-1800.0] * 10)
-    assert "saves 0.5 (0.5 to 0.5) vehicle-hours an hour: 0.5 fewer are lost in congestion (−50%)" in answer(saved)
+    assert "saves 0.5 (0.5 to 0.5) vehicle-hours an hour: 0.5 fewer of delay (−50%)" in answer(saved)
     assert [str(row[0]) for row in whole(found).rows] == ["none", "closure edge=c1c2"]
 
 
@@ -270,17 +270,17 @@ def test_the_report_is_whole(driven: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("before", "warming", "left_s", "told"),
+    ("before", "doing", "left_s", "told"),
     [
         ("", (), None, "0 of 2 seeds\n"),
-        ("", ("the traffic",), None, "0 of 2 seeds; warming up the traffic\n"),
+        ("", ("warming up traffic",), None, "0 of 2 seeds; warming up traffic\n"),
         ("1 error", (), 162.0, "0 of 2 seeds; 1 error, 2:42 left\n"),
     ],
 )
 def test_progress_has_no_empty_part(
-    before: str, warming: tuple[str, ...], left_s: float | None, told: str, capsys: pytest.CaptureFixture[str]
+    before: str, doing: tuple[str, ...], left_s: float | None, told: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    progress: Progress[CongestionRow] = Progress(2, 0, 0, 0, 0, 0, 1.0, left_s, None, warming)
+    progress: Progress[CongestionRow] = Progress(2, 0, 0, 0, 0, 0, 1.0, left_s, None, doing)
     ProgressView[CongestionRow](Console(), "seeds", lambda _: before).tell(progress)
     assert capsys.readouterr().out == told
 

@@ -12,9 +12,9 @@ from automotive_cosim.safety.dossier.subject import (
     Subject,
     failing,
     number_told,
-    percent,
     sentence,
 )
+from automotive_cosim.safety.findings import percent
 
 CLAIMS = (
     "Each claim is about this run. Supported: the run has evidence for it and none against it. Contradicted: "
@@ -44,7 +44,8 @@ def claims(subject: Subject) -> Claim:
 
 def _preventable(subject: Subject) -> Claim:
     text = "In reasonably foreseeable and preventable situations, it acts in time (ISO 34502)."
-    events = [event for row in subject.drives for event in row.events if not event.lookalike]
+    every = [event for row in subject.drives for event in row.events if subject.is_in_space(event.kind)]
+    events = [event for event in every if not event.lookalike]
     real = [event for event in events if event.outcome.counts]
     if not real:
         passed = sum(row.has_succeeded for row in subject.episodes)

@@ -33,11 +33,13 @@ NONE = "none"
 
 def summary(subject: Subject) -> Section:
     """The first section."""
-    events = [event for row in subject.drives for event in row.events if event.outcome.counts]
+    every = [event for row in subject.drives for event in row.events if event.outcome.counts]
+    events = [event for event in every if subject.is_in_space(event.kind)]
     met = sum(event.outcome.is_credited for event in events)
     told = [sentence(subject)]
     if events:
-        told.append(f"{met} of {counted(len(events), 'event')} that required an act were met in time.")
+        more = f" (of the kinds that the space names; {len(every)} of any kind)" if len(every) > len(events) else ""
+        told.append(f"{met} of {counted(len(events), 'event')} that required an act were met in time{more}.")
     return Section("summary", "Summary", (*told, NOT_COMPLIANT))
 
 

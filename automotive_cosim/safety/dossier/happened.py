@@ -14,9 +14,8 @@ from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.measures import DEFAULT_THRESHOLDS
 from automotive_cosim.report.stats import CONFIDENCE
 from automotive_cosim.report.tables import Table
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.safety.dossier.subject import CONFIDENCE_WORDS, Section, Subject, hours_of, share_told
+from automotive_cosim.safety.dossier.subject import CONFIDENCE_WORDS, Section, Subject, hours_of
 
 MOST_FAILURES = 40
 """Failing trials that are listed; all of them are in the data."""
@@ -26,14 +25,22 @@ DRAWS = 2000
 """Bootstrap samples, at which the second digit of a bound is stable."""
 LEAST_CLUSTERS = 5
 """Fewer trials give no bootstrap interval."""
+NO_RATES = "A search's trials are drawn to failures, so that they are counted and give no rates."
 
 
 def events(subject: Subject) -> Section:
     """Events of drives by kind, and tasks by module."""
-    made = []
-    if subject.drives:
-        lines = []
-        for kind in KINDS:
+    made = [_kinds(subject, in_space=True), _kinds(subject, in_space=False)] if subject.drives else []
+    if subject.episodes:
+        made.append(_tasks(subject))
+    return Section("events", "Events", tables=tuple(table for table in made if table.rows))
+
+
+def _kinds(subject: Subject, *, in_space: bool) -> Table:
+    """Events of the kinds that count, or of those that a search's space does not name."""
+    lines = []
+    for kind in KINDS:
+        if subject.is_in_space(kind) == in_space:
             events = [event for row in subject.drives for event in row.events if event.kind == kind]
             if not events:
                 continue
@@ -44,26 +51,33 @@ def events(subject: Subject) -> Section:
             own = tally[EventOutcome.CAUSED] + tally[EventOutcome.EVADED]
             counts = met, tally[EventOutcome.LATE], tally[EventOutcome.MISSED], own, tally[EventOutcome.VOID]
             left = f"{tally[EventOutcome.AVOIDED]} of {len(alike)}" if alike else "–"
-            lines.append((kind, str(len(real)), share_told(met, len(real)), *map(str, counts), left))
-        heads = "Kind", "Due", "Met % (interval)", "Met", "Late", "Missed", "Own doing", "Void", "Look-alikes left"
-        note = (
-            "Void: nothing had to be done, it passed by itself, or nobody could have met it. Own doing: caused, or "
-            "evaded by holding the car back for no reason. Intervals: Wilson, 95 %, as if events were independent."
-        )
-        made.append(Table("events", "Events by kind", heads, tuple(lines), note))
-    if subject.episodes:
-        groups: dict[str, list[EpisodeRow]] = {}
-        for row in subject.episodes:
-            groups.setdefault(str(row.module), []).append(row)
-        modules = []
-        for module, rows in sorted(groups.items()):
-            missing = Counter(part for row in rows for part in row.missing)
-            lacks = ", ".join(f"{part.replace('_', ' ')} {count}" for part, count in missing.most_common())
-            passed = sum(row.has_succeeded for row in rows)
-            modules.append((module, str(len(rows)), share_told(passed, len(rows)), lacks or "–"))
-        columns = "Module", "Episodes", "Passed % (interval)", "Parts missing"
-        made.append(Table("tasks", "Tasks by module", columns, tuple(modules)))
-    return Section("events", "Events", tables=tuple(made))
+            lines.append((kind, str(len(real)), *subject.share(met, len(real)), *map(str, counts), left))
+    share = () if subject.findings else ("Met % (interval)",)
+    heads = "Kind", "Due", *share, "Met", "Late", "Missed", "Own doing", "Void", "Look-alikes left"
+    note = (
+        "Void: nothing had to be done, it passed by itself, or nobody could have met it. Own doing: caused, or "
+        "evaded by holding the car back for no reason. "
+    )
+    note += NO_RATES if subject.findings else "Intervals: Wilson, 95 %, as if events were independent."
+    if in_space:
+        return Table("events", "Events by kind", heads, tuple(lines), note)
+    title = "Events of kinds that the space does not name"
+    return Table("events_beside", title, heads, tuple(lines), f"No failure of the search is one of these. {note}")
+
+
+def _tasks(subject: Subject) -> Table:
+    groups: dict[str, list[EpisodeRow]] = {}
+    for row in subject.episodes:
+        groups.setdefault(str(row.module), []).append(row)
+    modules = []
+    for module, rows in sorted(groups.items()):
+        missing = Counter(part for row in rows for part in row.missing)
+        lacks = ", ".join(f"{part.replace('_', ' ')} {count}" for part, count in missing.most_common())
+        passed = sum(row.has_succeeded for row in rows)
+        modules.append((module, str(len(rows)), str(passed), *subject.share(passed, len(rows)), lacks or "–"))
+    share = () if subject.findings else ("Passed % (interval)",)
+    columns = "Module", "Episodes", "Passed", *share, "Parts missing"
+    return Table("tasks", "Tasks by module", columns, tuple(modules), NO_RATES if subject.findings else "")
 
 
 def failures(subject: Subject) -> Section:
@@ -75,17 +89,15 @@ def failures(subject: Subject) -> Section:
                 str(number),
                 each["words"],
                 each["why"],
-                "–"
-                if each["neighbour"] is None
-                else f"{each['differs']} {_told(each['neighbour'][each['differs']])}",
+                each.get("beside") or "no neighbour found",
                 f"failures/{number:02d}.toml",
             )
             for number, each in enumerate(subject.findings["failures"], 1)
         )
-        heads = "No.", "Fails with", "What is missing", "Passes with", "Replay"
+        heads = "No.", "Fails with", "What is missing", "Beside it", "Replay"
         note = (
             "Each failed three times of three; factors that are not named are nominal. Replay: automotive-cosim "
-            "eval --plan with that file, which also has the nearest passing neighbour."
+            "eval --plan with that file, which also has what is beside it: the nearest point that does not fail."
         )
         if cases:
             made.append(Table("minimal", "Minimal cases", heads, cases, note, heads=5))
@@ -94,9 +106,7 @@ def failures(subject: Subject) -> Section:
             "No search was made, so that the conditions which each failure needs are not known. automotive-cosim "
             "search finds them."
         )
-    lines = tuple(
-        (row.id, ", ".join(row.missing).replace("_", " ") or "–") for row in subject.failed[:MOST_FAILURES]
-    )
+    lines = tuple((row.id, subject.missing(row) or "–") for row in subject.failed[:MOST_FAILURES])
     if lines:
         more = len(subject.failed) - len(lines)
         note = (
@@ -106,14 +116,20 @@ def failures(subject: Subject) -> Section:
         made.append(Table("failures", "Failing trials", ("Trial", "What is missing"), lines, note, heads=2))
     else:
         told.append("No judged trial failed.")
-    if (listed := _faults(subject.drives)).rows:
-        made.append(listed)
+    made += [listed for in_space in (True, False) if (listed := _faults(subject, in_space=in_space)).rows]
     return Section("failures", "Failures", tuple(told), tuple(made))
 
 
-def _faults(drives: Sequence[DriveTrialRow]) -> Table:
-    """What was missed, late or needless in each drive, one by one, and why."""
-    every = [(row, fault) for row in drives for fault in faults(row.events, row.acts)]
+def _faults(subject: Subject, *, in_space: bool) -> Table:
+    """What was missed, late or needless in each drive, one by one, and why: what counts as a failure, or what a
+    search's space does not count, which are other kinds of events, and needless acts if it names kinds."""
+    drives = subject.drives
+    every = [
+        (row, fault)
+        for row in drives
+        for fault in faults(row.events, row.acts)
+        if subject.is_in_space(fault.kind) == in_space
+    ]
     several = len({(row.repeat, row.settings, row.conditions) for row in drives}) > 1
     lines = tuple(
         (
@@ -128,15 +144,15 @@ def _faults(drives: Sequence[DriveTrialRow]) -> Table:
     more = len(every) - len(lines)
     note = (
         "When: minutes and seconds since departure at which something was due, or the agent acted. Why: what was "
-        "there, and until when there was time; of a needless act, what speaks against it of what could be known."
+        "there, from when to when something was due, and what came; of a needless act, what speaks against it of "
+        "what could be known, and when it would have been right."
         + (f" {more} more are in the trials of the data." if more else "")
     )
     heads = "Drive", "When", "What", "Event or act", "Why"
-    return Table("faults", "Missed, late and needless", heads, lines, note, heads=5)
-
-
-def _told(value: object) -> str:
-    return f"{value:g}" if isinstance(value, float) else str(value)
+    if in_space:
+        return Table("faults", "Missed, late and needless", heads, lines, note, heads=5)
+    title = "Missed, late and needless in what the space does not count"
+    return Table("faults_beside", title, heads, lines, note, heads=5)
 
 
 MEASURES: tuple[tuple[str, str, bool, float | None], ...] = (
@@ -162,7 +178,8 @@ def measured(subject: Subject) -> Section:
         if threshold is not None:
             beyond = sum(value <= threshold if low else value >= threshold for value in values)
             sign = "≤" if low else "≥"
-            critical = f"{sign} {threshold:g}: {beyond} of {len(values)}, {share_told(beyond, len(values))} %"
+            shares = (f"{share} %" for share in subject.share(beyond, len(values)))
+            critical = ", ".join((f"{sign} {threshold:g}: {beyond} of {len(values)}", *shares))
         lines.append((name, f"{worst:.2f}", f"{median(values):.2f}", critical))
     for name, attribute in (
         ("TET ahead, s/h", "tet_s"),
@@ -173,10 +190,11 @@ def measured(subject: Subject) -> Section:
         if value is not None:
             lines.append((name, "–", f"{value:.2f}", bounds))
     note = (
-        f"Worst and median of the trials; then how many of them were critical, with Wilson's interval "
-        f"({CONFIDENCE_WORDS}). "
-        "TET and TIT: per hour driven, with the interval from resampling whole trials. Definitions, with sources: "
-        "docs/reference/failures.md. SUMO's drivers avoid collisions by construction: compare runs with each other."
+        "Worst and median of the trials; then how many of them were critical"
+        + (f". {NO_RATES} " if subject.findings else f", with Wilson's interval ({CONFIDENCE_WORDS}). ")
+        + "TET and TIT: per hour driven, with the interval from resampling whole trials. Definitions, with "
+        "sources: docs/reference/failures.md. SUMO's drivers avoid collisions by construction: compare runs with "
+        "each other."
     )
     heads = "Measure", "Worst", "Median or rate", "Critical trials, or interval"
     return Section(

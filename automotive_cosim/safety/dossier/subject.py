@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Iterable
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import counted, rounded
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json
 from automotive_cosim.report.results import NOT_RANKED, Results, contestant, read_results
@@ -15,8 +16,11 @@ from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.row import from_json
 from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.page import FINDINGS
+from automotive_cosim.safety.space import FailureRule
 
 CONFIDENCE_WORDS = f"{100 * CONFIDENCE:.0f} %"
 NOT_COMPLIANT = (
@@ -68,21 +72,55 @@ class Subject:
         """The trials with a judgement."""
         return [row for row in self.rows if row.outcome is not None]
 
+    @cached_property
+    def rule(self) -> FailureRule | None:
+        """What the space of a search counts as a failure; None for other runs, where all that is judged counts."""
+        told = (self.findings or {}).get("rule")
+        return None if told is None else from_json(FailureRule, told)
+
+    @cached_property
+    def outcomes(self) -> dict[str, TriedOutcome]:
+        """Of the judged trials of a search, by their ids, what its space's rule says."""
+        return {} if self.rule is None else {row.id: outcome_of(row, self.rule) for row in self.judged}
+
+    def has_failed(self, row: TrialRow) -> bool:
+        """Whether a judged trial failed, of a search by the rule of its space."""
+        return self.outcomes[row.id].failed if self.outcomes else not row.has_succeeded
+
+    def missing(self, row: TrialRow) -> str:
+        """What a judged trial that failed lacks, in words."""
+        return (self.outcomes[row.id].why if self.outcomes else ", ".join(row.missing)).replace("_", " ")
+
+    def share(self, count: int, total: int) -> tuple[str, ...]:
+        """A share of trials or events as a cell of a table; none for a search, whose trials give no rates."""
+        return () if self.findings else (share_told(count, total),)
+
+    def is_in_space(self, kind: str) -> bool:
+        """Whether events of a kind count, or acts if it is empty: a search's space may name some kinds alone."""
+        return self.rule is None or not self.rule.events or kind in self.rule.events
+
     @property
     def failed(self) -> list[TrialRow]:
         """Those that failed."""
-        return [row for row in self.judged if not row.has_succeeded]
+        return [row for row in self.judged if self.has_failed(row)]
+
+    @property
+    def failed_beside(self) -> list[TrialRow]:
+        """Those that failed in something that the search's space does not count, and in nothing that it counts."""
+        return [row for row in self.judged if not self.has_failed(row) and not row.has_succeeded]
 
     @property
     def nothing_due(self) -> list[TrialRow]:
         """Those in which nothing required an act, with nothing done wrong: neither passes nor failures."""
+        if self.outcomes:
+            return [row for row in self.judged if self.outcomes[row.id].nothing_due]
         return [row for row in self.judged if isinstance(row, DriveTrialRow) and row.has_nothing_due]
 
     @property
     def passed(self) -> list[TrialRow]:
         """Those that did what was due, and nothing needless."""
         empty = {row.id for row in self.nothing_due}
-        return [row for row in self.judged if row.has_succeeded and row.id not in empty]
+        return [row for row in self.judged if not self.has_failed(row) and row.id not in empty]
 
     @property
     def drives(self) -> list[DriveTrialRow]:
@@ -154,7 +192,7 @@ def hours_of(rows: Iterable[TrialRow]) -> float:
 def failing(subject: Subject) -> tuple[int, int, float]:
     """Independent units that failed, all of them, and the upper bound of their share."""
     groups = subject.clusters
-    bad = sum(any(not row.has_succeeded for row in rows) for rows in groups.values())
+    bad = sum(any(map(subject.has_failed, rows)) for rows in groups.values())
     return bad, len(groups), upper_bound(bad, len(groups)) if groups else 1.0
 
 
@@ -163,8 +201,12 @@ def sentence(subject: Subject) -> str:
     failed, judged, empty = len(subject.failed), len(subject.judged), len(subject.nothing_due)
     hours = f"{subject.hours:.2f} h driven"
     told = f"{failed} of {counted(judged, 'judged trial')} failed ({hours})."
+    if subject.rule is not None and subject.drives:
+        told += f" The space counts {subject.rule.words}."
+    if beside := len(subject.failed_beside):
+        told += f" Of the others, {beside} failed in what the space does not count."
     if empty:
-        told += f" In {empty} of the trials nothing was due."
+        told += f" In {empty} of the trials nothing {'of that ' if subject.rule is not None else ''}was due."
     if subject.findings is not None:
         told += (
             f" The search reduced the failures to {counted(len(subject.findings['failures']), 'minimal failure')}"
@@ -183,14 +225,9 @@ def share_told(count: int, total: int) -> str:
     return f"{100 * count / total:.0f} ({100 * bounds.low:.0f} to {100 * bounds.high:.0f})"
 
 
-def percent(share: float) -> str:
-    """A share in words."""
-    return f"{100 * share:.0f} %" if share >= 0.1 else f"{100 * share:.2g} %"
-
-
 def number_told(value: float) -> str:
     """A rate in words."""
-    return f"{value:,.0f}" if value >= 10 else f"{value:.2g}"
+    return f"{value:,.0f}" if value >= 10 else rounded(value, 2)
 
 
 def fact_table(name: str, title: str, lines: Iterable[tuple[str, str]], note: str = "") -> Table:

@@ -16,8 +16,8 @@ from automotive_cosim.safety.dossier.subject import (
     failing,
     hours_of,
     number_told,
-    percent,
 )
+from automotive_cosim.safety.findings import percent
 
 
 def missing_mass(counts: Iterable[int]) -> tuple[float, float]:

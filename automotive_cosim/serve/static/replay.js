@@ -89,7 +89,7 @@ export async function replayPage(query, id, episode) {
       return mark;
     }));
     marks.append(...(run.spans ?? []).filter((each) => each.outcome !== "void").map((each) => {
-      const bar = h("i", { class: `span ${each.lookalike ? "lookalike" : ["hit", "prepared", "prevented"].includes(each.outcome) ? "good" : "bad"}`, title: `${each.kind}: ${each.words} [${plain(each.outcome)}]` });
+      const bar = h("i", { class: `span ${each.lookalike ? "lookalike" : ["hit", "prepared", "prevented"].includes(each.outcome) ? "good" : "bad"}`, title: `${each.kind}: ${each.words} [${each.became}]` });
       bar.style.left = `${100 * (each.from_s - begin()) / span}%`;
       bar.style.width = `max(3px, ${100 * (each.to_s - each.from_s) / span}%)`;
       return bar;

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
-from automotive_cosim.studies.congestion.maps import delay_map
+from automotive_cosim.studies.congestion.maps import lost_map
 from automotive_cosim.studies.congestion.outputs import JUNCTIONS, OTHER
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
 from automotive_cosim.studies.congestion.results import HOUR_S, CongestionStudy, strongest
@@ -37,12 +37,12 @@ def charts(study: CongestionStudy) -> dict[str, tuple[str, str, str]]:
     network = network_of(study)
     named = [(number, name) for number, name in all_measures(study) if number <= DRAWN]
     made: dict[str, tuple[str, Drawing | None]] = {
-        "delay": ("Delay over time", _delay(study)),
-        "map": ("Delay without a measure", delay_map(study, network, 0)),
+        "delay": ("Time lost on the road, in the course of time", _lost(study)),
+        "map": ("Time lost on the road without a measure", lost_map(study, network, 0)),
     }
     shown = [each for each in all_measures(study) if each[0] == strongest(study)] if study.plan.measures else []
     for number, name in shown:
-        made["map_change"] = f"Change of delay with “{name}”", delay_map(study, network, number)
+        made["map_change"] = f"Change of the time lost with “{name}”", lost_map(study, network, number)
     made["mfd"] = "Macroscopic fundamental diagram of the network", _fundamental(study, network)
     for number, name in (*named[:1], *shown):
         title = f"Time-space diagram of “{study.plan.along.name}”" + (f" with “{name}”" if number else "")
@@ -54,8 +54,8 @@ def charts(study: CongestionStudy) -> dict[str, tuple[str, str, str]]:
     }
 
 
-def _delay(study: CongestionStudy) -> Drawing | None:
-    """Vehicles delayed at a time: vehicle-hours of delay per hour, in five minutes, mean over the seeds."""
+def _lost(study: CongestionStudy) -> Drawing | None:
+    """Vehicle-hours lost on the road per hour, in five minutes, mean over the seeds."""
     named = [each for each in all_measures(study) if each[0] <= DRAWN]
     if not any(row.outcomes for row in study.rows):
         return None
@@ -83,7 +83,7 @@ def _delay(study: CongestionStudy) -> Drawing | None:
         axes.set_xlim(0, study.plan.minutes)
         axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
         axes.set_xlabel("minutes after the warm-up")
-        axes.set_ylabel("vehicle-hours of delay per hour")
+        axes.set_ylabel("vehicle-hours lost per hour")
         legend(axes)
 
     return 3.2 + 0.23 * len(named), draw

@@ -1,15 +1,16 @@
-"""Maps of the delay: every road in the colour of its delay or of what a measure changes, with names and a scale."""
+"""Maps of time lost: every road in the colour of what is lost on it or of what a measure changes, with a scale."""
 
 from __future__ import annotations
 
 import math
 from typing import TYPE_CHECKING
 
+from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.report.charts import INK, PALETTE, Drawing
 from automotive_cosim.scenarios.wording import KINDS
 from automotive_cosim.studies.congestion.plan import measure_in, name_of
 from automotive_cosim.studies.congestion.results import CongestionStudy
-from automotive_cosim.studies.congestion.tables import delay_of_edges
+from automotive_cosim.studies.congestion.tables import lost_on_edges
 from automotive_cosim.traffic.network import Network
 
 if TYPE_CHECKING:
@@ -17,9 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.lines import Line2D
 
 GROWS = ("#ffd27f", "#fd8d3c", "#e31a1c", "#800026")
-"""Colours of the classes of delay, from little to much."""
+"""Colours of the classes of time lost, from little to much."""
 SHRINKS = ("#9ecae1", "#4292c6", "#2171b5", "#08306b")
-"""The same for less delay than without the measure."""
+"""The same for less than without the measure."""
 
 SHARES = (0.02, 0.1, 0.3, 0.6)
 """Lower bounds of the classes, as shares of the greatest value."""
@@ -31,14 +32,14 @@ MANY = 3_000
 """Roads above which they are drawn as a picture inside the SVG."""
 
 
-def delay_map(study: CongestionStudy, network: Network, number: int) -> Drawing | None:
-    """The delay per kilometre of road without a measure (0), or what the measure of that number changes."""
-    before = delay_of_edges(study, 0)
+def lost_map(study: CongestionStudy, network: Network, number: int) -> Drawing | None:
+    """The time lost per kilometre of road without a measure (0), or what the measure of that number changes."""
+    before = lost_on_edges(study, 0)
     if not before:
         return None
     delays = before
     if number:
-        after = delay_of_edges(study, number)
+        after = lost_on_edges(study, number)
         delays = {edge: after.get(edge, 0.0) - before.get(edge, 0.0) for edge in {*before, *after}}
     per_km = {
         edge: 1000 * value / network.edges[edge].length_m for edge, value in delays.items() if edge in network.edges
@@ -69,7 +70,7 @@ def delay_map(study: CongestionStudy, network: Network, number: int) -> Drawing 
                     axes.add_collection(
                         LineCollection(lines, colors=colour, linewidths=1.6 + place, rasterized=is_large)
                     )
-                    bounds = f"{'−' if sign < 0 else '+' if number else ''}{low * most:.2g}"
+                    bounds = f"{'−' if sign < 0 else '+' if number else ''}{rounded(low * most, 2)}"
                     handles.append(Line2D([], [], color=colour, linewidth=1.6 + place, label=f"from {bounds}"))
         handles += _places(axes, study, network, number)
         _name_streets(axes, network, per_km)
@@ -78,7 +79,7 @@ def delay_map(study: CongestionStudy, network: Network, number: int) -> Drawing 
         axes.set_ylim(south - 0.09 * (north - south) - 20, north + 20)
         axes.set_aspect("equal")
         axes.set_axis_off()
-        title = "veh-h of delay per h and km"
+        title = "vehicle-hours lost on the road per hour and km"
         axes.figure.legend(
             handles=handles,
             loc="outside upper left",

@@ -57,7 +57,8 @@ def answer(study: CongestionStudy) -> str:
     over = f"over {counted(seeds, 'seed')}{too_few if seeds < LEAST_SEEDS else ''}"
     if not plan.measures:
         return (
-            f"{plan.opened.name} loses {before_h:.1f} vehicle-hours an hour; a trip takes {found.travel_time:.2f} "
+            f"{plan.opened.name} has a delay of {before_h:.1f} vehicle-hours an hour, lost on the road or waited "
+            f"outside for room to enter; a trip takes {found.travel_time:.2f} "
             f"times its time on empty roads, and {found.planning_time:.2f} times in the worst twentieth of the "
             f"time, {over}."
         )
@@ -83,8 +84,8 @@ def answer(study: CongestionStudy) -> str:
         else ""
     )
     return (
-        f"“{name_of(best)}”{of} {_told(total)}: {abs(lost_h):.1f} {'more' if lost_h >= 0 else 'fewer'} are lost in "
-        f"congestion{share} and detours take {abs(detours_h):.1f} {'more' if detours_h >= 0 else 'fewer'}; "
+        f"“{name_of(best)}”{of} {_told(total)}: {abs(lost_h):.1f} {'more' if lost_h >= 0 else 'fewer'} of "
+        f"delay{share} and {abs(detours_h):.1f} {'more' if detours_h >= 0 else 'fewer'} of detours; "
         f"{index}, {over}{lacks}."
     )
 

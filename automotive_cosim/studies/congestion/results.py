@@ -2,7 +2,7 @@
 
 | figure | what it is |
 |---|---|
-| delay | vehicle-hours lost on the road (SUMO's ``timeLoss``) and waited outside for room to enter |
+| delay | time lost on the road (SUMO's ``timeLoss``) and waited outside for room to enter |
 | travel time index (TTI) | time of all vehicles divided by what their distances take without congestion |
 | planning time index (PTI) | 95th percentile of the travel time indices of all five minutes of all seeds |
 | buffer index | what that exceeds the mean by, as a share of the mean |
@@ -132,7 +132,7 @@ def waited_s(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = 
 
 
 def delay_h(plan: CongestionPlan, outcome: MeasureOutcome, part: NetworkPart = WHOLE) -> float:
-    """Vehicle-hours of delay per hour."""
+    """Vehicle-hours of delay per hour; of a class of road alone, of time lost on it."""
     lost_s = flow_in(plan, outcome, part).lost_s + waited_s(plan, outcome, part)
     return lost_s / HOUR_S / part.hours(plan)
 

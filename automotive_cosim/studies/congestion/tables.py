@@ -33,7 +33,7 @@ from automotive_cosim.traffic.network import Network, read_network
 from automotive_cosim.traffic.options import read_configuration
 
 WORST = 15
-"""Roads in the table of those where the delay changes most."""
+"""Roads in the table of those where the time lost changes most."""
 
 BEFORE = "none"
 
@@ -101,13 +101,13 @@ def whole(study: CongestionStudy) -> Table:
         "Waiting outside, veh-h/h",
     )
     note = (
-        "Means over the seeds. Delay: vehicle-hours lost on the road (SUMO's time loss, signals included) and "
-        "waited outside for room to enter. Change: seed by seed, against the copy of the same traffic without the "
-        f"measure; in brackets 95 % t intervals, from {LEAST_SEEDS} seeds. Detours: what is driven more, in "
-        "vehicle-hours without congestion; negative if less is driven, as in a jam. Travel time index: time of all "
-        "vehicles divided by that of the same distances without congestion; planning time index: its 95th "
-        "percentile over all five minutes of all seeds; buffer index: what that exceeds the mean by. Queues: mean "
-        "total length; longest: of a lane, in any seed."
+        "Means over the seeds. Delay: vehicle-hours of time lost on the road (SUMO's time loss, signals included) "
+        "and of waiting outside for room to enter. Change: of the delay, seed by seed, against the copy of the same"
+        f" traffic without the measure; in brackets 95 % t intervals, from {LEAST_SEEDS} seeds. Detours: what is "
+        "driven more, in vehicle-hours without congestion; negative if less is driven, as in a jam. Travel time "
+        "index: time of all vehicles divided by that of the same distances without congestion; planning time index:"
+        " its 95th percentile over all five minutes of all seeds; buffer index: what that exceeds the mean by. "
+        "Queues: mean total length; longest: of a lane, in any seed."
     )
     return Table("whole", "The network with each measure", columns, tuple(rows), note)
 
@@ -146,7 +146,7 @@ def by_class(study: CongestionStudy) -> Table:
         "Time",
         "Road class",
         "Measure",
-        "Delay, veh-h/h",
+        "Time lost, veh-h/h",
         "Change, veh-h/h",
         "Travel time index",
         "Planning time index",
@@ -155,7 +155,10 @@ def by_class(study: CongestionStudy) -> Table:
         "Longest queue, m",
         "Veh-km per h",
     )
-    note = "Classes are OpenStreetMap's; waiting outside belongs to none of them. Figures as above."
+    note = (
+        "Classes are OpenStreetMap's. Time lost: on the road, the part of the delay that belongs to a class; "
+        "waiting outside belongs to none. Other figures as above."
+    )
     return Table("by_class", "By class of road and hour", columns, tuple(rows), note, heads=3)
 
 
@@ -217,7 +220,7 @@ def emissions(study: CongestionStudy) -> Table:
 
 
 def roads(study: CongestionStudy) -> Table:
-    """The roads on which the strongest measure changes the delay most; without any, those with the most delay."""
+    """The roads where the strongest measure changes the time lost most; without any, where most is lost."""
     network = network_of(study)
     rows = [
         (
@@ -228,25 +231,25 @@ def roads(study: CongestionStudy) -> Table:
         )
         for edge, before, after in worst(study)
     ]
-    measured = ("Delay with the measure", "Change") if study.plan.measures else ()
-    note = "Vehicle-hours of delay per hour on the edge, means over the seeds."
+    measured = ("Time lost with the measure", "Change") if study.plan.measures else ()
+    note = "Vehicle-hours lost on the edge per hour, means over the seeds."
     if study.plan.measures:
         note = f"{note[:-1]}, with “{name_of(study.measures[strongest(study)])}”."
-    title = "Roads where the delay changes most" if study.plan.measures else "Roads with the most delay"
-    return Table("roads", title, ("Street", "Edge", "Delay", *measured), tuple(rows), note, heads=2)
+    title = "Roads where the time lost changes most" if study.plan.measures else "Roads where most time is lost"
+    return Table("roads", title, ("Street", "Edge", "Time lost", *measured), tuple(rows), note, heads=2)
 
 
 def worst(study: CongestionStudy, most: int = WORST) -> list[tuple[str, float, float]]:
-    """Edges for cars with their delay in vehicle-hours per hour without and with the strongest measure."""
-    before, after = (delay_of_edges(study, number) for number in (0, strongest(study)))
+    """Edges for cars with the vehicle-hours lost on them per hour without and with the strongest measure."""
+    before, after = (lost_on_edges(study, number) for number in (0, strongest(study)))
     known = network_of(study).edges
     by = (lambda edge: after.get(edge, 0.0) - before.get(edge, 0.0)) if study.plan.measures else before.__getitem__
     named = sorted({edge for edge in (*before, *after) if edge in known}, key=lambda edge: -abs(by(edge)))
     return [(edge, before.get(edge, 0.0), after.get(edge, 0.0)) for edge in named[:most]]
 
 
-def delay_of_edges(study: CongestionStudy, number: int) -> dict[str, float]:
-    """Delay of every edge with a measure, in vehicle-hours per hour, mean over the seeds."""
+def lost_on_edges(study: CongestionStudy, number: int) -> dict[str, float]:
+    """Vehicle-hours lost on every edge per hour with a measure, mean over the seeds."""
     sums: dict[str, float] = {}
     for (measure, edge, _), flow in study.edges.items():
         if measure == number:

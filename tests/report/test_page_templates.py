@@ -1,0 +1,32 @@
+"""What pages share."""
+
+from __future__ import annotations
+
+import re
+
+from automotive_cosim.report.templates import render
+
+
+def test_a_manifest_lists_what_was_given_and_no_none() -> None:
+    plan = {
+        "scenario": "grid",
+        "scale": None,
+        "via": [],
+        "step_s": 1.0,
+        "redraw": False,
+        "seeds": [0, 1],
+        "limits": {"a": 2, "b": None},
+    }
+    starts = [{"started": "", "platform": "", "git": None, "versions": {}}]
+    nothing = dict.fromkeys(("title", "about", "answer"), "") | dict.fromkeys(("warnings", "tables"), ())
+    page = render("studies/network.html", **nothing, plots={}, errors=0, missing=0, plan=plan, starts=starts)
+    told = dict(re.findall("<tr><th>(.*?)</th><td>(.*?)</td></tr>", page))
+    assert {name: told.get(name) for name in plan} == {
+        "scenario": "grid",
+        "scale": None,
+        "via": None,
+        "step_s": "1",
+        "redraw": "no",
+        "seeds": "0, 1",
+        "limits": "a 2",
+    }
