@@ -11,7 +11,6 @@ from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenarios.incidents import EmergencyVehicle
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
@@ -116,6 +115,5 @@ def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:
         incidents=script.incidents,
         advice_s=ADVICE_S,
         settles_s=SETTLES_S,
-        # A driver of SUMO's with blue light runs into a car that brakes early before it has made way.
-        brakes_early=not any(isinstance(incident, EmergencyVehicle) for incident in script.incidents),
+        brakes_early=True,
     )

@@ -114,9 +114,6 @@ _ENDS = {
 FOR_GOOD_S = 86_400.0
 SEARCH_S = 60.0
 """How long a driver who was asked to stop looks for a place."""
-EARLY_MPS2 = 2.5
-"""How hard an attentive driver brakes for what stands ahead: most people's decelerations before a signal lie below
-(Gates and others, 2007: 85th percentile 3.0, mean 2.2 m/s2)."""
 RELEASED = "driver_released"
 GOES_ON = "driver_goes_on"
 DRIVES_ON = "driver_drives_on"
@@ -630,9 +627,7 @@ class Driver:
 
     def _choose_braking(self) -> None:
         if self.plan.brakes_early:
-            is_attentive = self._profile.caution >= 1.0
-            gentle_mps2 = min(EARLY_MPS2, self._profile.deceleration_mps2)
-            self.pedals.set_braking(gentle_mps2 if is_attentive else self._profile.deceleration_mps2)
+            self.pedals.set_braking(self._profile.early_mps2)
             self.pedals.set_grip(self._condition.friction)
 
     def _adapted(self, ratio: float) -> float:

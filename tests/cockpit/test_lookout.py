@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.apps.map.lookout import ICONS, LINES
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said
-from automotive_cosim.cockpit.reach import HORIZON_M, NEWS_EVERY_S
+from automotive_cosim.cockpit.reach import CAMERA_M, HORIZON_M, NEWS_EVERY_S
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, HMI, OCCUPANT, SEAT, TYRE
 from automotive_cosim.contracts import (
     Connectivity,
@@ -75,17 +75,56 @@ def test_the_screens_show_each_sight_and_no_other(make: Make, around: Surroundin
     assert told["school_zone"] == "In a school zone"
 
 
-def test_in_a_junction_the_edge_that_was_left_counts_no_more(make: Make, around: Surroundings) -> None:
+def further(around: Surroundings, driven_m: float, edge_id: str = "e6_5") -> Surroundings:
+    """So much farther along the route."""
+    driving = around.driving
+    ahead = replace(driving.ahead, route_left_m=driving.ahead.route_left_m - driven_m)
+    return replace(around, driving=replace(driving, ahead=ahead, road=replace(driving.road, edge_id=edge_id)))
+
+
+def ahead_m(cockpit: Cockpit, kind: SightKind) -> float | None:
+    sight = by_kind(cockpit).get(kind)
+    return None if sight is None else sight.distance_m
+
+
+def test_what_is_ahead_is_as_far_as_the_way_to_it_with_its_junctions(make: Make, around: Surroundings) -> None:
+    """In a junction, too, which is no part of the edge before it, nor of the one after it."""
     seen = full(around)
-    driving = seen.driving
-    begun_m = make(surroundings=seen, lookout=True)
-    at_m = {sight.kind: sight.distance_m for sight in begun_m.sights}[SightKind.BREAKDOWN]
-    inside = replace(driving.road, edge_id=":n_0", lane_position_m=3.0)
-    crossing = make(surroundings=replace(seen, driving=replace(driving, road=inside)), lookout=True)
-    after_m = {sight.kind: sight.distance_m for sight in crossing.sights}[SightKind.BREAKDOWN]
-    assert at_m is not None
-    assert after_m is not None
-    assert after_m < at_m
+    lefts_m = (4250.0, 4130.0, 3980.0, 3860.0, 3740.0, 3620.0)  # a junction of 30 m before n7_6
+    ahead = replace(seen.driving.ahead, edges_left_m=lefts_m)
+    seen = replace(seen, driving=replace(seen.driving, ahead=ahead))
+    for driven_m, edge_id, away_m in ((0.0, "e6_5", 240.0), (210.0, ":n_0", 30.0), (229.0, ":n_0", 11.0)):
+        cockpit = make(surroundings=further(seen, driven_m, edge_id), lookout=True)
+        assert ahead_m(cockpit, SightKind.BREAKDOWN) == away_m
+
+
+def test_roadworks_last_to_the_end_of_their_road(make: Make, around: Surroundings) -> None:
+    works = (RoadIncident(IncidentKind.ROADWORKS, "e6_6", 0.0),)
+    driving = replace(around.driving, ahead=replace(around.driving.ahead, incidents=works))
+    for driven_m, told in (
+        (70.0, "Roadworks in 10 m"),
+        (80.0, "In roadworks, 120 m left"),
+        (130.0, "In roadworks, 70 m left"),
+        (201.0, None),
+    ):
+        cockpit = make(surroundings=further(replace(around, driving=driving), driven_m), lookout=True)
+        sight = by_kind(cockpit).get(SightKind.ROADWORKS)
+        assert (None if sight is None else sight.text) == told
+
+
+@pytest.mark.parametrize(("visibility_m", "from_m"), [(20_000.0, CAMERA_M), (60.0, 60.0)])
+def test_hazard_lights_are_seen_before_a_breakdown_is_reported(
+    make: Make, around: Surroundings, visibility_m: float, from_m: float
+) -> None:
+    """As far as there is sight; the report may be a minute late."""
+    cockpit = make(surroundings=around, lookout=True)
+    clear = replace(around, weather=replace(around.weather, visibility=visibility_m))
+    stands = (RoadIncident(IncidentKind.BREAKDOWN, "n7_6", 10.0),)  # 210 m ahead
+    for away_m, seen in ((from_m + 2.0, False), (from_m - 2.0, True)):
+        there = further(clear, 210.0 - away_m)
+        told = replace(there.driving, ahead=replace(there.driving.ahead, incidents=stands))
+        cockpit.sense(replace(there, driving=told), 1.0)
+        assert ahead_m(cockpit, SightKind.BREAKDOWN) == (away_m if seen else None)
 
 
 def test_every_kind_has_a_look(make: Make) -> None:
@@ -137,7 +176,7 @@ def test_a_limit_ahead_is_seen_with_the_hours_of_its_sign(network: RoadNetwork, 
         for road in network.roads
     )
     here_m = next(road.length_m for road in roads if road.edge_id == "e6_5")
-    away_m = here_m - around.driving.road.lane_position_m + 15.0  # with the junction before it
+    away_m = here_m - around.driving.road.lane_position_m
     for mps, told in ((8.0, hours), (14.0, "")):
         limit = Limit(mps, LimitSource.POSTED)
         ahead = replace(around.driving.ahead, next_limit=limit, next_limit_distance_m=away_m)
@@ -209,7 +248,8 @@ def test_every_sight_is_translated(make: Make, around: Surroundings, language: s
     )
     for cockpit_ in (parked, empty):
         cockpit_.sense(replace(standing, parked=True), 1.0)
-    ahead = replace(around.driving.ahead, jam_distance_m=0.0)
+    works = (RoadIncident(IncidentKind.ROADWORKS, "e6_5", 0.0),)
+    ahead = replace(around.driving.ahead, jam_distance_m=0.0, incidents=works)
     queueing = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)), lookout=True)
     told = [sight.text for each in (cockpit, riding, parked, empty, queueing) for sight in each.sights]
     assert {
@@ -217,6 +257,7 @@ def test_every_sight_is_translated(make: Make, around: Surroundings, language: s
         "Driver has left, aboard: Child",
         "Driver has left, nobody aboard",
         "In a traffic jam, 300 m left",
+        "In roadworks, 80 m left",
     } <= {*told}
     for text in told:
         words = said(text, language)
