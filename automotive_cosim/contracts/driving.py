@@ -192,9 +192,6 @@ class RoadAhead:
     divided by the limit, as reported by a live-traffic service."""
     incidents: tuple[RoadIncident, ...] = ()
     """Incidents anywhere in the network that such a service reports now."""
-    edges_left_m: tuple[float, ...] = ()
-    """How much of the route is left where each of ``route_edges`` begins: ``route_left_m`` less one of them is how far
-    away that edge is, with the junctions before it."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -34,7 +34,7 @@ from automotive_cosim.drives.margins import margin_kmh
 from automotive_cosim.geo.text import KM_PER_MILE
 from automotive_cosim.geo.weather import visibility_class
 from automotive_cosim.geo.weather import words as weather_words
-from automotive_cosim.traffic.road_weather import sight_speed_mps
+from automotive_cosim.traffic.road_weather import ICY, WORSE_THAN_WET, sight_speed_mps
 
 LONGEST_S = 60
 """A wait without a reason to wake ends after this."""
@@ -59,7 +59,7 @@ BLUE_M = 150.0
 ROLLING_KMH = 5.0
 QUEUE_MPS = 3.0
 """Below this, in a queue, nothing ahead wakes."""
-GRIP_STEPS = (0.9, 0.7, 0.5, 0.3)
+GRIP_STEPS = (0.9, WORSE_THAN_WET, ICY, 0.3)
 """Wet, soaked, snow or slush, packed snow or ice (``traffic.road_weather``)."""
 FASTEST_KMH, SIGHT_STEP_KMH = 130.0, 10.0
 """Sight for less than that speed is short, and tells at each step of it."""
@@ -144,6 +144,12 @@ def _limit_kmh(now: Moment) -> float | None:
     if law is None or not isinstance(value, float):
         return None
     return value * KM_PER_MILE if law.rule.unit == "mph" else value
+
+
+def _read_kmh(now: Moment) -> float | None:
+    """That limit as it is read: 50 mph and 80 km/h are one."""
+    kmh = _limit_kmh(now)
+    return None if kmh is None else round(kmh)
 
 
 def _kmh(now: Moment) -> float:
@@ -314,12 +320,11 @@ def _ahead(
     """
 
     def reads(drive: Drive) -> Hashable:
-        far_m = away_m(drive[-1])
+        now = drive[-1]
+        far_m = away_m(now)
         if far_m is None:
             return None
-        return Nearness(
-            name, 0 if far_m <= 0 else _steps(far_m, DUE_S[name] * drive[-1].driving.speed_mps, drive[-1])
-        )
+        return Nearness(name, 0 if far_m <= 0 else _steps(far_m, DUE_S[name] * now.driving.speed_mps, now))
 
     def words(drive: Drive) -> str:
         far_m = away_m(drive[-1])
@@ -532,7 +537,7 @@ def _of(read: Callable[[Moment], Hashable]) -> WakeReader:
 
 
 WAKES: tuple[Wake, ...] = (
-    Wake("limit", "the speed limit changes", _of(_limit_kmh), _limit_words),
+    Wake("limit", "the speed limit changes", _of(_read_kmh), _limit_words),
     Wake(
         "speed",
         "the car has been above the limit for three seconds, and each 10 % more",

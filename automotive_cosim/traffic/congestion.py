@@ -188,8 +188,7 @@ class Route:
         self._cameras_m = sorted(
             start_m + place_m for start_m, edge in zip(starts_m, edges, strict=True) for place_m in edge.cameras_m
         )
-        lefts_m = tuple(self.length_m - start_m for start_m in starts_m)
-        self._rest = tuple((self.edge_ids[index:], lefts_m[index:]) for index in range(len(edges)))
+        self._rest = tuple(self.edge_ids[index:] for index in range(len(edges)))
         self._slow = flow.slow_edges()
         self._incidents = incidents
         self._standing_m = sorted(
@@ -228,7 +227,6 @@ class Route:
             next_light: passed on.
         """
         leg = self._legs[index]
-        edge_ids, lefts_m = self._rest[index]
         left_m = max(0.0, self.length_m - position_m)
         on_edge_m = max(0.0, leg.start_m + leg.edge.length_m - position_m)
         eta_s = on_edge_m / leg.speed_mps + leg.time_after_s
@@ -245,12 +243,11 @@ class Route:
             max(0.0, leg.next_limit[1] - position_m) if leg.next_limit else None,
             0.0 if leg.edge.in_tunnel else None if leg.tunnel_m is None else max(0.0, leg.tunnel_m - position_m),
             None if leg.exit_m is None else max(0.0, leg.exit_m - position_m),
-            edge_ids,
+            self._rest[index],
             (),
             _next_m(self._cameras_m, position_m),
             self._slow,
             self._incidents,
-            lefts_m,
         )
 
 

@@ -74,6 +74,9 @@ GAP_KINDS = frozenset({AlertKind.DISTANCE, AlertKind.COLLISION, AlertKind.VISIBI
 ROOM_KINDS = frozenset({AlertKind.CORRIDOR, AlertKind.YIELD, AlertKind.MOVE_OVER})
 """Alerts after which a driver makes room for others."""
 
+VIEW_KINDS = frozenset({AlertKind.VISIBILITY, AlertKind.WEATHER, AlertKind.TUNNEL})
+"""Alerts after which a driver on a drive sees to wipers, defroster and lamps."""
+
 WAKING_KINDS = frozenset({AlertKind.FATIGUE, AlertKind.DISTRACTION})
 
 GIVE_WAY_M = 500.0
@@ -117,6 +120,10 @@ SEARCH_S = 60.0
 RELEASED = "driver_released"
 GOES_ON = "driver_goes_on"
 DRIVES_ON = "driver_drives_on"
+WAKES_UP = "driver_wakes"
+CLEARS_VIEW = "driver_clears_view"
+BUCKLES = "driver_buckles"
+"""Kinds of the events after which hands do something in the car (``cosim.hands``)."""
 PARKS = "driver_parks"
 SETS_OFF = "driver_sets_off"
 """Kinds of the events of a planned halt."""
@@ -427,7 +434,11 @@ class Driver:
             )
         if alert.kind in WAKING_KINDS:
             self.pedals.set_imperfection(min(ATTENTIVE, self._profile.imperfection))
-            events.append(Event(state.time_s, "driver_wakes", f"driver pays attention, {after}"))
+            events.append(Event(state.time_s, WAKES_UP, f"driver pays attention, {after}"))
+        if self.plan.advice_ends and alert.kind in VIEW_KINDS:
+            events.append(Event(state.time_s, CLEARS_VIEW, f"driver sees to glass and lamps, {after}"))
+        if self.plan.advice_ends and alert.kind is AlertKind.SEAT_BELT:
+            events.append(Event(state.time_s, BUCKLES, f"driver has everybody buckle up, {after}"))
         if alert.kind in ROOM_KINDS:
             events.append(self._make_room(alert, state, after))
         return events or [

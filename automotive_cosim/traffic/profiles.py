@@ -205,11 +205,11 @@ PROFILES: Mapping[str, DriverProfile] = {
 
 The average one's acceleration, deceleration and overtaking are SUMO's defaults for passenger cars (sumo.dlr.de,
 "Vehicle Type Parameter Defaults"). 2 s is the minimum gap in French law (code de la route R412-12); the
-tailgating one keeps a quarter of it, and both it and the pressing one, who look only at whom they follow, brake for
-what stands ahead as late as SUMO's model does: from 50 km/h at 21 m. Reaction times lie around the 1.25 s that Green (2000, "How long does it take
-to stop?") gives for a common unexpected signal, shorter for alert drivers (0.7 s when expected), longer for drowsy
-ones. The speeds of the hurried and the tailgating driver, the evenness, the compliance and the caution are chosen,
-not measured.
+tailgating one keeps a quarter of it. This one and the pressing one, who look only at whom they follow, brake as
+late as SUMO's model does: from 50 km/h at 21 m. Reaction times lie around the 1.25 s that Green (2000, "How long
+does it take to stop?") gives for a common unexpected signal, shorter for alert drivers (0.7 s when expected),
+longer for drowsy ones. The speeds of the hurried and the tailgating driver, the evenness, the compliance and the
+caution are chosen, not measured.
 """
 
 

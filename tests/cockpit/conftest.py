@@ -89,7 +89,6 @@ def outside(time_s: float = 900.0, speed_kmh: float = 48.0, **changes: object) -
     ahead = RoadAhead(
         4210.0, 640.0, 95.0, 0.6, 900.0, 300.0, None, Limit(30 / 3.6, LimitSource.POSTED), 400.0, None, None,
         ("e6_5", "e6_6", "n7_6", "n7_7", "e8_7", "e8_8"),
-        edges_left_m=(4250.0, 4130.0, 4010.0, 3890.0, 3770.0, 3650.0),
     )  # fmt: skip
     driving = DrivingState(
         time_s, 660.0, 722.0, 2.34, 48.86, 62.0, speed_kmh / 3.6, 0.0, 0.0, 1200.0, here, ahead,

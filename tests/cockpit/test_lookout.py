@@ -75,11 +75,13 @@ def test_the_screens_show_each_sight_and_no_other(make: Make, around: Surroundin
     assert told["school_zone"] == "In a school zone"
 
 
-def further(around: Surroundings, driven_m: float, edge_id: str = "e6_5") -> Surroundings:
-    """So much farther along the route."""
+def at(around: Surroundings, edge_id: str, on_edge_m: float) -> Surroundings:
+    """At another place of the route: on an edge, or in the junction after the first."""
     driving = around.driving
-    ahead = replace(driving.ahead, route_left_m=driving.ahead.route_left_m - driven_m)
-    return replace(around, driving=replace(driving, ahead=ahead, road=replace(driving.road, edge_id=edge_id)))
+    route = driving.ahead.route_edges
+    ahead = replace(driving.ahead, route_edges=route[route.index(edge_id) :] if edge_id in route else route)
+    road = replace(driving.road, edge_id=edge_id, lane_position_m=on_edge_m)
+    return replace(around, driving=replace(driving, ahead=ahead, road=road))
 
 
 def ahead_m(cockpit: Cockpit, kind: SightKind) -> float | None:
@@ -87,27 +89,31 @@ def ahead_m(cockpit: Cockpit, kind: SightKind) -> float | None:
     return None if sight is None else sight.distance_m
 
 
-def test_what_is_ahead_is_as_far_as_the_way_to_it_with_its_junctions(make: Make, around: Surroundings) -> None:
-    """In a junction, too, which is no part of the edge before it, nor of the one after it."""
-    seen = full(around)
-    lefts_m = (4250.0, 4130.0, 3980.0, 3860.0, 3740.0, 3620.0)  # a junction of 30 m before n7_6
-    ahead = replace(seen.driving.ahead, edges_left_m=lefts_m)
-    seen = replace(seen, driving=replace(seen.driving, ahead=ahead))
-    for driven_m, edge_id, away_m in ((0.0, "e6_5", 240.0), (210.0, ":n_0", 30.0), (229.0, ":n_0", 11.0)):
-        cockpit = make(surroundings=further(seen, driven_m, edge_id), lookout=True)
+def test_what_is_ahead_is_as_far_as_the_way_to_it_with_its_junctions(
+    network: RoadNetwork, around: Surroundings
+) -> None:
+    """In a junction, too, which is part of neither edge."""
+    lengths_m = {("e6_5", "e6_6"): 12.0, ("e6_6", "n7_6"): 30.0}
+    cockpit = Cockpit(replace(network, junctions_m=lengths_m), rng=np.random.default_rng(1), lookout=True)
+    for edge_id, on_edge_m, away_m in (
+        ("e6_5", 40.0, 80.0 + 12.0 + 120.0 + 30.0 + 10.0),
+        (":n_0", 5.0, 7.0 + 120.0 + 30.0 + 10.0),
+        ("e6_6", 0.0, 120.0 + 30.0 + 10.0),
+    ):
+        cockpit.sense(at(full(around), edge_id, on_edge_m), 1.0)
         assert ahead_m(cockpit, SightKind.BREAKDOWN) == away_m
 
 
 def test_roadworks_last_to_the_end_of_their_road(make: Make, around: Surroundings) -> None:
     works = (RoadIncident(IncidentKind.ROADWORKS, "e6_6", 0.0),)
     driving = replace(around.driving, ahead=replace(around.driving.ahead, incidents=works))
-    for driven_m, told in (
-        (70.0, "Roadworks in 10 m"),
-        (80.0, "In roadworks, 120 m left"),
-        (130.0, "In roadworks, 70 m left"),
-        (201.0, None),
+    for edge_id, on_edge_m, told in (
+        ("e6_5", 110.0, "Roadworks in 10 m"),
+        ("e6_6", 0.0, "In roadworks, 120 m left"),
+        ("e6_6", 50.0, "In roadworks, 70 m left"),
+        ("n7_6", 1.0, None),
     ):
-        cockpit = make(surroundings=further(replace(around, driving=driving), driven_m), lookout=True)
+        cockpit = make(surroundings=at(replace(around, driving=driving), edge_id, on_edge_m), lookout=True)
         sight = by_kind(cockpit).get(SightKind.ROADWORKS)
         assert (None if sight is None else sight.text) == told
 
@@ -119,9 +125,9 @@ def test_hazard_lights_are_seen_before_a_breakdown_is_reported(
     """As far as there is sight; the report may be a minute late."""
     cockpit = make(surroundings=around, lookout=True)
     clear = replace(around, weather=replace(around.weather, visibility=visibility_m))
-    stands = (RoadIncident(IncidentKind.BREAKDOWN, "n7_6", 10.0),)  # 210 m ahead
+    stands = (RoadIncident(IncidentKind.BREAKDOWN, "e6_6", 90.0),)
     for away_m, seen in ((from_m + 2.0, False), (from_m - 2.0, True)):
-        there = further(clear, 210.0 - away_m)
+        there = at(clear, "e6_5", 210.0 - away_m)
         told = replace(there.driving, ahead=replace(there.driving.ahead, incidents=stands))
         cockpit.sense(replace(there, driving=told), 1.0)
         assert ahead_m(cockpit, SightKind.BREAKDOWN) == (away_m if seen else None)

@@ -169,7 +169,7 @@ def _ahead(state: State, driving: DrivingState) -> Iterator[Sight]:
 
 def _limit_hours(state: State, driving: DrivingState, limit: Limit, limit_m: float) -> str:
     """The hours on the sign of the next limit; empty if the road has that limit at all hours."""
-    for edge_id, start_m in _starts_m(driving).items():
+    for edge_id, start_m in _starts_m(state, driving).items():
         road = state.roads.find(edge_id)
         if road is not None and road.limit_hours and abs(start_m - limit_m) <= 1.0:
             usual_mps = road.limit_mps
@@ -179,8 +179,8 @@ def _limit_hours(state: State, driving: DrivingState, limit: Limit, limit_m: flo
 
 
 def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
-    """Schools of the map, incidents of the last report and hazard lights in sight, on the route within the horizon."""
-    starts_m = _starts_m(driving)
+    """Schools of the map, and the incidents that are known, on the route within the horizon."""
+    starts_m = _starts_m(state, driving)
     found: dict[SightKind, float] = {}
     hours = ""
     for edge_id, start_m in starts_m.items():
@@ -217,12 +217,12 @@ def _known(state: State, driving: DrivingState) -> Iterator[RoadIncident]:
     if state.news is not None:
         yield from state.news.ahead.incidents
     seen_m = 0.0 if state.outside is None else min(CAMERA_M, state.outside.weather.visibility)
-    starts_m = _starts_m(driving)
+    starts_m = _starts_m(state, driving)
     for incident in driving.ahead.incidents:
         start_m = starts_m.get(incident.edge_id)
-        if start_m is not None and incident.kind is IncidentKind.BREAKDOWN:
-            if start_m + incident.position_m <= seen_m:
-                yield incident
+        is_near = start_m is not None and start_m + incident.position_m <= seen_m
+        if is_near and incident.kind is IncidentKind.BREAKDOWN:
+            yield incident
 
 
 def _jam(state: State, driving: DrivingState, queue: tuple[float, float] | None) -> Iterator[Sight]:
@@ -251,15 +251,20 @@ def _jam(state: State, driving: DrivingState, queue: tuple[float, float] | None)
         yield from _told(state, SightKind.JAM, min(ahead_m))
 
 
-def _starts_m(driving: DrivingState) -> dict[str, float]:
+def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
     """The edges of the route within the horizon, and where each begins, counted from the car."""
-    ahead = driving.ahead
     found: dict[str, float] = {}
-    for edge_id, edge_left_m in zip(ahead.route_edges, ahead.edges_left_m, strict=True):
-        start_m = ahead.route_left_m - edge_left_m
+    start_m, before = -driving.road.lane_position_m, ""
+    for edge_id in driving.ahead.route_edges:
+        start_m += state.roads.network.junctions_m.get((before, edge_id), 0.0)
         if start_m > HORIZON_M:
             break
+        road = state.roads.find(edge_id)
+        length_m = 0.0 if road is None else road.length_m
+        if not before and driving.road.edge_id.startswith(":"):
+            start_m -= length_m  # in a junction the route still begins with the edge that has been left
         found.setdefault(edge_id, start_m)
+        start_m, before = start_m + length_m, edge_id
     return found
 
 
