@@ -15,6 +15,7 @@ from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.rounds import loop_with
 
 ADVICE_S = 120.0
 """How long a driver keeps to advice, and stops when asked to: our choice; a reason that lasts is told again."""
@@ -63,6 +64,7 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
             changes=script.changes,
             lookout=True,
             driven_s=script.driven_s,
+            places_on=loop_with(traffic.network.junctions_m, traffic.state.ahead.route_edges[-1]),
         )
         world = couple(
             traffic,

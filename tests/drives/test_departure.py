@@ -13,6 +13,7 @@ import pytest
 
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
+from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, LIGHTS, MOTION, OCCUPANT, SEAT, Signal
 from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, SightKind, Weather
 from automotive_cosim.cosim.moment import Moment
@@ -27,6 +28,7 @@ from automotive_cosim.scenarios.incidents import AheadIncident, EmergencyVehicle
 from automotive_cosim.traffic.base import DriverAt, EgoPlan
 from automotive_cosim.traffic.ego import BUCKLES, CLEARS_VIEW, WAKES_UP
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.rounds import loop_with
 from tests.drives.scenes import found
 
 DRY = Weather(16.0, 60.0, 0.0, 1, 20.0, 24000.0, 8.0)
@@ -61,6 +63,18 @@ def driven(script: DriveScript, simulations: Simulations, for_s: float) -> tuple
 def digest(moments: tuple[Moment, ...]) -> str:
     parts = (canonical([plain(moment.driving), dict(moment.signals), plain(moment.sights)]) for moment in moments)
     return sha256(b"".join(parts)).hexdigest()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("family", "seed"), [("beauce_june", 0), ("nordic_july", 2)])
+def test_one_can_drive_on_from_every_place(simulations: Simulations, family: str, seed: int) -> None:
+    with departed(FAMILIES[family].draw(seed), simulations) as world:
+        ways = world.traffic.network.junctions_m
+        route = world.moment.driving.ahead.route_edges
+        places = world.cockpit.state.of(Gazetteer).places
+    assert places
+    for place in places:
+        assert {place.edge_id, route[-1]} <= loop_with(ways, place.edge_id)
 
 
 @pytest.mark.slow

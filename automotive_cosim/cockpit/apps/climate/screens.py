@@ -182,14 +182,15 @@ def _switches(rect: Rect, state: State) -> tuple[Widget, ...]:
 def _cabin(rect: Rect, state: State) -> tuple[Widget, ...]:
     signals = state.signals
     return (
-        Label(
-            rect=rect.top(32),
+        Button(
+            rect=rect.top(36),
             key="hvac.cabin_temperature",
             text=say("Cabin {temperature}", temperature=temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
-            style=Type.LABEL,
+            description=say("Who is aboard, and keep climate on"),
+            on_tap=Show("cabin"),
         ),
         Label(
-            rect=rect.bottom_part(30),
+            rect=rect.bottom_part(26),
             key="hvac.cabin_humidity",
             text=say("Humidity {humidity} %", humidity=f"{signals[HVAC.CABIN_HUMIDITY]:.0f}"),
             style=Type.CAPTION,
