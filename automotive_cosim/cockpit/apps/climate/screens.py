@@ -182,15 +182,14 @@ def _switches(rect: Rect, state: State) -> tuple[Widget, ...]:
 def _cabin(rect: Rect, state: State) -> tuple[Widget, ...]:
     signals = state.signals
     return (
-        Button(
-            rect=rect.top(36),
+        Label(
+            rect=rect.top(32),
             key="hvac.cabin_temperature",
             text=say("Cabin {temperature}", temperature=temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
-            description=say("Who is aboard, and keep climate on"),
-            on_tap=Show("cabin"),
+            style=Type.LABEL,
         ),
         Label(
-            rect=rect.bottom_part(26),
+            rect=rect.bottom_part(30),
             key="hvac.cabin_humidity",
             text=say("Humidity {humidity} %", humidity=f"{signals[HVAC.CABIN_HUMIDITY]:.0f}"),
             style=Type.CAPTION,
@@ -291,7 +290,14 @@ def _rear(rect: Rect, state: State) -> Widget:
                 ),
                 description=say("{name}: {value}", name=say("Rear right"), value=say("Seat heat")),
             ),
-            title(air, Icon.AIR_QUALITY, say("Cabin air")),
+            title(air.left(air.width - 180), Icon.AIR_QUALITY, say("Cabin air")),
+            Button(
+                rect=air.right_part(160),
+                key="comfort.cabin",
+                text=say("Cabin"),
+                description=say("Who is aboard, and keep climate on"),
+                on_tap=Show("cabin"),
+            ),
             *(
                 widget
                 for line, (key, name, value) in zip(facts.rows(5, 8), known, strict=True)
