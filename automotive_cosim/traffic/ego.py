@@ -77,6 +77,9 @@ ROOM_KINDS = frozenset({AlertKind.CORRIDOR, AlertKind.YIELD, AlertKind.MOVE_OVER
 VIEW_KINDS = frozenset({AlertKind.VISIBILITY, AlertKind.WEATHER, AlertKind.TUNNEL})
 """Alerts after which a driver on a drive sees to wipers, defroster and lamps."""
 
+BELT_KINDS = frozenset({AlertKind.SEAT_BELT})
+"""Alerts after which a driver on a drive has everybody buckle up."""
+
 WAKING_KINDS = frozenset({AlertKind.FATIGUE, AlertKind.DISTRACTION})
 
 GIVE_WAY_M = 500.0
@@ -437,7 +440,7 @@ class Driver:
             events.append(Event(state.time_s, WAKES_UP, f"driver pays attention, {after}"))
         if self.plan.advice_ends and alert.kind in VIEW_KINDS:
             events.append(Event(state.time_s, CLEARS_VIEW, f"driver sees to glass and lamps, {after}"))
-        if self.plan.advice_ends and alert.kind is AlertKind.SEAT_BELT:
+        if self.plan.advice_ends and alert.kind in BELT_KINDS:
             events.append(Event(state.time_s, BUCKLES, f"driver has everybody buckle up, {after}"))
         if alert.kind in ROOM_KINDS:
             events.append(self._make_room(alert, state, after))
