@@ -21,6 +21,7 @@ from automotive_cosim.contracts import (
     SightKind,
 )
 from automotive_cosim.contracts.given import Language
+from automotive_cosim.drives.alarm import Alarm, noticed
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.driver import driver_line
 from automotive_cosim.drives.events import KINDS, WatchAct
@@ -31,7 +32,7 @@ from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
-from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm, noticed
+from automotive_cosim.drives.wakes import LONGEST_S, WAKES
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS, AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
