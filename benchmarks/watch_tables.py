@@ -32,12 +32,13 @@ from pathlib import Path
 from typing import TypeVar
 
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
+from automotive_cosim.drives.alarm import Alarm
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, Tracker, WatchAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import facts_of, judge
 from automotive_cosim.drives.score import Score, score, together
-from automotive_cosim.drives.wakes import WAKES, Alarm
+from automotive_cosim.drives.wakes import WAKES
 from automotive_cosim.drives.watch import CHANGED, Watch
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import SessionSetup

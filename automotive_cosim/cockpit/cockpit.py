@@ -119,6 +119,7 @@ class Cockpit:
         sensors: Mapping[str, Any] | None = None,
         lookout: bool = False,
         driven_s: float = 0.0,
+        places_on: frozenset[str] | None = None,
         size: ScreenSize = ScreenSize.STANDARD,
         width: int | None = None,
     ) -> None:
@@ -139,6 +140,7 @@ class Cockpit:
             sensors: VSS paths of sensors that measure wrongly, and what they always read.
             lookout: whether home and map show what the car notices around, ahead and aboard.
             driven_s: how long the driver had been driving without a break before departure.
+            places_on: edges on which places may lie; None means any.
             size: size of the display.
             width: width of the screenshot in pixels, by default that of the size; the height follows.
 
@@ -150,6 +152,7 @@ class Cockpit:
         state = self._state = State(
             Vehicle(Signals()), road_map(network), sign_camera, CabinStart.read(cabin or {})
         )
+        state.places_on = places_on
         for app in sorted(apps().values(), key=lambda app: app.turn):
             state.keep(*app.starts(state, rng))
         bring(state, belongings)

@@ -149,10 +149,12 @@ class Gazetteer(AppData):
         return (*own, *self.streets)
 
 
-def atlas(roads: RoadMap, rng: np.random.Generator) -> Gazetteer:
-    """Draws the places of a network, each on a street of its own."""
+def atlas(roads: RoadMap, rng: np.random.Generator, on: frozenset[str] | None = None) -> Gazetteer:
+    """Draws the places of a network, each on a street of its own, and on these edges if any are named."""
     streets = tuple(roads.names[int(i)] for i in rng.permutation(len(roads.names))[:FAVOURITE_STREETS])
     addresses = _addresses(roads)
+    if on is not None:
+        addresses = tuple(at for at in addresses if roads.roads[at].edge_id in on) or addresses
     chosen = rng.permutation(len(addresses))[:PLACES]
     names = _names(rng)[: len(chosen)]
     return Gazetteer(

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 RADAR_M = 150.0
 """Reach of the forward radar; a typical long-range one."""
+CAMERA_M = 150.0
+"""How far off the forward camera sees hazard lights, in clear air; as far as the radar reaches, our choice."""
 REAR_RADAR_M = 80.0
 """Reach of the radars at the rear corners; those for lane change warnings look 70 to 100 m back (ISO 17387 asks for
 warnings of vehicles that close at up to 20 m/s)."""

@@ -198,6 +198,8 @@ class State:
     """The surroundings when the car was last online, from which it knows the live traffic."""
     lookout: bool = False
     """Whether the car shows what it notices around, ahead and aboard (``apps.map.lookout``)."""
+    places_on: frozenset[str] | None = None
+    """Edges on which places may lie; None means any."""
     news: DrivingState | None = None
     """The road at the last report of the traffic service, for the lookout."""
     driven_s: float = 0.0

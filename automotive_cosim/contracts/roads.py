@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from automotive_cosim.contracts.driving import LimitSource
@@ -66,3 +66,5 @@ class RoadNetwork:
     left_hand: bool
     ground: tuple[GroundArea, ...] = ()
     """Water, green and buildings around the roads."""
+    junctions_m: Mapping[tuple[str, str], float] = field(default_factory=dict, hash=False)
+    """Length of the way through the junction between two edges."""

@@ -10,6 +10,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import CALL
 from automotive_cosim.contracts import DrivingState, Limit, RouteOption
 from automotive_cosim.contracts.errand import Errand, ErrandKind
+from automotive_cosim.cosim.hands import handled
 from automotive_cosim.cosim.moment import Moment, around
 from automotive_cosim.geo.connectivity import OFFLINE, Modem
 from automotive_cosim.geo.gps import Gps
@@ -106,6 +107,8 @@ class Car:
         for event in events:
             if event.kind in (PARKS, SETS_OFF):
                 self.is_parked = event.kind == PARKS
+            if changes := tuple(handled(event.kind, self.cockpit.signals)):
+                self.cockpit.expect(changes)
         context = self.geo.locate(driving, gps, weather, local_time)
         if self.read_sign is None or self.read_sign[0] != driving.road.limit:
             self.read_sign = driving.road.limit, context.speed_unit  # only then: to find the place takes long

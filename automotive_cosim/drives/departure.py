@@ -11,11 +11,11 @@ from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenarios.incidents import EmergencyVehicle
 from automotive_cosim.scenery import open_scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.rounds import loop_with
 
 ADVICE_S = 120.0
 """How long a driver keeps to advice, and stops when asked to: our choice; a reason that lasts is told again."""
@@ -64,6 +64,7 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
             changes=script.changes,
             lookout=True,
             driven_s=script.driven_s,
+            places_on=loop_with(traffic.network.junctions_m, traffic.state.ahead.route_edges[-1]),
         )
         world = couple(
             traffic,
@@ -116,6 +117,5 @@ def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:
         incidents=script.incidents,
         advice_s=ADVICE_S,
         settles_s=SETTLES_S,
-        # A driver of SUMO's with blue light runs into a car that brakes early before it has made way.
-        brakes_early=not any(isinstance(incident, EmergencyVehicle) for incident in script.incidents),
+        brakes_early=True,
     )

@@ -6,8 +6,9 @@ from collections.abc import Iterator, Sequence
 
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.traffic.base import Event
+from automotive_cosim.traffic.ego import WAKES_UP
 
-HEEDS = frozenset({"driver_slows", "driver_holds", "driver_opens_gap", "driver_wakes", "driver_pulls_over"})
+HEEDS = frozenset({"driver_slows", "driver_holds", "driver_opens_gap", WAKES_UP, "driver_pulls_over"})
 """Events after which the driver drives, or stops, as was asked, until it is over."""
 SPEEDS = frozenset({"driver_slows", "driver_holds"})
 PULLS_OVER = "driver_pulls_over"

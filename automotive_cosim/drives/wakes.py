@@ -9,7 +9,7 @@ read; the checks of the law are not among them.
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from math import ceil, floor
 
 from automotive_cosim.cockpit.aboard import Seat, seated_by
@@ -34,6 +34,7 @@ from automotive_cosim.drives.margins import margin_kmh
 from automotive_cosim.geo.text import KM_PER_MILE
 from automotive_cosim.geo.weather import visibility_class
 from automotive_cosim.geo.weather import words as weather_words
+from automotive_cosim.traffic.road_weather import ICY, WORSE_THAN_WET, sight_speed_mps
 
 LONGEST_S = 60
 """A wait without a reason to wake ends after this."""
@@ -58,14 +59,20 @@ BLUE_M = 150.0
 ROLLING_KMH = 5.0
 QUEUE_MPS = 3.0
 """Below this, in a queue, nothing ahead wakes."""
-GRIP_STEPS = (0.9, 0.7, 0.5, 0.3)
+GRIP_STEPS = (0.9, WORSE_THAN_WET, ICY, 0.3)
 """Wet, soaked, snow or slush, packed snow or ice (``traffic.road_weather``)."""
+FASTEST_KMH, SIGHT_STEP_KMH = 130.0, 10.0
+"""Sight for less than that speed is short, and tells at each step of it."""
+FROST_C = 4.0
+"""Cars warn of possible ice from this temperature."""
 PASSED = "ended, no longer ahead"
 MIST = 0.1
 RECOMMENDED_KPA = 250.0
 SOFT_KPA = 240.0
 TREND_S = 10.0
 """A reading rises or falls if it does over this time."""
+WEATHER_S = 18.0
+"""The same for weather, which comes on in steps of up to fifteen seconds (``sky``)."""
 TURN_S = 3.0
 """A reading that has turned round within this time reads as it goes now."""
 WINDOWS = (
@@ -121,8 +128,6 @@ class Wake:
     """Quantity, limit and trend; empty while there is nothing to read."""
     hold_s: float = 0.0
     """How long the reading must have differed from what was told last."""
-    is_told_first: bool = False
-    """Whether the first look tells of it, without waiting for ``hold_s``."""
     ended: str = "ended"
     """What the reading says once there is nothing to read; it begins with ``ended``."""
 
@@ -139,6 +144,12 @@ def _limit_kmh(now: Moment) -> float | None:
     if law is None or not isinstance(value, float):
         return None
     return value * KM_PER_MILE if law.rule.unit == "mph" else value
+
+
+def _read_kmh(now: Moment) -> float | None:
+    """That limit as it is read: 50 mph and 80 km/h are one."""
+    kmh = _limit_kmh(now)
+    return None if kmh is None else round(kmh)
 
 
 def _kmh(now: Moment) -> float:
@@ -309,16 +320,17 @@ def _ahead(
     """
 
     def reads(drive: Drive) -> Hashable:
-        far_m = away_m(drive[-1])
-        if far_m is None or far_m <= 0:
+        now = drive[-1]
+        far_m = away_m(now)
+        if far_m is None:
             return None
-        return Nearness(name, _steps(far_m, DUE_S[name] * drive[-1].driving.speed_mps, drive[-1]))
+        return Nearness(name, 0 if far_m <= 0 else _steps(far_m, DUE_S[name] * now.driving.speed_mps, now))
 
     def words(drive: Drive) -> str:
         far_m = away_m(drive[-1])
         if far_m is None:
             return ""
-        return more(drive[-1]) if far_m <= 0 else f"in {_far(far_m, drive[-1])}{more(drive[-1])}"
+        return f"{'the car is in it' if far_m <= 0 else f'in {_far(far_m, drive[-1])}'}{more(drive[-1])}"
 
     early, late = (seconds + DUE_S[name] for seconds in BEFORE_S)
     return Wake(
@@ -339,8 +351,8 @@ def _reported(kind: SightKind, about: str) -> Wake:
         sight = _seen(now, kind)
         if sight is None:
             return ""
-        left_m = sight.value if kind is SightKind.JAM and not sight.distance_m else None
-        return _signed(sight.hours) if left_m is None else f"the car is in it, {left_m:.0f} m are left"
+        left_m = sight.value if not sight.distance_m else None
+        return _signed(sight.hours) + ("" if left_m is None else f", {left_m:.0f} m are left")
 
     return _ahead(kind.value.replace("_", " "), away_m, about, more)
 
@@ -379,21 +391,31 @@ def _runs_by_day(now: Moment) -> bool:
     return now.signals[MOTION.GEAR.path] != "P" and not any(now.signals[lamp.path] for lamp in others)
 
 
+def _weather(now: Moment) -> Hashable:
+    """Its code, the class of the visibility and frost; where the sight is short, also for which speed it is enough,
+    because advice names that."""
+    weather = now.weather
+    enough_kmh = sight_speed_mps(weather.visibility, now.driving.road.friction) * KMH_PER_MPS
+    is_short = enough_kmh < FASTEST_KMH
+    return (
+        weather.weather_code,
+        visibility_class(weather.visibility),
+        floor(enough_kmh / SIGHT_STEP_KMH) if is_short else None,
+        weather.temperature_2m <= FROST_C,
+    )
+
+
 def _weather_words(drive: Drive) -> str:
     weather = drive[-1].weather
-    trend = _trend_of(drive, lambda moment: moment.weather.visibility, 0.05 * weather.visibility)
+    trend = _trend_of(drive, lambda moment: moment.weather.visibility, 0.05 * weather.visibility, WEATHER_S)
     return f"{weather_words(weather.weather_code)}, visibility {weather.visibility:.0f} m, {trend}"
-
-
-def _road(drive: Drive) -> Hashable:
-    road = drive[-1].driving.road
-    return (road.road_class, road.school_zone, road.limit_hours) if road.road_class else None
 
 
 def _road_words(drive: Drive) -> str:
     road = drive[-1].driving.road
     zone = ", school zone" if road.school_zone else ""
-    return f"{road.road_class.replace('_', ' ') or 'road'}{zone}"
+    hours = f", another limit {road.limit_hours}" if road.limit_hours else ""
+    return f"{road.road_class.replace('_', ' ') or 'road'}{zone}{hours}"
 
 
 def _grip(drive: Drive) -> Hashable:
@@ -422,6 +444,10 @@ def _hours(now: Moment) -> float | None:
 def _rolling(now: Moment, what: Hashable) -> Nearness:
     """It is there; a second step once the car sets off with it, which a queue does not take back."""
     return Nearness(what, 1 + (_kmh(now) >= ROLLING_KMH))
+
+
+def _rolls(now: Moment) -> str:
+    return ", and the car drives" if _kmh(now) >= ROLLING_KMH else ""
 
 
 def _unbelted(now: Moment) -> tuple[tuple[str, str], ...]:
@@ -497,6 +523,9 @@ def _phone(now: Moment) -> str:
     return str(now.signals[CALL.PHONE.path])
 
 
+PHONE = {"HAND": "in the driver's hand", "CRADLE": "in use in its cradle"}
+
+
 def _place_words(drive: Drive) -> str:
     now = drive[-1]
     shown = "mph" if now.signals[HMI.DISTANCE_UNIT.path] == "MILES" else "km/h"
@@ -508,7 +537,7 @@ def _of(read: Callable[[Moment], Hashable]) -> WakeReader:
 
 
 WAKES: tuple[Wake, ...] = (
-    Wake("limit", "the speed limit changes", _of(_limit_kmh), _limit_words),
+    Wake("limit", "the speed limit changes", _of(_read_kmh), _limit_words),
     Wake(
         "speed",
         "the car has been above the limit for three seconds, and each 10 % more",
@@ -544,7 +573,7 @@ WAKES: tuple[Wake, ...] = (
     _reported(SightKind.ROADWORKS, "roadworks"),
     _reported(SightKind.CLOSURE, "a closed road"),
     _reported(SightKind.SCHOOL_ZONE, "a school zone"),
-    Wake("road", "another class of road, or a school zone", _road, _road_words, hold_s=1.0, is_told_first=True),
+    Wake("road", "another class of road, a school zone, other hours of a limit", _road_words, _road_words),
     Wake(
         "light",
         "day, twilight, night; into or out of a tunnel",
@@ -554,14 +583,8 @@ WAKES: tuple[Wake, ...] = (
     Wake("lamps", "a lamp goes on or off", _of(_lamps), _lamp_words),
     Wake(
         "weather",
-        "other weather, another class of visibility, frost",
-        _of(
-            lambda now: (
-                now.weather.weather_code,
-                visibility_class(now.weather.visibility),
-                now.weather.temperature_2m <= 4.0,
-            )
-        ),
+        "other weather, another class of visibility, sight for 10 km/h less or more, frost",
+        _of(_weather),
         _weather_words,
     ),
     Wake("grip", "the grip of the road falls below 0.9, 0.7, 0.5 and 0.3 of that of a dry one", _grip, _grip_words),
@@ -603,21 +626,19 @@ WAKES: tuple[Wake, ...] = (
         "belt",
         "the belt of a seat that is taken is opened, or the car sets off without it",
         _of(lambda now: _rolling(now, _unbelted(now)) if _unbelted(now) else None),
-        lambda drive: f"open: {_who(_unbelted(drive[-1]))}" if _unbelted(drive[-1]) else "",
+        lambda drive: f"open: {_who(_unbelted(drive[-1]))}{_rolls(drive[-1])}" if _unbelted(drive[-1]) else "",
     ),
     Wake(
         "open",
         "a door, flap or window is open, or the car sets off with it",
         _of(lambda now: _rolling(now, _open_parts(now)) if _open_parts(now) else None),
-        lambda drive: ", ".join(_open_parts(drive[-1])),
+        lambda drive: f"{', '.join(parts)}{_rolls(drive[-1])}" if (parts := _open_parts(drive[-1])) else "",
     ),
     Wake(
         "phone",
         "the driver takes a phone, in the hand or in its cradle, or sets off with it",
         _of(lambda now: None if _phone(now) == "AWAY" else _rolling(now, _phone(now))),
-        lambda drive: {"AWAY": "", "HAND": "in the driver's hand", "CRADLE": "in use in its cradle"}[
-            _phone(drive[-1])
-        ],
+        lambda drive: f"{PHONE[phone]}{_rolls(drive[-1])}" if (phone := _phone(drive[-1])) in PHONE else "",
     ),
     Wake(
         "driving time",
@@ -652,78 +673,3 @@ WAKES: tuple[Wake, ...] = (
     ),
 )
 """Everything that is read and that wakes."""
-
-
-def noticed(drive: Drive, changed: Sequence[str] = (), wakes: Sequence[Wake] = WAKES) -> str:
-    """Every reading of the car, one line each: its name, whether it has changed, and its words.
-
-    Args:
-        drive: the moments so far.
-        changed: names of what has changed since the last look; of those that are no longer there, that they ended.
-        wakes: what is read.
-    """
-    lines = []
-    for wake in wakes:
-        words = wake.words(drive)
-        has_changed = wake.name in changed
-        if words or has_changed:
-            lines.append(f"{wake.name}{' (changed)' if has_changed else ''}: {words or wake.ended}")
-    return "\n".join(lines)
-
-
-@dataclass(frozen=True, slots=True)
-class Noticed:
-    """One change that an agent is told of."""
-
-    name: str
-    """Of the reading."""
-    wakes: bool
-    """Whether it ends a wait; what has ended is only told with the next observation."""
-
-
-@dataclass(slots=True)
-class _Told:
-    reading: Hashable = None
-    differs_since_s: float | None = None
-    """Since when the reading has been another; None while it is this one."""
-
-
-@dataclass(slots=True)
-class Alarm:
-    """Watches one drive for what wakes."""
-
-    wakes: tuple[Wake, ...] = WAKES
-    _told: dict[str, _Told] = field(default_factory=dict)
-
-    def see(self, drive: Drive) -> tuple[Noticed, ...]:
-        """What has changed at the newest moment. At the first, whatever there is to report."""
-        found = []
-        now_s = drive[-1].time_s
-        for wake in self.wakes:
-            is_first = wake.name not in self._told
-            told = self._told.setdefault(wake.name, _Told())
-            reading = _risen(wake.reads(drive), told.reading)
-            if reading == told.reading:
-                told.differs_since_s = None
-                continue
-            if told.differs_since_s is None:
-                told.differs_since_s = now_s
-            eases = isinstance(reading, Level) and isinstance(told.reading, Level) and reading <= told.reading
-            hold_s = EASED_S if eases else 0.0 if is_first and wake.is_told_first else wake.hold_s
-            if now_s - told.differs_since_s < hold_s:
-                continue
-            told.reading, told.differs_since_s = reading, None
-            is_far = isinstance(reading, Nearness) and not reading.number
-            if not eases and not is_far:
-                found.append(Noticed(wake.name, wakes=reading is not None))
-        return tuple(found)
-
-
-def _risen(reading: Hashable, told: Hashable) -> Hashable:
-    """A reading; the step of what was told before if it is no nearer, as in a queue, or no worse in one of its
-    kinds."""
-    if isinstance(reading, Level) and isinstance(told, Level) and not reading <= told:
-        return Level(tuple(map(max, reading.steps, told.steps)))
-    if isinstance(reading, Nearness) and isinstance(told, Nearness) and reading.what == told.what:
-        return told if reading.number <= told.number else reading
-    return reading

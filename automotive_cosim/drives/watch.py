@@ -17,13 +17,14 @@ from automotive_cosim.contracts import Action, ActionType, Feedback, FeedbackCod
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
 from automotive_cosim.drives.acts import acts_of, refusal, spoken
+from automotive_cosim.drives.alarm import Alarm, Noticed, noticed
 from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
 from automotive_cosim.drives.errands import said
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
-from automotive_cosim.drives.wakes import FAR_S, LONGEST_S, Alarm, Noticed, noticed
+from automotive_cosim.drives.wakes import FAR_S, LONGEST_S
 from automotive_cosim.episode.baseline import Baseline
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.episode.observer import Observer

@@ -238,6 +238,11 @@ def _incidents(driving: DrivingState) -> Iterator[str]:
         yield "Reported on the route: nothing besides jams"
 
 
+def _units(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
+    unit = drive[-1].context.speed_unit
+    yield f"Units on signs here: {unit}, {'miles and yards' if unit == 'mph' else 'kilometres and metres'}"
+
+
 def _position(drive: Sequence[Known], topics: frozenset[str], roads: Roads | None = None) -> Iterator[str]:
     gps = drive[-1].gps
     if gps is None or gps.has_fix:
@@ -288,6 +293,12 @@ _SUBJECTS = (
         "norms",
         _set("norm norms custom customs customary usual usually habit habits climate people"),
         _norms,
+        on_board=True,
+    ),
+    _Subject(
+        "units",
+        _set("unit units mph kmh km mile miles kilometre kilometres kilometer kilometers"),
+        _units,
         on_board=True,
     ),
     _Subject(

@@ -11,7 +11,6 @@ import math
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 
@@ -35,6 +34,7 @@ from automotive_cosim.contracts import (
 from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.base import EgoPlan, Event, HaltAt
 from automotive_cosim.traffic.instant import Instant
+from automotive_cosim.traffic.pedals import Pedals, RefusedError
 from automotive_cosim.traffic.profiles import DriverProfile, profile
 from automotive_cosim.traffic.reasons import AdviceReason, RoadView, reason_for
 from automotive_cosim.traffic.road_weather import DRY, Forecast, RoadCondition
@@ -73,6 +73,12 @@ GAP_KINDS = frozenset({AlertKind.DISTANCE, AlertKind.COLLISION, AlertKind.VISIBI
 
 ROOM_KINDS = frozenset({AlertKind.CORRIDOR, AlertKind.YIELD, AlertKind.MOVE_OVER})
 """Alerts after which a driver makes room for others."""
+
+VIEW_KINDS = frozenset({AlertKind.VISIBILITY, AlertKind.WEATHER, AlertKind.TUNNEL})
+"""Alerts after which a driver on a drive sees to wipers, defroster and lamps."""
+
+BELT_KINDS = frozenset({AlertKind.SEAT_BELT})
+"""Alerts after which a driver on a drive has everybody buckle up."""
 
 WAKING_KINDS = frozenset({AlertKind.FATIGUE, AlertKind.DISTRACTION})
 
@@ -114,99 +120,16 @@ _ENDS = {
 FOR_GOOD_S = 86_400.0
 SEARCH_S = 60.0
 """How long a driver who was asked to stop looks for a place."""
-EARLY_MPS2 = 2.5
-"""How hard an attentive driver brakes for what stands ahead: most people's decelerations before a signal lie below
-(Gates and others, 2007: 85th percentile 3.0, mean 2.2 m/s2)."""
 RELEASED = "driver_released"
 GOES_ON = "driver_goes_on"
 DRIVES_ON = "driver_drives_on"
+WAKES_UP = "driver_wakes"
+CLEARS_VIEW = "driver_clears_view"
+BUCKLES = "driver_buckles"
+"""Kinds of the events after which hands do something in the car (``cosim.hands``)."""
 PARKS = "driver_parks"
 SETS_OFF = "driver_sets_off"
 """Kinds of the events of a planned halt."""
-
-
-class RefusedError(Exception):
-    """The car cannot do it now."""
-
-    def __init__(self, why: str) -> None:
-        """With the reason, as a text of the screens."""
-        super().__init__(why)
-        self.why = why
-
-
-class Pedals(Protocol):
-    """The driver's controls of the car."""
-
-    def set_speed_factor(self, factor: float) -> None:
-        """Desired speed on every road, as a factor on its limit."""
-        ...
-
-    def set_top_speed(self, speed_mps: float) -> None:
-        """Upper bound of the speed."""
-        ...
-
-    def set_headway(self, headway_s: float) -> None:
-        """Time gap to the leader."""
-        ...
-
-    def set_imperfection(self, imperfection: float) -> None:
-        """How unevenly the speed is kept, 0 to 1."""
-        ...
-
-    def set_overtaking(self, readiness: float) -> None:
-        """How readily lanes are changed to go faster; 0 is never."""
-        ...
-
-    def set_grip(self, friction: float) -> None:
-        """Limits braking to ``friction * g``."""
-        ...
-
-    def set_traction(self, friction: float) -> None:
-        """Limits acceleration to what the wheels of one axle, which carry half the car, bring on the road."""
-        ...
-
-    def set_braking(self, deceleration_mps2: float) -> None:
-        """How hard the driver brakes for what can be seen coming."""
-        ...
-
-    def set_hazards(self, on: bool) -> None:
-        """Hazard lights."""
-        ...
-
-    def pull_over(self, state: DrivingState, for_s: float, within_m: float = math.inf) -> str:
-        """Stops at the side as soon as possible, for a time, and no farther on than that; returns where.
-
-        Raises:
-            RefusedError: there is no place for it.
-        """
-        ...
-
-    def is_parked(self) -> bool:
-        """Whether the car stands beside the road."""
-        ...
-
-    def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
-        """Moves a number of lanes away from the kerb, or towards it if negative, and stays there for a time.
-
-        False if there is no such lane here.
-        """
-        ...
-
-    def standing_ahead_m(self) -> float | None:
-        """Distance on the route to the next breakdown or roadworks that is reported; None without one."""
-        ...
-
-    def leave_corridor(self, leave: bool) -> str:
-        """Drives at the edge of its lane to open a corridor, or in the middle again; returns where."""
-        ...
-
-    def reroute(self, request: Reroute, state: DrivingState) -> str:
-        """Takes another route; returns a description of it.
-
-        Raises:
-            RefusedError: there is none, or it is too late to take it.
-        """
-        ...
 
 
 @dataclass(slots=True)
@@ -430,7 +353,11 @@ class Driver:
             )
         if alert.kind in WAKING_KINDS:
             self.pedals.set_imperfection(min(ATTENTIVE, self._profile.imperfection))
-            events.append(Event(state.time_s, "driver_wakes", f"driver pays attention, {after}"))
+            events.append(Event(state.time_s, WAKES_UP, f"driver pays attention, {after}"))
+        if self.plan.advice_ends and alert.kind in VIEW_KINDS:
+            events.append(Event(state.time_s, CLEARS_VIEW, f"driver sees to glass and lamps, {after}"))
+        if self.plan.advice_ends and alert.kind in BELT_KINDS:
+            events.append(Event(state.time_s, BUCKLES, f"driver has everybody buckle up, {after}"))
         if alert.kind in ROOM_KINDS:
             events.append(self._make_room(alert, state, after))
         return events or [
@@ -630,9 +557,7 @@ class Driver:
 
     def _choose_braking(self) -> None:
         if self.plan.brakes_early:
-            is_attentive = self._profile.caution >= 1.0
-            gentle_mps2 = min(EARLY_MPS2, self._profile.deceleration_mps2)
-            self.pedals.set_braking(gentle_mps2 if is_attentive else self._profile.deceleration_mps2)
+            self.pedals.set_braking(self._profile.early_mps2)
             self.pedals.set_grip(self._condition.friction)
 
     def _adapted(self, ratio: float) -> float:

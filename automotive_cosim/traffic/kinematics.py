@@ -23,8 +23,9 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.text import say
 from automotive_cosim.traffic.base import Event
-from automotive_cosim.traffic.ego import EASING_MPS2, RefusedError
+from automotive_cosim.traffic.ego import EASING_MPS2
 from automotive_cosim.traffic.instant import KnownInstant, other_vehicle
+from automotive_cosim.traffic.pedals import RefusedError
 from automotive_cosim.traffic.profiles import DriverProfile
 from automotive_cosim.traffic.road_weather import G_MPS2
 from automotive_cosim.traffic.steering import STOPPING_MPS2, STOPPING_RESERVE_M
@@ -37,7 +38,7 @@ BRAKE_LIGHT_MPS2 = 0.5
 
 
 class ScriptedCar:
-    """Moves step by step and provides the driver's pedals (``drive.Road`` and ``ego.Pedals``)."""
+    """Moves step by step and provides the driver's pedals (``drive.Road`` and ``pedals.Pedals``)."""
 
     def __init__(
         self,
@@ -117,7 +118,7 @@ class ScriptedCar:
     # --- pedals -------------------------------------------------------------------------------------------
 
     def set_speed_factor(self, factor: float) -> None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         self._factor = factor
 
     def set_top_speed(self, speed_mps: float) -> None:
@@ -166,7 +167,7 @@ class ScriptedCar:
         return False
 
     def standing_ahead_m(self) -> float | None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         return self._layout.route.standing_ahead_m(self._along_m)
 
     def leave_corridor(self, leave: bool) -> str:

@@ -281,7 +281,10 @@ class NetworkReader:
             ) from error
         if doubt:
             roads = replace(roads, projection=None)
-        return Network(self.edges, _crossings(self), _opposite(self.edges.values()), roads, doubt)
+        crossings = _crossings(self)
+        lengths_m = {(here, there): way.length_m for here, ways in crossings.items() for there, way in ways.items()}
+        roads = replace(roads, junctions_m=lengths_m)
+        return Network(self.edges, crossings, _opposite(self.edges.values()), roads, doubt)
 
     def _take_edge(self, edge: Attributes) -> None:
         lanes = [lane for lane in self._lanes if _open_to_cars(lane)]

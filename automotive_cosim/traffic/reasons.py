@@ -10,14 +10,13 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from automotive_cosim.contracts import AlertKind
+from automotive_cosim.traffic.road_weather import WORSE_THAN_WET
 
 WEATHER_KINDS = frozenset({AlertKind.SLIPPERY, AlertKind.WEATHER, AlertKind.VISIBILITY})
 LIMIT_KINDS = frozenset({AlertKind.SPEED, AlertKind.SCHOOL})
 QUEUE_KINDS = frozenset({AlertKind.SPEED, AlertKind.TRAFFIC, AlertKind.COLLISION})
 STANDING_KINDS = QUEUE_KINDS | {AlertKind.MOVE_OVER}
 """Alerts by what they may be about; a request without one may be about anything."""
-POOR_GRIP = 0.7
-"""Below this a road is slippery: snow, slush and ice (``road_weather``)."""
 WITHIN_M, WITHIN_S = 500.0, 60.0
 """Advice is about a place that is as near, or as soon reached; our choice."""
 PASSED_M = 15.0
@@ -41,7 +40,7 @@ class RoadView:
     @property
     def is_poor(self) -> bool:
         """Whether grip or sight ask for less speed."""
-        return self.friction < POOR_GRIP or self.sight_mps < max(self.speed_mps, self.limit_mps or 0.0)
+        return self.friction < WORSE_THAN_WET or self.sight_mps < max(self.speed_mps, self.limit_mps or 0.0)
 
     def is_near(self, away_m: float | None) -> bool:
         """Whether advice can be about a place so far away."""

@@ -29,6 +29,12 @@ LOSS_PER_KELVIN = 0.0023
 WARM_FROM_C = 20.0
 """Reference temperature of friction tests."""
 
+WORSE_THAN_WET = 0.7
+"""Friction below this is of no wet road, but of one that goes over to slush or ice. A driver who has been warned
+keeps to the warning from here on, because it may come before it is due."""
+ICY = 0.5
+"""Friction below this is of snow, slush and ice, also of loose snow (see below): from here on a warning is due."""
+
 GRIP_STEP_S = 5.0
 """How often a road that takes on another grip changes."""
 

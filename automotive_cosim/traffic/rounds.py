@@ -50,6 +50,21 @@ def planned(network: Network, first: Trip, onward: Sequence[Trip]) -> Round:
     return Round(begun, tuple(parts[1:]))
 
 
+def loop_with(junctions: Iterable[tuple[str, str]], edge: str) -> frozenset[str]:
+    """The edges that can be reached from one and from which it can be reached again.
+
+    Args:
+        junctions: the edges before and after each way through a junction.
+        edge: the one.
+    """
+    ahead: dict[str, list[str]] = {}
+    back: dict[str, list[str]] = {}
+    for here, there in junctions:
+        ahead.setdefault(here, []).append(there)
+        back.setdefault(there, []).append(here)
+    return frozenset(_reached(ahead, edge) & _reached(back, edge))
+
+
 def _way(network: Network, trip: Trip) -> tuple[str, ...]:
     way = way_through(network, (trip.from_edge, *trip.via, trip.to_edge))
     if not way:

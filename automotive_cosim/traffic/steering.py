@@ -8,9 +8,9 @@ from itertools import pairwise
 
 from automotive_cosim.contracts import DrivingState, Reroute, RouteOption, lon_lat
 from automotive_cosim.contracts.text import Quantity, say
-from automotive_cosim.traffic.ego import RefusedError
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.pedals import RefusedError
 from automotive_cosim.traffic.road_weather import G_MPS2
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
@@ -48,7 +48,7 @@ KEEPS_ROUTE = say("this is the quickest route")
 
 
 class SumoPedals:
-    """Implements ``ego.Pedals``."""
+    """Implements ``pedals.Pedals``."""
 
     def __init__(
         self,
@@ -76,28 +76,28 @@ class SumoPedals:
         sumo.set_max_speed(ego_id, FASTEST_MPS)
 
     def set_speed_factor(self, factor: float) -> None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         self._factor = factor
         self._sumo.set_speed_factor(self._ego, factor)
 
     def set_top_speed(self, speed_mps: float) -> None:
-        """See ``ego.Pedals``; a bend ahead may require less."""
+        """See ``pedals.Pedals``; a bend ahead may require less."""
         self._top_mps = speed_mps
 
     def set_headway(self, headway_s: float) -> None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         self._sumo.set_headway(self._ego, headway_s)
 
     def set_imperfection(self, imperfection: float) -> None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         self._sumo.set_imperfection(self._ego, imperfection)
 
     def set_overtaking(self, readiness: float) -> None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         self._sumo.set_parameter(self._ego, "laneChangeModel.lcSpeedGain", f"{readiness:g}")
 
     def set_grip(self, friction: float) -> None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         hardest_mps2 = friction * G_MPS2
         service_mps2 = min(self._service_mps2, hardest_mps2)
         vehicle = self._sumo.vehicle
@@ -106,15 +106,15 @@ class SumoPedals:
         vehicle.setEmergencyDecel(self._ego, hardest_mps2)
 
     def set_traction(self, friction: float) -> None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         self._sumo.vehicle.setAccel(self._ego, min(self._own_mps2, friction * G_MPS2 / 2))
 
     def set_braking(self, deceleration_mps2: float) -> None:
-        """See ``ego.Pedals``; it counts from the next ``set_grip``."""
+        """See ``pedals.Pedals``; it counts from the next ``set_grip``."""
         self._service_mps2 = deceleration_mps2
 
     def set_hazards(self, on: bool) -> None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         self._sumo.set_signals(self._ego, HAZARD_SIGNAL if on else -1)
 
     def apply(self) -> None:
@@ -156,11 +156,11 @@ class SumoPedals:
         raise RefusedError(say("there is no place to stop on the rest of the route"))
 
     def is_parked(self) -> bool:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         return bool(self._sumo.vehicle.isStoppedParking(self._ego))
 
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
-        """See ``ego.Pedals``; SUMO changes as soon as there is a gap."""
+        """See ``pedals.Pedals``; SUMO changes as soon as there is a gap."""
         lane = self._sumo.lane_of(self._ego)
         edge_id = self._sumo.edge_of(self._ego)
         lanes = self._network.edges[edge_id].lane_ids if edge_id in self._network.edges else ()
@@ -171,11 +171,11 @@ class SumoPedals:
         return True
 
     def standing_ahead_m(self) -> float | None:
-        """See ``ego.Pedals``."""
+        """See ``pedals.Pedals``."""
         return self._sensor.route.standing_ahead_m(self._sensor.position_m)
 
     def leave_corridor(self, leave: bool) -> str:
-        """See ``ego.Pedals``; without sublanes, SUMO knows no positions in a lane, and the car stays where it is.
+        """See ``pedals.Pedals``; without sublanes, SUMO knows no positions in a lane: the car stays where it is.
 
         The corridor opens between the lane farthest from the kerb and the next (StVO section 11 (2)).
         """

@@ -425,8 +425,12 @@ class EgoRoad:
         if not way:
             return ()
         sumo.set_route(EGO, (*route.edge_ids[here:last], *way))
-        goal = self._world.network.edges[way[-1]].name or "the next destination"
-        return (Event(sumo.time(), "driver_goes_on", f"driver goes on to {goal}"),)
+        edges = self._world.network.edges
+        goal = edges[way[-1]].name or "the next destination"
+        told = f"driver goes on to {goal}"
+        if self._beyond:  # asked for by name or edge: a drive's places lie where one can drive on
+            told += f", because no way leads on from {edges[self._goal].name or 'the destination'}"
+        return (Event(sumo.time(), "driver_goes_on", told),)
 
     def _edges_beyond(self, round_: Round) -> int:
         """How many edges at the end of the route are beyond the last from which a way leads on."""

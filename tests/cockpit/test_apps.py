@@ -68,6 +68,15 @@ def parked(make: Make, around: Surroundings) -> Cockpit:
     return make(surroundings=stopped(around), signals={MOTION.GEAR.path: "P"})
 
 
+def test_the_cabin_with_keep_climate_is_two_taps_away_from_climate(make: Make) -> None:
+    cockpit = make()
+    cockpit.open_app("climate")
+    assert press(cockpit, "hvac.comfort") is FeedbackCode.OK
+    assert press(cockpit, "comfort.cabin") is FeedbackCode.OK
+    assert press(cockpit, "cabin.keep_climate") is FeedbackCode.OK
+    assert cockpit.signals[HVAC.KEPT]
+
+
 # --- what there is --------------------------------------------------------------------------------------------
 
 

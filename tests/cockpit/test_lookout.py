@@ -13,7 +13,7 @@ from automotive_cosim.cockpit.apps.map.lookout import ICONS, LINES
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.language import said
-from automotive_cosim.cockpit.reach import HORIZON_M, NEWS_EVERY_S
+from automotive_cosim.cockpit.reach import CAMERA_M, HORIZON_M, NEWS_EVERY_S
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, HMI, OCCUPANT, SEAT, TYRE
 from automotive_cosim.contracts import (
     Connectivity,
@@ -75,17 +75,62 @@ def test_the_screens_show_each_sight_and_no_other(make: Make, around: Surroundin
     assert told["school_zone"] == "In a school zone"
 
 
-def test_in_a_junction_the_edge_that_was_left_counts_no_more(make: Make, around: Surroundings) -> None:
-    seen = full(around)
-    driving = seen.driving
-    begun_m = make(surroundings=seen, lookout=True)
-    at_m = {sight.kind: sight.distance_m for sight in begun_m.sights}[SightKind.BREAKDOWN]
-    inside = replace(driving.road, edge_id=":n_0", lane_position_m=3.0)
-    crossing = make(surroundings=replace(seen, driving=replace(driving, road=inside)), lookout=True)
-    after_m = {sight.kind: sight.distance_m for sight in crossing.sights}[SightKind.BREAKDOWN]
-    assert at_m is not None
-    assert after_m is not None
-    assert after_m < at_m
+def at(around: Surroundings, edge_id: str, on_edge_m: float) -> Surroundings:
+    """At another place of the route: on an edge, or in the junction after the first."""
+    driving = around.driving
+    route = driving.ahead.route_edges
+    ahead = replace(driving.ahead, route_edges=route[route.index(edge_id) :] if edge_id in route else route)
+    road = replace(driving.road, edge_id=edge_id, lane_position_m=on_edge_m)
+    return replace(around, driving=replace(driving, ahead=ahead, road=road))
+
+
+def ahead_m(cockpit: Cockpit, kind: SightKind) -> float | None:
+    sight = by_kind(cockpit).get(kind)
+    return None if sight is None else sight.distance_m
+
+
+def test_what_is_ahead_is_as_far_as_the_way_to_it_with_its_junctions(
+    network: RoadNetwork, around: Surroundings
+) -> None:
+    """In a junction, too, which is part of neither edge."""
+    lengths_m = {("e6_5", "e6_6"): 12.0, ("e6_6", "n7_6"): 30.0}
+    cockpit = Cockpit(replace(network, junctions_m=lengths_m), rng=np.random.default_rng(1), lookout=True)
+    for edge_id, on_edge_m, away_m in (
+        ("e6_5", 40.0, 80.0 + 12.0 + 120.0 + 30.0 + 10.0),
+        (":n_0", 5.0, 7.0 + 120.0 + 30.0 + 10.0),
+        ("e6_6", 0.0, 120.0 + 30.0 + 10.0),
+    ):
+        cockpit.sense(at(full(around), edge_id, on_edge_m), 1.0)
+        assert ahead_m(cockpit, SightKind.BREAKDOWN) == away_m
+
+
+def test_roadworks_last_to_the_end_of_their_road(make: Make, around: Surroundings) -> None:
+    works = (RoadIncident(IncidentKind.ROADWORKS, "e6_6", 0.0),)
+    driving = replace(around.driving, ahead=replace(around.driving.ahead, incidents=works))
+    for edge_id, on_edge_m, told in (
+        ("e6_5", 110.0, "Roadworks in 10 m"),
+        ("e6_6", 0.0, "In roadworks, 120 m left"),
+        ("e6_6", 50.0, "In roadworks, 70 m left"),
+        ("n7_6", 1.0, None),
+    ):
+        cockpit = make(surroundings=at(replace(around, driving=driving), edge_id, on_edge_m), lookout=True)
+        sight = by_kind(cockpit).get(SightKind.ROADWORKS)
+        assert (None if sight is None else sight.text) == told
+
+
+@pytest.mark.parametrize(("visibility_m", "from_m"), [(20_000.0, CAMERA_M), (60.0, 60.0)])
+def test_hazard_lights_are_seen_before_a_breakdown_is_reported(
+    make: Make, around: Surroundings, visibility_m: float, from_m: float
+) -> None:
+    """As far as there is sight; the report may be a minute late."""
+    cockpit = make(surroundings=around, lookout=True)
+    clear = replace(around, weather=replace(around.weather, visibility=visibility_m))
+    stands = (RoadIncident(IncidentKind.BREAKDOWN, "e6_6", 90.0),)
+    for away_m, seen in ((from_m + 2.0, False), (from_m - 2.0, True)):
+        there = at(clear, "e6_5", 210.0 - away_m)
+        told = replace(there.driving, ahead=replace(there.driving.ahead, incidents=stands))
+        cockpit.sense(replace(there, driving=told), 1.0)
+        assert ahead_m(cockpit, SightKind.BREAKDOWN) == (away_m if seen else None)
 
 
 def test_every_kind_has_a_look(make: Make) -> None:
@@ -137,7 +182,7 @@ def test_a_limit_ahead_is_seen_with_the_hours_of_its_sign(network: RoadNetwork, 
         for road in network.roads
     )
     here_m = next(road.length_m for road in roads if road.edge_id == "e6_5")
-    away_m = here_m - around.driving.road.lane_position_m + 15.0  # with the junction before it
+    away_m = here_m - around.driving.road.lane_position_m
     for mps, told in ((8.0, hours), (14.0, "")):
         limit = Limit(mps, LimitSource.POSTED)
         ahead = replace(around.driving.ahead, next_limit=limit, next_limit_distance_m=away_m)
@@ -209,7 +254,8 @@ def test_every_sight_is_translated(make: Make, around: Surroundings, language: s
     )
     for cockpit_ in (parked, empty):
         cockpit_.sense(replace(standing, parked=True), 1.0)
-    ahead = replace(around.driving.ahead, jam_distance_m=0.0)
+    works = (RoadIncident(IncidentKind.ROADWORKS, "e6_5", 0.0),)
+    ahead = replace(around.driving.ahead, jam_distance_m=0.0, incidents=works)
     queueing = make(surroundings=replace(around, driving=replace(around.driving, ahead=ahead)), lookout=True)
     told = [sight.text for each in (cockpit, riding, parked, empty, queueing) for sight in each.sights]
     assert {
@@ -217,6 +263,7 @@ def test_every_sight_is_translated(make: Make, around: Surroundings, language: s
         "Driver has left, aboard: Child",
         "Driver has left, nobody aboard",
         "In a traffic jam, 300 m left",
+        "In roadworks, 80 m left",
     } <= {*told}
     for text in told:
         words = said(text, language)

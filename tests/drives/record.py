@@ -20,13 +20,13 @@ from functools import cache
 from hashlib import sha256
 from pathlib import Path
 
+from automotive_cosim.drives.alarm import Alarm
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, Tracker
 from automotive_cosim.drives.events.errands import UNASKED
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import facts_of
 from automotive_cosim.drives.script import APART_S, script_json
-from automotive_cosim.drives.wakes import Alarm
 from automotive_cosim.run.row import from_json
 from automotive_cosim.traffic.fork import Simulations
 

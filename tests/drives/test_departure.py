@@ -13,7 +13,8 @@ import pytest
 
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.changes import CarChange
-from automotive_cosim.cockpit.signals import CABIN, CALL, MOTION, OCCUPANT, SEAT
+from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.cockpit.signals import BODY, CABIN, CALL, LIGHTS, MOTION, OCCUPANT, SEAT, Signal
 from automotive_cosim.contracts import KMH_PER_MPS, Alert, AlertKind, IncidentKind, SightKind, Weather
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import CoSimulation
@@ -25,7 +26,9 @@ from automotive_cosim.interface.trace import canonical, plain
 from automotive_cosim.scenarios import Trip, WeatherAt
 from automotive_cosim.scenarios.incidents import AheadIncident, EmergencyVehicle
 from automotive_cosim.traffic.base import DriverAt, EgoPlan
+from automotive_cosim.traffic.ego import BUCKLES, CLEARS_VIEW, WAKES_UP
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.rounds import loop_with
 from tests.drives.scenes import found
 
 DRY = Weather(16.0, 60.0, 0.0, 1, 20.0, 24000.0, 8.0)
@@ -38,6 +41,9 @@ LAPS = DriveScript(
     start="2026-06-09T08:30:00",
     weather=(WeatherAt(0.0, DRY),),
 )
+
+
+REACTIONS = frozenset({WAKES_UP, CLEARS_VIEW, BUCKLES})
 
 
 @contextmanager
@@ -57,6 +63,18 @@ def driven(script: DriveScript, simulations: Simulations, for_s: float) -> tuple
 def digest(moments: tuple[Moment, ...]) -> str:
     parts = (canonical([plain(moment.driving), dict(moment.signals), plain(moment.sights)]) for moment in moments)
     return sha256(b"".join(parts)).hexdigest()
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("family", "seed"), [("beauce_june", 0), ("nordic_july", 2)])
+def test_one_can_drive_on_from_every_place(simulations: Simulations, family: str, seed: int) -> None:
+    with departed(FAMILIES[family].draw(seed), simulations) as world:
+        ways = world.traffic.network.junctions_m
+        route = world.moment.driving.ahead.route_edges
+        places = world.cockpit.state.of(Gazetteer).places
+    assert places
+    for place in places:
+        assert {place.edge_id, route[-1]} <= loop_with(ways, place.edge_id)
 
 
 @pytest.mark.slow
@@ -149,6 +167,35 @@ def test_a_car_parks_beside_the_road_with_somebody_in_it_and_drives_on(simulatio
     assert event.deadline_s is not None
     assert event.due_until_s > event.deadline_s
     assert moments[-1].driving.speed_mps > 1.0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("signal", "wrong", "kind", "right"),
+    [
+        (CALL.PHONE, "HAND", AlertKind.DISTRACTION, "AWAY"),
+        (CALL.PHONE, "CRADLE", AlertKind.DISTRACTION, "CRADLE"),
+        (SEAT.DRIVER_BELT, False, AlertKind.SEAT_BELT, True),
+        (LIGHTS.SWITCH, "OFF", AlertKind.VISIBILITY, "AUTO"),
+        (BODY.FRONT_WIPER, "OFF", AlertKind.WEATHER, "RAIN_SENSOR"),
+        (BODY.FRONT_WIPER, "OFF", AlertKind.SPEED, "OFF"),
+    ],
+)
+def test_a_warning_moves_the_driver_s_hands(
+    simulations: Simulations, signal: Signal[Any], wrong: Any, kind: AlertKind, right: Any
+) -> None:
+    """As the driver says so, not only in words."""
+    wet = replace(DRY, precipitation=5.0, weather_code=63)
+    script = replace(LAPS, driver="calm", changes=(CarChange(5.0, signal.path, wrong),))
+    with departed(replace(script, weather=(WeatherAt(0.0, wet),)), simulations) as world:
+        before = world.advance(45.0)[-1]
+        assert world.traffic.request(Alert(kind)).accepted
+        after = world.advance(8.0)
+    assert before.signals[signal.path] == wrong
+    assert after[-1].signals[signal.path] == right
+    if right != wrong:
+        turned = next(moment for moment in after if moment.signals[signal.path] == right)
+        assert any(event.kind in REACTIONS for event in turned.events)
 
 
 @pytest.mark.slow

@@ -21,6 +21,7 @@ from automotive_cosim.contracts import (
     SightKind,
 )
 from automotive_cosim.contracts.given import Language
+from automotive_cosim.drives.alarm import Alarm, noticed
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.driver import driver_line
 from automotive_cosim.drives.events import KINDS, WatchAct
@@ -31,7 +32,7 @@ from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
-from automotive_cosim.drives.wakes import LONGEST_S, WAKES, Alarm, noticed
+from automotive_cosim.drives.wakes import LONGEST_S, WAKES
 from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS, AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
@@ -137,7 +138,16 @@ def test_a_jam_that_the_car_has_reached_is_read_by_what_is_left_of_it() -> None:
     ahead, within = Sight(SightKind.JAM, "", 300.0), Sight(SightKind.JAM, "", 0.0, 140.0)
     assert "jam: in 300 m, 22 s at this speed" in noticed([moment(sights=(ahead,))]).splitlines()
     assert "jam: the car is in it, 140 m are left" in noticed([moment(sights=(within,))]).splitlines()
-    assert woken([{"sights": (ahead,)}, {"sights": (within,)}, {"sights": (within,)}])[1] == []
+    assert woken([{"sights": (ahead,)}, {"sights": (within,)}, {}]) == {0: ["jam"], 2: []}
+
+
+@pytest.mark.parametrize("kind", [SightKind.JAM, SightKind.ROADWORKS, SightKind.SCHOOL_ZONE])
+def test_what_the_car_is_in_has_not_ended(kind: SightKind) -> None:
+    """Its end is told once the car has left it, and its beginning is none."""
+    name, ahead, within = kind.value.replace("_", " "), Sight(kind, "", 60.0), Sight(kind, "", 0.0)
+    assert f"{name}: the car is in it" in noticed([moment(sights=(within,))]).splitlines()
+    scenes = [{"sights": sights} for sights in ((ahead,), (within,), (within,), ())]
+    assert woken(scenes) == {0: [name], 3: []}
 
 
 def test_a_limit_that_falls_for_a_school_is_read_with_the_hours_of_its_sign() -> None:
@@ -179,9 +189,39 @@ def test_three_seconds_above_the_limit_wake_also_a_car_that_gets_faster() -> Non
     assert woken([{"kmh": kmh} for kmh in (52.0, 56.0, 61.0, 66.0, 66.0, 66.0, 66.0)]) == {3: ["speed"]}
 
 
+def test_another_road_is_told_in_the_second_in_which_it_comes() -> None:
+    classes = ["secondary", "trunk", "trunk", "secondary"]
+    assert woken([{"road_class": road} for road in classes]) == {1: ["road"], 3: ["road"]}
+    hours = [{"limit_hours": hours} for hours in ("", "Mo-Fr 08:00-09:30")]
+    assert woken(hours) == {1: ["road"]}
+    assert "road: secondary, another limit Mo-Fr 08:00-09:30" in noticed([moment(**hours[1])]).splitlines()
+
+
 def test_a_reading_that_only_flickers_wakes_nobody() -> None:
-    classes = ["trunk", "secondary", "trunk", "secondary", "trunk", "trunk"]
-    assert woken([{"road_class": road} for road in classes]) == {5: ["road"]}
+    near = {"leader": vehicle(15.0)}
+    assert woken([near, {}, near, {}, near, near]) == {5: ["vehicle ahead"]}
+
+
+def test_fog_that_thickens_is_told_as_often_as_it_asks_for_less_speed() -> None:
+    """In steps of some seconds, between which it falls as well."""
+    seen_m = [70.0] * 12 + [38.0] * 12 + [21.0] * 18
+    scenes = [{"visibility": visibility_m, "weather_code": 45} for visibility_m in seen_m]
+    assert woken(scenes) == {0: ["weather"], 12: ["weather"], 24: ["weather"]}
+    for second in (12, 23, 24, 41):
+        drive = [moment(float(number), **scene) for number, scene in enumerate(scenes[: second + 1])]
+        assert f"visibility {seen_m[second]:.0f} m, falling" in noticed(drive)
+    assert woken([{"visibility": visibility_m} for visibility_m in (9000.0, 5000.0, 2000.0)]) == {}
+
+
+def test_what_wakes_says_something_new(silent: tuple[Watch, Score]) -> None:
+    """At the instant at which it wakes, or after the seconds for which it had to last; at departure all is new."""
+    watch, wakes = silent[0], {wake.name: wake for wake in WAKES}
+    times_s = [round(each.time_s) for each in watch.moments]
+    told = [(times_s.index(round(time_s)), wakes[name]) for time_s, names in watch.woken for name in names]
+    assert told
+    for at, wake in (each for each in told if each[0] > each[1].hold_s):
+        before = watch.moments[: at - round(wake.hold_s)]
+        assert wake.words(watch.moments[: at + 1][-20:]) != wake.words(before[-20:]), (at, wake.name)
 
 
 def test_a_vehicle_ahead_wakes_in_time_to_brake_gently_and_once_more_when_it_is_urgent() -> None:

@@ -36,7 +36,8 @@ from automotive_cosim.geo.sensor import ask
 
 ONLINE, OFFLINE = Connectivity(True, "5g", 4), Connectivity(False, "none", 0)
 PARIS, BERLIN, DUBAI, SEA = (48.873, 2.285), (52.52, 13.4), (25.2, 55.3), (40.0, -30.0)
-SUBJECTS = ("weather", "rules", "hazards", "traffic", "norms", "position")
+LONDON = 51.528, -0.128
+SUBJECTS = ("weather", "rules", "hazards", "traffic", "norms", "units", "position")
 Locate = Callable[..., GeoContext]
 
 
@@ -72,6 +73,8 @@ def instant(locate: Locate, drive: Callable[..., DrivingState]) -> Callable[...,
         ("traffic on the route", PARIS, "Route left: 1.0 km, 2 min"),
         ("customs when it is hot", DUBAI, "Custom when hot: cars are cooled all year"),
         ("usual climate", PARIS, "Usual in October at Paris (Montsouris): 10 °C at night to 17 °C by day"),
+        ("which units do signs have here", PARIS, "Units on signs here: km/h, kilometres and metres"),
+        ("is that km/h or mph", LONDON, "Units on signs here: mph, miles and yards"),
         ("where are we", PARIS, "Position: 48.8730°N 2.2850°E, within 3 m"),
         ("rules", SEA, "Rules: none known here"),
         ("norms", SEA, "Customs: none known here"),

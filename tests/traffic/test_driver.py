@@ -24,11 +24,13 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.scenarios import Scenario, Trip, load
+from automotive_cosim.scenarios.incidents import Breakdown, EmergencyVehicle
 from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan, HaltAt, Traffic
 from automotive_cosim.traffic.ego import DRIVES_ON, PARKS, PASS_SHARE, RELEASED, SETS_OFF
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
+from automotive_cosim.traffic.road_weather import COMFORTABLE_MPS2
 from automotive_cosim.traffic.scripted import Scripted, Stretch
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
@@ -70,6 +72,30 @@ def is_past(states: tuple[DrivingState, ...]) -> bool:
     behind = [state.around.emergency_behind is not None for state in states]
     ahead = [state.around.leader is not None and "ambulance" in state.around.leader.vehicle_id for state in states]
     return any(behind) and any(ahead[behind.index(True) :])
+
+
+def needed_mps2(state: DrivingState) -> float:
+    """Deceleration with which the car stops behind a vehicle ahead that stands; 0 without one."""
+    leader = state.around.leader
+    stands = leader is not None and leader.speed_mps < 0.1
+    return state.speed_mps**2 / (2 * max(0.1, leader.gap_m)) if leader is not None and stands else 0.0
+
+
+@pytest.mark.parametrize("driver", [name for name in PROFILES if name not in ("pressing", "tailgating")])
+@pytest.mark.parametrize("with_ambulance", [False, True])
+def test_nobody_closes_at_speed_on_what_stands(
+    quiet: Forked, hurried: EgoPlan, driver: str, with_ambulance: bool
+) -> None:
+    """A driver on a drive brakes as comfortably as most people do (AASHTO: 3.4 m/s2), also before blue light."""
+    stands = Breakdown(edge="s3s4", position_m=150.0, to_s=600.0)
+    comes = (EmergencyVehicle(behind_m=60.0),) if with_ambulance else ()
+    plan = replace(hurried, trip=SOUTH, driver=driver, brakes_early=True, incidents=(stands, *comes))
+    with closing(quiet.depart(plan)) as traffic:
+        states = traffic.advance(100.0).states
+    assert any(needed_mps2(state) > 0 for state in states)
+    assert max(map(needed_mps2, states)) <= COMFORTABLE_MPS2
+    assert states[-1].end is None
+    assert states[-1].speed_mps < 0.1
 
 
 def test_whoever_gives_way_is_overtaken_on_a_single_lane(quiet: Forked, hurried: EgoPlan) -> None:

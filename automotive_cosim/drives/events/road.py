@@ -199,11 +199,11 @@ class StandsAhead(EventKind):
         """Reads the reported incidents, on the route or elsewhere."""
         now = drive[-1]
         there, mps = seen(now, self.sights), now.driving.speed_mps
-        if there is None or there.distance_m is None:
+        if there is None:
             kind = IncidentKind(self.sights.value)
             if any(incident.kind is kind for incident in now.driving.ahead.incidents):
                 yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", lookalike=True)
-        else:
+        elif there.distance_m:  # not within it
             yield Sighting(
                 there.text,
                 due=there.distance_m <= STANDS_DUE_S * mps and mps > STANDS_FROM_MPS,

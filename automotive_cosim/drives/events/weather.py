@@ -11,9 +11,8 @@ from automotive_cosim.contracts import AlertKind, PullOver, SlowDown
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, off, on
 from automotive_cosim.drives.events.law import SLOW_KMH, TREND_S, grows, speed_kmh
+from automotive_cosim.traffic.road_weather import ICY
 
-ICY = 0.5
-"""Friction of snow, slush and ice (Wallman and Astrom, VTI 911A, 2001); a wet road has 0.7 to 0.8."""
 ICY_FROM_KMH = 40.0
 """Faster than this, stopping on packed snow (0.25) takes over 30 m."""
 DRY = 0.9

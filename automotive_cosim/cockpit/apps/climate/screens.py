@@ -290,7 +290,14 @@ def _rear(rect: Rect, state: State) -> Widget:
                 ),
                 description=say("{name}: {value}", name=say("Rear right"), value=say("Seat heat")),
             ),
-            title(air, Icon.AIR_QUALITY, say("Cabin air")),
+            title(air.left(air.width - 180), Icon.AIR_QUALITY, say("Cabin air")),
+            Button(
+                rect=air.right_part(160),
+                key="comfort.cabin",
+                text=say("Cabin"),
+                description=say("Who is aboard, and keep climate on"),
+                on_tap=Show("cabin"),
+            ),
             *(
                 widget
                 for line, (key, name, value) in zip(facts.rows(5, 8), known, strict=True)

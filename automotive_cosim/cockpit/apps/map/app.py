@@ -20,7 +20,7 @@ from automotive_cosim.contracts.text import say
 
 def starts(state: State, rng: np.random.Generator) -> Iterable[AppData]:
     """Draws the places."""
-    places = atlas(state.roads, rng)
+    places = atlas(state.roads, rng, state.places_on)
     return places, Navigation(favourites=places.favourites), Viewpoint()
 
 

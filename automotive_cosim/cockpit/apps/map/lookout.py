@@ -6,7 +6,6 @@ It states measurements and messages, whether or not anything follows from them.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from itertools import accumulate
 
 from automotive_cosim.cockpit.aboard import Kind, Seat, seated
 from automotive_cosim.cockpit.apps.cabin.screens import KINDS, SEATS
@@ -15,6 +14,7 @@ from automotive_cosim.cockpit.notices import LOW_KPA
 from automotive_cosim.cockpit.parts import distance, pressure, speed, speed_unit
 from automotive_cosim.cockpit.reach import (
     BLUE_LIGHT_M,
+    CAMERA_M,
     CLOSING_MPS,
     HORIZON_M,
     REAR_RADAR_M,
@@ -23,15 +23,21 @@ from automotive_cosim.cockpit.signals import ADAS, CABIN, CALL, ENERGY, HMI, MOT
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Card, Glyph, Label, Widget
-from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, Limit, Sight, SightKind
+from automotive_cosim.contracts import (
+    KMH_PER_MPS,
+    DrivingState,
+    IncidentKind,
+    Limit,
+    RoadIncident,
+    Sight,
+    SightKind,
+)
 from automotive_cosim.contracts.text import Text, say
 
 LINE_PX, LINES = 38, 8
 """Height of a line on the screen, and how many there are room for."""
 METRES_BELOW_M, FEET_BELOW_M, FOOT_M = 100.0, 300.0, 0.3048
 """Distances below are shown in metres or feet, others as on signs."""
-JUNCTIONS_M = 60.0
-"""By how much the roads up to a sign are together shorter than the way to it, with its junctions."""
 ROUNDED_MPS = 2.0
 """By less than this a sign differs from the limit on the map where a network was moved to another country."""
 ICONS: Mapping[SightKind, Icon] = {
@@ -165,7 +171,7 @@ def _limit_hours(state: State, driving: DrivingState, limit: Limit, limit_m: flo
     """The hours on the sign of the next limit; empty if the road has that limit at all hours."""
     for edge_id, start_m in _starts_m(state, driving).items():
         road = state.roads.find(edge_id)
-        if road is not None and road.limit_hours and -JUNCTIONS_M <= start_m - limit_m <= 1.0:
+        if road is not None and road.limit_hours and abs(start_m - limit_m) <= 1.0:
             usual_mps = road.limit_mps
             if limit.mps is None or usual_mps is None or abs(limit.mps - usual_mps) > ROUNDED_MPS:
                 return road.limit_hours
@@ -173,9 +179,8 @@ def _limit_hours(state: State, driving: DrivingState, limit: Limit, limit_m: flo
 
 
 def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
-    """Schools of the map and incidents of the last report, on the route within the horizon."""
+    """Schools of the map, and the incidents that are known, on the route within the horizon."""
     starts_m = _starts_m(state, driving)
-    news = state.news
     found: dict[SightKind, float] = {}
     hours = ""
     for edge_id, start_m in starts_m.items():
@@ -183,7 +188,8 @@ def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
         if road is not None and road.school_zone and start_m >= 0 and SightKind.SCHOOL_ZONE not in found:
             found[SightKind.SCHOOL_ZONE], hours = start_m, road.limit_hours
     queue: tuple[float, float] | None = None
-    for incident in () if news is None else news.ahead.incidents:
+    works_left_m = 0.0
+    for incident in _known(state, driving):
         if incident.edge_id in starts_m:
             kind, start_m = SightKind(incident.kind.value), starts_m[incident.edge_id]
             away_m = start_m + incident.position_m
@@ -191,12 +197,32 @@ def _mapped(state: State, driving: DrivingState) -> Iterator[Sight]:
                 queue = min((away_m, start_m), queue or (away_m, start_m))
             elif away_m > 0:
                 found[kind] = min(away_m, found.get(kind, away_m))
+            elif kind is SightKind.ROADWORKS:
+                road = state.roads.find(incident.edge_id)
+                works_left_m = max(works_left_m, 0.0 if road is None else start_m + road.length_m)
     yield from _jam(state, driving, queue)
+    if works_left_m > 0:
+        found.pop(SightKind.ROADWORKS, None)
+        said = say("In roadworks, {distance} left", distance=_near(state.signals, works_left_m))
+        yield Sight(SightKind.ROADWORKS, said, 0.0, works_left_m)
     for kind, away_m in found.items():
         if kind is not SightKind.SCHOOL_ZONE:
             yield from _told(state, kind, away_m)
         elif not driving.road.school_zone:
             yield from _told(state, kind, away_m, hours)
+
+
+def _known(state: State, driving: DrivingState) -> Iterator[RoadIncident]:
+    """The incidents of the last report, then the broken-down vehicles whose hazard lights the camera sees."""
+    if state.news is not None:
+        yield from state.news.ahead.incidents
+    seen_m = 0.0 if state.outside is None else min(CAMERA_M, state.outside.weather.visibility)
+    starts_m = _starts_m(state, driving)
+    for incident in driving.ahead.incidents:
+        start_m = starts_m.get(incident.edge_id)
+        is_near = start_m is not None and start_m + incident.position_m <= seen_m
+        if is_near and incident.kind is IncidentKind.BREAKDOWN:
+            yield incident
 
 
 def _jam(state: State, driving: DrivingState, queue: tuple[float, float] | None) -> Iterator[Sight]:
@@ -227,18 +253,18 @@ def _jam(state: State, driving: DrivingState, queue: tuple[float, float] | None)
 
 def _starts_m(state: State, driving: DrivingState) -> dict[str, float]:
     """The edges of the route within the horizon, and where each begins, counted from the car."""
-    route = driving.ahead.route_edges
-    roads = [state.roads.find(edge_id) for edge_id in route]
-    lengths_m = [0.0 if road is None else road.length_m for road in roads]
-    in_junction = driving.road.edge_id.startswith(":")
-    # in a junction the route still begins with the edge that has been left
-    begun_m = sum(lengths_m[:1]) if in_junction else driving.road.lane_position_m
-    starts_m = accumulate(lengths_m, initial=-begun_m)
     found: dict[str, float] = {}
-    for edge_id, start_m in zip(route, starts_m, strict=False):
+    start_m, before = -driving.road.lane_position_m, ""
+    for edge_id in driving.ahead.route_edges:
+        start_m += state.roads.network.junctions_m.get((before, edge_id), 0.0)
         if start_m > HORIZON_M:
             break
+        road = state.roads.find(edge_id)
+        length_m = 0.0 if road is None else road.length_m
+        if not before and driving.road.edge_id.startswith(":"):
+            start_m -= length_m  # in a junction the route still begins with the edge that has been left
         found.setdefault(edge_id, start_m)
+        start_m, before = start_m + length_m, edge_id
     return found
 
 
