@@ -23,8 +23,6 @@ REPEAT_S = 60.0
 has become worse, or it advises a clearly lower speed: fog thickens, and the driver follows the one told before."""
 WORSE = 1.25
 """Ratio of severities from which an event has become worse, and of the speeds advised."""
-SELF_ENDED_S = 1.5
-"""An event that was over earlier than this before its deadline had passed by itself: a tick and a half."""
 HOLD_S = 120.0
 """For how long a request or a stop holds the car back (``departure.ADVICE_S``)."""
 AFTER_S = 60.0
@@ -268,8 +266,7 @@ def judge(
 
 def _has_passed(event: DriveEvent, kind: EventKind) -> bool:
     """Whether it has passed by itself before its deadline, or in the end only looked like one."""
-    ended = event.deadline_s is not None and (event.due_until_s or 0.0) < event.deadline_s - SELF_ENDED_S
-    return ended or (kind.eases and event.eased_s is not None)
+    return event.ended_early or (kind.eases and event.eased_s is not None)
 
 
 def _heeds(act: WatchAct, event: DriveEvent, kind: EventKind) -> bool:

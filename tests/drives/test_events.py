@@ -32,6 +32,7 @@ from automotive_cosim.contracts import (
     SlowDown,
 )
 from automotive_cosim.contracts.errand import Errand, ErrandKind
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events import KINDS, WatchAct
 from automotive_cosim.drives.events.tracker import CLOSE_S, REOPEN_S
 from automotive_cosim.drives.margins import BORDER_S
@@ -385,6 +386,18 @@ def test_the_same_limit_again_much_later_is_another_event() -> None:
 
     drive = [moment(float(second), kmh=speed(second)) for second in range(60)]
     assert len(found(drive, "over_limit")) == 2
+
+
+def test_what_passed_by_itself_before_its_deadline_has_passed_though_it_comes_again() -> None:
+    def drive(again_s: float) -> list[Moment]:
+        short = [5 <= second < 10 or second >= again_s for second in range(40)]
+        return [moment(float(at), leader=vehicle(8.0 if is_short else 90.0)) for at, is_short in enumerate(short)]
+
+    (passed,) = found(drive(again_s=22), "leader_close")
+    assert (passed.obliged_s, passed.deadline_s, passed.due_until_s) == (8.0, 14.0, 9.0)
+    assert passed.ended_early
+    (lasting,) = found(drive(again_s=12), "leader_close")
+    assert not lasting.ended_early
 
 
 def test_the_obligation_comes_sooner_the_faster_the_car() -> None:

@@ -12,6 +12,8 @@ CLOSE_S = 3.0
 """Out of sight for longer, an event has ended: a flickering reading is one event."""
 REOPEN_S = 30.0
 """The same subject again within this time is the same event."""
+SELF_ENDED_S = 1.5
+"""An event that was over earlier than this before its deadline had passed by itself: a tick and a half."""
 
 
 @dataclass(slots=True)
@@ -30,7 +32,8 @@ class DriveEvent:
     due_since_s: float | None = None
     """Since when something is due without interruption; None while nothing is."""
     due_until_s: float | None = None
-    """The last instant at which something was due."""
+    """The last instant at which something was due; of an event that had passed by itself before its deadline, and
+    came again, the last one before."""
     obliged_s: float | None = None
     deadline_s: float | None = None
     done_s: float | None = None
@@ -40,6 +43,11 @@ class DriveEvent:
     ended: bool = False
     severities: list[tuple[float, float]] = field(default_factory=list)
     """Instants at which it became worse, and how bad."""
+
+    @property
+    def ended_early(self) -> bool:
+        """Whether nothing was due any more well before the deadline."""
+        return self.deadline_s is not None and (self.due_until_s or 0.0) < self.deadline_s - SELF_ENDED_S
 
     def severity_at(self, time_s: float) -> float:
         """How bad it had been at the worst, up to that time."""
@@ -100,7 +108,8 @@ class Tracker:
         if not sighting.due or sighting.lookalike or event.done_s is not None:
             event.due_since_s = None
             return
-        event.due_until_s = now_s
+        if event.deadline_s is None or now_s <= event.deadline_s or not event.ended_early:
+            event.due_until_s = now_s
         event.due_since_s = now_s if event.due_since_s is None else event.due_since_s
         if event.obliged_s is None and now_s - event.due_since_s >= sighting.hold_s:
             event.obliged_s = now_s
