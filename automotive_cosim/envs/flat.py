@@ -142,10 +142,10 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
         hand_over = self._finders[number].find(self._seeds[number].next())
         self._episode = Episode.take_over(hand_over, self._setup)
         self._held = self._holds()
-        return self._numbers(), {}
+        return self._numbers(), {"action_mask": self.action_masks()}
 
     def step(self, action: np.int64) -> tuple[npt.NDArray[np.float32], float, bool, bool, dict[str, Any]]:
-        """Performs one action of the table; ``info`` is empty except for ``is_success`` at the end.
+        """Performs one action of the table; ``info`` holds ``action_mask`` and, at the end, ``is_success``.
 
         Raises:
             ActionError: the action is not in the action space; nothing has happened.
@@ -159,8 +159,17 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
         reward += self._goal_bonus * (held - self._held)
         self._held = held
         verdict = episode.verdict
-        info = {} if verdict is None else {"is_success": verdict.success}
+        info: dict[str, Any] = {"action_mask": self.action_masks()}
+        if verdict is not None:
+            info["is_success"] = verdict.success
         return self._numbers(), reward, terminated, truncated, info
+
+    def action_masks(self) -> npt.NDArray[np.bool_]:
+        """Which actions do something now, (actions,): every app and declaration, and the controls that are in sight
+        and can be used. sb3-contrib's ``MaskablePPO`` asks by this name."""
+        usable = {element.resource_id for element in self.episode.observation.elements or () if element.is_enabled}
+        controls = [resource_id(control) in usable for control in self._controls]
+        return np.array([True] * len(self._apps) + controls + [True] * len(ENDS))
 
     def _number(self, action: object) -> int:
         """The number of an action; an array of one number is one, as policies return them."""

@@ -1,0 +1,47 @@
+"""The examples for libraries of reinforcement learning, each run where the library is installed.
+
+``AUTOMOTIVE_COSIM_RL`` names a Python in which they are, as torch and its kin are too large for the tests' own.
+"""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+TOP = Path(__file__).parents[2]
+FOLDER = TOP / "docs/examples/rl"
+PYTHON = os.environ.get("AUTOMOTIVE_COSIM_RL", sys.executable)
+NEEDS = {
+    "async_vector.py": "gymnasium",
+    "cleanrl_loop.py": "torch",
+    "rllib_ppo.py": "ray.rllib",
+    "sb3_ppo.py": "stable_baselines3",
+    "torchrl_rollout.py": "torchrl",
+}
+
+
+def test_every_example_is_tried():
+    assert {path.name for path in FOLDER.glob("*.py")} == set(NEEDS)
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+@pytest.mark.parametrize("example", NEEDS)
+def test_an_example_runs_to_its_end(example, tmp_path):
+    needs = NEEDS[example]
+    tried = subprocess.run([PYTHON, "-c", f"import {needs}"], cwd=tmp_path, capture_output=True, check=False)
+    if tried.returncode:
+        pytest.skip(f"{PYTHON} has no {needs}; AUTOMOTIVE_COSIM_RL names one that has")
+    done = subprocess.run(
+        [PYTHON, str(FOLDER / example)],
+        env={**os.environ, "PYTHONPATH": str(TOP)},
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr[-3000:]
+    assert done.stdout.splitlines()[-1].startswith("0."), done.stdout[-2000:]
