@@ -313,8 +313,8 @@ def main() -> None:
     parser.add_argument(
         "--starts", nargs="+", choices=list(CHEAP), default=list(CHEAP), help="what PPO starts from"
     )
-    parser.add_argument("--steps", type=int, default=150_000, help="of training, for each start")
-    parser.add_argument("--rounds", type=int, default=6, help="measurements during training")
+    parser.add_argument("--steps", type=int, default=80_000, help="of training, for each start")
+    parser.add_argument("--rounds", type=int, default=5, help="measurements during training")
     parser.add_argument("--minutes", type=float, default=10.0, help="length of a drive")
     parser.add_argument("--drives", type=int, default=5, help="drives of each family in a measurement")
     parser.add_argument("--demonstrations", type=int, default=20, help="drives of each family to imitate")
