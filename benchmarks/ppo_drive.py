@@ -301,7 +301,7 @@ def plot(found: dict, path: Path) -> None:
         axes.annotate(words, (1, max(value, -100)), xycoords=("axes fraction", "data"), ha="right", va="bottom",
                       fontsize=8, color=grey)  # fmt: skip
     axes.set(xlabel="steps of training", ylabel="score", ylim=(-110, 110), xlim=(0, None))
-    axes.legend(fontsize=7, frameon=False)
+    axes.legend(fontsize=7, frameon=False, loc="lower right", bbox_to_anchor=(1, 0.1))
     axes.spines[["top", "right"]].set_visible(False)
     figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
 
@@ -333,11 +333,11 @@ def main() -> None:
         steps = bench.demonstrations() if "imitation" in chosen.starts else []
         for start in chosen.starts:
             found["curves"][start] = train(chosen, start, bench, steps)
-    if chosen.out:
-        settings = {name: value for name, value in vars(chosen).items() if name != "out"}
-        text = json.dumps({"settings": settings, **found}, indent=1)
-        (chosen.out / "ppo_drive.json").write_text(text + "\n", encoding="utf-8")
-        plot(found, chosen.out / "ppo_drive.svg")
+            if chosen.out:
+                settings = {name: value for name, value in vars(chosen).items() if name != "out"}
+                text = json.dumps({"settings": settings, **found}, indent=1)
+                (chosen.out / "ppo_drive.json").write_text(text + "\n", encoding="utf-8")
+                plot(found, chosen.out / "ppo_drive.svg")
 
 
 if __name__ == "__main__":
