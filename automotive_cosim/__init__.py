@@ -1,9 +1,9 @@
 """Automotive-ENV coupled to live SUMO traffic: a benchmark for agents that work a car's cockpit.
 
-Importing the package registers three environments with gymnasium: ``AutomotiveCosim/Cockpit-v0`` for tasks,
-``AutomotiveCosim/Drive-v0`` for drives, and ``AutomotiveCosim/Flat-v0`` for reinforcement learning on tasks. The
-names in ``__all__`` are what most programs need; each is loaded when it is first used. ``docs/api.md`` lists
-everything that is public.
+Importing the package registers four environments with gymnasium: ``AutomotiveCosim/Cockpit-v0`` for tasks,
+``AutomotiveCosim/Drive-v0`` for drives, and for reinforcement learning ``AutomotiveCosim/Flat-v0`` on tasks and
+``AutomotiveCosim/FlatDrive-v0`` on drives. The names in ``__all__`` are what most programs need; each is loaded
+when it is first used. ``docs/api.md`` lists everything that is public.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ _HOMES = {
     "automotive_cosim.envs.cockpit": ("CockpitEnv",),
     "automotive_cosim.envs.drive": ("DriveEnv",),
     "automotive_cosim.envs.flat": ("FlatEnv",),
+    "automotive_cosim.envs.flat_drive": ("FlatDriveEnv",),
     "automotive_cosim.errors": ("CosimError", "InfrastructureError", "UserError"),
     "automotive_cosim.interface.observe": ("Channel",),
     "automotive_cosim.report.results": ("load_results",),
@@ -39,6 +40,7 @@ gymnasium.register(
     vector_entry_point="automotive_cosim.envs.vector:cockpits",
 )
 gymnasium.register(id="AutomotiveCosim/Drive-v0", entry_point="automotive_cosim.envs.drive:DriveEnv")
+gymnasium.register(id="AutomotiveCosim/FlatDrive-v0", entry_point="automotive_cosim.envs.flat_drive:FlatDriveEnv")
 gymnasium.register(
     id="AutomotiveCosim/Flat-v0",
     entry_point="automotive_cosim.envs.flat:FlatEnv",

@@ -5,6 +5,7 @@ from automotive_cosim.contracts import Action, ActionType, Element, GoalStatus, 
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.envs.drive import DriveEnv
 from automotive_cosim.envs.flat import FlatEnv
+from automotive_cosim.envs.flat_drive import FlatDriveEnv
 from automotive_cosim.errors import CosimError, InfrastructureError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.results import load_results
@@ -26,6 +27,7 @@ __all__ = [
     "EpisodeResult",
     "EpisodeRow",
     "EpisodeSetup",
+    "FlatDriveEnv",
     "FlatEnv",
     "GoalStatus",
     "InfrastructureError",

@@ -68,7 +68,7 @@ EXTRAS = {
     "pdf": Extra("typst", "report --safety as a PDF"),
     "ray": Extra("ray", "eval and study on a cluster"),
     "report": Extra("matplotlib", "report"),
-    "rl": Extra("stable_baselines3", "training in Flat-v0"),
+    "rl": Extra("stable_baselines3", "training in Flat-v0 and FlatDrive-v0"),
     "search": Extra("optuna", "search, but for --sampler random and grid"),
     "verifiers": Extra("verifiers", "doors.verifiers"),
 }

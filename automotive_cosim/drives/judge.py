@@ -304,12 +304,17 @@ def _evaded(
 
 
 def facts_of(drive: Sequence[Moment]) -> Against:
-    """What speaks against acts on a drive, from its moments, one per second."""
-    times_s = [moment.time_s for moment in drive]
+    """What speaks against acts on a drive, from its moments, one per second; the drive may go on meanwhile."""
+    found: dict[tuple[str, float], str | None] = {}
 
     def against(kind: EventKind, time_s: float) -> str | None:
-        until = max(1, bisect_right(times_s, time_s + HALF_TICK_S))
-        return kind.speaks_against(drive[max(0, until - BACK) : until])
+        if (kind.name, time_s) in found:
+            return found[kind.name, time_s]
+        until = max(1, bisect_right(drive, time_s + HALF_TICK_S, key=lambda moment: moment.time_s))
+        fact = kind.speaks_against(drive[max(0, until - BACK) : until])
+        if until < len(drive):  # later moments change nothing
+            found[kind.name, time_s] = fact
+        return fact
 
     return against
 

@@ -95,11 +95,15 @@ class Score:
         return median(self.delays_due_s) if self.delays_due_s else None
 
     @property
+    def utility(self) -> float:
+        """What it is worth more than doing nothing, in weights of events; twice ``worth`` at best."""
+        return self.gained + self.worth - self.cost - STOP_PER_MIN * self.held_s / 60
+
+    @property
     def value(self) -> float:
         """0 is doing nothing, 100 the rule-perfect watcher."""
-        cost = self.cost + STOP_PER_MIN * self.held_s / 60
         scale = self.worth or LEAST_WORTH * self.drives
-        return 100 * (self.gained + self.worth - cost) / (2 * scale)
+        return 100 * self.utility / (2 * scale)
 
 
 def score(judgement: Judgement, driven_s: float) -> Score:

@@ -22,7 +22,7 @@ from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
 from automotive_cosim.drives.errands import said
 from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
 from automotive_cosim.drives.harm import Harm, harm
-from automotive_cosim.drives.judge import BACK, Judgement, facts_of, judge
+from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
 from automotive_cosim.drives.wakes import FAR_S, LONGEST_S
 from automotive_cosim.episode.baseline import Baseline
@@ -97,6 +97,7 @@ class Watch(JudgedSession):
     wakes: int = 0
     judgement: Judgement | None = None
     """The judgement; None until the drive is over."""
+    _against: Against | None = None
     _given: int = 0
     _asked: int = 0
     """How much of what was asked for the agent has heard."""
@@ -134,6 +135,11 @@ class Watch(JudgedSession):
     def is_judged(self) -> bool:
         """Whether the drive is over and judged."""
         return self.judgement is not None
+
+    def judged_so_far(self) -> Judgement:
+        """The judgement if the drive were over now, without what the do-nothing run has more; the final one at the
+        end."""
+        return self.judgement or self._judged()
 
     @property
     def harms(self) -> tuple[Harm, Harm]:
@@ -289,13 +295,12 @@ class Watch(JudgedSession):
             self._advance(max(0.0, self._left_s()))
         for twin in self.twins:
             self.due_anyway[twin.index] = twin.due_s
-        self.judgement = judge(
-            KINDS,
-            self.events,
-            self.acts,
-            self.due_anyway,
-            facts_of(self.moments),
-            self.moments[0].commands,
-            self.untouched,
-        )
+        self.judgement = self._judged(self.untouched)
         super()._finish(end)
+
+    def _judged(self, untouched: Sequence[DriveEvent] = ()) -> Judgement:
+        if self._against is None:
+            self._against = facts_of(self.moments)
+        return judge(
+            KINDS, self.events, self.acts, self.due_anyway, self._against, self.moments[0].commands, untouched
+        )

@@ -71,12 +71,11 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         """
         family_named(family)
         under = Conditions.named(conditions)
-        told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value is not None}
         self._spec = DriveSpec(
             family,
             conditions=under,
             scenario=scenario,
-            settings=checked(DriveSettings, told, _named),
+            settings=settings_of(minutes=minutes, errands=errands),
             max_steps=max_steps,
         )
         self._setup = SessionSetup(frozenset(map(Channel, channels)), under)
@@ -122,6 +121,15 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
         if Channel.SCREENSHOT in given and seen.screenshot is None:  # as after a wait, and a space has no gaps
             seen = replace(seen, screenshot=self.episode.screenshot())
         return spaces.encode(seen, given)
+
+
+def settings_of(**told: float | bool | None) -> DriveSettings:
+    """The settings of a drive from an environment's arguments; None leaves one as it is.
+
+    Raises:
+        UserError: a value is out of bounds.
+    """
+    return checked(DriveSettings, {name: value for name, value in told.items() if value is not None}, _named)
 
 
 def _named(steps: Steps) -> tuple[str, str]:

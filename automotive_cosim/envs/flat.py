@@ -18,9 +18,7 @@ It has less than ``CockpitEnv``: no screenshot, no place, and only the given con
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
-from hashlib import blake2b
 from typing import Any
 
 import gymnasium as gym
@@ -31,11 +29,11 @@ from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observati
 from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.envs.base import SessionEnv
 from automotive_cosim.envs.cockpit import outcome, traffic_seed
+from automotive_cosim.envs.numbers import hashed, number_of
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource, SessionSetup
-from automotive_cosim.errors import ActionError, UserError
-from automotive_cosim.formats.words import shown
+from automotive_cosim.errors import UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.spaces import APPS, BOUNDS, OPTIONAL
 from automotive_cosim.tasking.draws import SEED_LIMIT
@@ -120,7 +118,8 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
         self._held = False
         size = GOAL_SLOTS + 3 * len(self._controls) + len(NUMBERS) + 1
         self.observation_space = gym.spaces.Box(-1.0, 1.0, (size,), np.float32)
-        self.action_space = gym.spaces.Discrete(len(self._apps) + len(self._controls) + len(ENDS))
+        self._count = len(self._apps) + len(self._controls) + len(ENDS)
+        self.action_space = gym.spaces.Discrete(self._count)
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -153,7 +152,7 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
             TrafficError: the traffic simulation failed.
         """
         episode = self._running()
-        episode.step(self._action(self._number(action)))
+        episode.step(self._action(number_of(action, self._count)))
         reward, terminated, truncated = outcome(episode)
         held = self._holds()
         reward += self._goal_bonus * (held - self._held)
@@ -171,16 +170,17 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
         controls = [resource_id(control) in usable for control in self._controls]
         return np.array([True] * len(self._apps) + controls + [True] * len(ENDS))
 
-    def _number(self, action: object) -> int:
-        """The number of an action; an array of one number is one, as policies return them."""
-        count = len(self._apps) + len(self._controls) + len(ENDS)
-        given = np.asarray(action)
-        whole = given.size == 1 and given.dtype.kind in "iu"
-        if not whole or not 0 <= int(given.item()) < count:
-            raise ActionError(
-                f"the action is {shown(given.tolist())}; it must be a whole number from 0 to {count - 1}"
-            )
-        return int(given.item())
+    def number(self, action: Action) -> int | None:
+        """The number of an action on the present screen; None if this view has none for it."""
+        first = len(self._apps)
+        if action.action_type is ActionType.OPEN_APP and action.app_name in self._apps:
+            return self._apps.index(action.app_name)
+        if action.action_type is ActionType.STATUS and action.goal_status is not None:
+            return first + len(self._controls) + ENDS.index(action.goal_status)
+        if action.action_type is ActionType.CLICK and action.index is not None:
+            tapped = self.episode.elements[action.index].resource_id
+            return next((first + at for at, name in enumerate(self._controls) if resource_id(name) == tapped), None)
+        return None
 
     def _action(self, number: int) -> Action:
         if number < len(self._apps):
@@ -201,7 +201,8 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
     def _numbers(self) -> npt.NDArray[np.float32]:
         seen = self.episode.observation
         spent = (len(self.episode.steps) - 1) / self._max_steps
-        parts = [*_words(" ".join([seen.goal, *seen.said])), *self._switches(seen), *_car(seen), spent]
+        words = hashed(" ".join([seen.goal, *seen.said]), GOAL_SLOTS)
+        parts = [*words, *self._switches(seen), *_car(seen), spent]
         return np.clip(np.array(parts, np.float32), -1.0, 1.0)
 
     def _switches(self, seen: Observation) -> list[float]:
@@ -212,13 +213,6 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
             on = element is not None and (element.is_checked or element.is_selected)
             numbers += [float(element is not None), float(on), float(element is not None and element.is_enabled)]
         return numbers
-
-
-def _words(goal: str) -> list[float]:
-    slots = [0.0] * GOAL_SLOTS
-    for word in re.findall(r"\w+", goal.casefold()):
-        slots[int.from_bytes(blake2b(word.encode(), digest_size=4).digest()) % GOAL_SLOTS] = 1.0
-    return slots
 
 
 def _car(seen: Observation) -> list[float]:

@@ -67,6 +67,14 @@ CASES = {
     "looking": Smallest(("grid", "2")),
     "pages": Smallest(("1",), needs=("playwright",), program="chromium"),
     "peers": Smallest(("grid", "--seconds", "5", "--repeats", "1")),
+    "ppo_drive": Smallest(
+        (
+            *("--families", "grid_june", "--unseen", "grid_january", "--minutes", "0.3", "--drives", "1"),
+            *("--starts", "imitation", "--demonstrations", "1", "--epochs", "1"),
+            *("--steps", "64", "--rounds", "1", "--workers", "1"),
+        ),
+        needs=("torch", "stable_baselines3"),
+    ),
     "ppo_flat": Smallest(("--steps", "64", "--rounds", "1"), needs=("torch", "stable_baselines3")),
     "scale": Smallest(("--streets", "4", "--trips", "1")),
     "search": Smallest(("--seeds", "1", "--most", "20")),

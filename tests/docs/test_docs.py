@@ -162,6 +162,7 @@ ELSEWHERE = {"from inspect_ai": "inspect_ai"}
 FOLDERS = r"\b(runs/(mine|first|before|after|jam))\b"
 EXCERPTS = {
     "Skill(": "an excerpt of models/skills.py",
+    "import minari": "needs Minari, and a table of demonstrations",
     "from android_world": "needs a checkout of AndroidWorld; tests/agents/test_androidworld.py has one",
 }
 

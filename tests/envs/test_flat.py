@@ -61,6 +61,17 @@ def test_every_control_is_on_some_screen(simulations):
     assert set(map(shown_id, CONTROLS)) <= sighted
 
 
+def test_the_mask_leaves_what_does_something_on_this_screen(flat):
+    _, info = flat.reset(seed=0)
+    assert info["action_mask"].shape == (flat.action_space.n,)
+    assert not info["action_mask"][tap("hvac.fan.max")]
+    *_, info = flat.step(np.int64(APPS.index("climate")))
+    assert info["action_mask"][tap("hvac.fan.max")]
+    assert info["action_mask"][:FIRST_CONTROL].all()
+    assert info["action_mask"][COMPLETE:].all()
+    assert (info["action_mask"] == flat.action_masks()).all()
+
+
 def test_the_right_actions_win_and_the_others_do_not(flat):
     right = {"fan": "hvac.fan.max", "blower": "hvac.fan.max", "seat": "hvac.driver_seat_heating"}
     flat.reset(seed=0)

@@ -1,0 +1,154 @@
+"""The flat view of drives: what reinforcement learning sees of a watch."""
+
+import warnings
+
+import gymnasium as gym
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+from automotive_cosim.contracts import Action, ActionType, AlertKind
+from automotive_cosim.drives.score import LEAST_WORTH, score
+from automotive_cosim.drives.watchers import READS, RulePerfect
+from automotive_cosim.envs.drive import DriveEnv
+from automotive_cosim.envs.flat_drive import ACTIONS, FEATURES, READINGS, SOON, FlatDriveEnv
+from automotive_cosim.errors import ActionError, UnknownNameError, UserError
+
+SEED, MINUTES = 0, 3
+"""A drive of which three minutes hold an event."""
+
+
+@pytest.fixture
+def flat(simulations):
+    made = FlatDriveEnv("grid_june", minutes=MINUTES, simulations=simulations)
+    yield made
+    made.close()
+
+
+def played(env, choose):
+    """Actions, observations and rewards of the drive of the seed, and the last ``info``."""
+    seen, _ = env.reset(seed=SEED)
+    actions, views, rewards, over, info = [], [seen], [], False, {}
+    while not over:
+        assert info == {}
+        actions.append(choose())
+        seen, reward, terminated, truncated, info = env.step(np.int64(actions[-1]))
+        assert not truncated
+        assert env.observation_space.contains(seen)
+        views.append(seen)
+        rewards.append(reward)
+        over = terminated
+    return actions, views, rewards, info
+
+
+def rules(env):
+    watcher = RulePerfect()
+
+    def choose():
+        number = env.number(watcher.act(env.episode.observation))
+        return SOON if number is None else number
+
+    return choose
+
+
+@pytest.mark.sumo
+def test_gymnasiums_check_has_nothing_to_say():
+    env = gym.make("AutomotiveCosim/FlatDrive-v0", families="grid_june", minutes=0.2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(env.unwrapped, skip_render_check=True)
+    env.close()
+
+
+def test_who_waits_earns_nothing(flat):
+    _, _, rewards, info = played(flat, lambda: 0)
+    assert set(rewards) == {0.0}
+    assert info["score"] == 0
+
+
+def test_the_rules_score_high_and_the_rewards_sum_to_the_judges_utility(flat):
+    actions, views, rewards, info = played(flat, rules(flat))
+    judged = score(flat.episode.judgement, flat.episode.seconds)
+    assert sum(rewards) == pytest.approx(judged.utility / (2 * LEAST_WORTH))
+    assert judged.events >= 1
+    assert info["score"] == judged.value >= 90
+    alerts = [number for number in actions if ACTIONS[number].kind is not None]
+    assert alerts
+    shown = len(AlertKind)
+    assert not views[0][-shown:].any()
+    assert views[-1][-shown:].any()
+    assert len({view.tobytes() for view in views}) > len(views) / 2
+
+
+def test_the_same_acts_give_the_trace_of_the_drive(flat, simulations):
+    actions, _, _, info = played(flat, rules(flat))
+    again = played(flat, iter(actions).__next__)
+    assert again[3] == info
+    env = DriveEnv("grid_june", minutes=MINUTES, channels=READS, simulations=simulations)
+    env.reset(seed=SEED)
+    told = {}
+    for number in actions:
+        *_, told = env.step(ACTIONS[number])
+    assert (told["trace_sha256"], told["score"]) == (info["trace_sha256"], info["score"])
+    env.close()
+
+
+def test_what_disturbs_costs_at_once(flat):
+    flat.reset(seed=SEED)
+    fatigue = flat.number(Action(ActionType.SHOW_ALERT, kind=AlertKind.FATIGUE))
+    assert [flat.step(np.int64(fatigue))[1] < 0 for _ in range(2)] == [True, True]
+
+
+def test_an_alert_and_the_speed_are_seen(flat):
+    seen, _ = flat.reset(seed=SEED)
+    speed = list(FEATURES).index("speed")
+    slower = seen[speed]
+    tunnel = ACTIONS.index(Action(ActionType.SHOW_ALERT, kind=AlertKind.TUNNEL))
+    seen, *_ = flat.step(np.int64(tunnel))
+    lately = list(AlertKind).index(AlertKind.TUNNEL) - len(AlertKind)
+    assert 0.9 < seen[lately] <= 1
+    assert [flat.step(np.int64(SOON))[0][speed] for _ in range(3)] != [slower] * 3
+    marks = slice(-len(AlertKind) - len(READINGS), -len(AlertKind))
+    assert set(seen[marks]) <= {0.0, 1.0}
+
+
+def test_waits_have_the_nearest_number_and_others_none(flat):
+    waits = [Action(ActionType.WAIT), Action(ActionType.WAIT, seconds=1), Action(ActionType.WAIT, seconds=2)]
+    assert [flat.number(wait) for wait in waits] == [0, SOON, SOON]
+    assert flat.number(Action(ActionType.ANSWER, text="mph here")) is None
+
+
+@pytest.mark.parametrize("action", [-1, 999, 1.0, True, None, "1", np.array([1, 2]), np.nan])
+def test_an_action_outside_the_space_is_refused_and_nothing_happens(flat, action):
+    flat.reset(seed=SEED)
+    steps = len(flat.episode.steps)
+    with pytest.raises(ActionError, match=f"whole number from 0 to {len(ACTIONS) - 1}"):
+        flat.step(action)
+    assert len(flat.episode.steps) == steps
+
+
+def test_families_are_drawn_and_a_seed_is_one_drive(simulations):
+    env = FlatDriveEnv(["grid_june", "grid_january"], simulations=simulations)
+    begun = [(env.reset(seed=seed), env.episode.trace_sha256)[1] for seed in (0, 1, 2, 0)]
+    assert begun[0] == begun[3]
+    assert len(set(begun)) == 3
+    single = FlatDriveEnv("grid_june", simulations=simulations)
+    winter = [float(env.reset(seed=seed)[0][list(FEATURES).index("sun")]) for seed in range(4)]
+    summer = [float(single.reset(seed=seed)[0][list(FEATURES).index("sun")]) for seed in range(4)]
+    assert 0 < sum(one == other for one, other in zip(winter, summer, strict=True)) < 4
+    env.close()
+    single.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "named"),
+    [
+        ({"families": ()}, UserError, "at least one family"),
+        ({"families": ("grid_june", "grid_jun")}, UnknownNameError, "grid_june"),
+        ({"minutes": 0.0}, UserError, "minutes"),
+        ({"render_mode": "ansi"}, UserError, "no render mode named 'ansi'"),
+    ],
+)
+def test_what_is_no_drive_is_refused_by_name(options, error, named):
+    with pytest.raises(error, match=named):
+        FlatDriveEnv(**options)
