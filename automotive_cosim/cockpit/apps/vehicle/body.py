@@ -183,7 +183,6 @@ def doors(state: State) -> tuple[Widget, ...]:
                             key="door.driving",
                             text=say("Keep the doors locked while driving"),
                             style=Type.LABEL,
-                            tone="warning",
                             align="right",
                         ),
                     )
@@ -456,8 +455,8 @@ def _mirror(
     children: list[Widget] = [heading(inner.top(28), name)]
     sideways, upwards = _ANGLES[who]
     for line, key, text, told, signal, ways in (
-        (pan, "pan", say("Left (+), right (−)"), sideways, angles[0], left_right),
-        (tilt, "tilt", say("Down (−), up (+)"), upwards, angles[1], lower_higher),
+        (pan, "pan", say("Left +, right −"), sideways, angles[0], left_right),
+        (tilt, "tilt", say("Down, up"), upwards, angles[1], lower_higher),
     ):
         children += [
             Label(rect=line.left(110), text=text, style=Type.LABEL, tone="muted"),
