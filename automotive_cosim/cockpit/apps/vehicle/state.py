@@ -54,14 +54,15 @@ def car(rng: np.random.Generator) -> CarMemory:
     return CarMemory(tuple(_seat(rng) for _ in range(SLOTS)))
 
 
-DRIVEN: Mapping[Signal[float], tuple[float, float]] = {SEAT.DRIVER_RECLINE: (20.0, 28.0)}
+DRIVEN: Mapping[Signal[float], tuple[float, float]] = {SEAT.DRIVER_RECLINE: (20, 28)}
 """Where people have a signal as they drive, least and most, unless that is the middle half of its range."""
 
 
 def _seat(rng: np.random.Generator) -> tuple[float, ...]:
     def drawn(signal: Signal[float]) -> float:
-        quarter = round((signal.high - signal.low) / signal.step) // 4 * signal.step
-        low, high = DRIVEN.get(signal, (signal.low + quarter, signal.low + 3 * quarter))
+        steps = round((signal.high - signal.low) / signal.step)
+        low = signal.low + steps // 4 * signal.step
+        low, high = DRIVEN.get(signal, (low, low + steps // 2 * signal.step))
         return low + int(rng.integers(round((high - low) / signal.step) + 1)) * signal.step
 
     return tuple(drawn(signal) for signal in REMEMBERED)
