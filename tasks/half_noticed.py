@@ -108,7 +108,7 @@ GHOST_LAMP = pair(
     "settings: the driver's reading light is on, or the passenger's",
 )
 
-BETWEEN_VANS = start("peripherique", "streets", {LIGHTS.SWITCH: "BEAM"}, parked=True, start=MAY, weather=DRY_MAY)
+BETWEEN_VANS = start("peripherique", "streets", parked=True, start=MAY, weather=DRY_MAY)
 BACKING_OUT = pair(
     "phenomenon_before_i_back_out",
     Module.PHENOMENON,

@@ -96,7 +96,7 @@ THIRTY = pair(
         ways=((Open("outside"), Tap("outside.ice"), Tap("outside.warn")),),
     ),
     rest(
-        start("grid", "round", {LIGHTS.SWITCH: "BEAM"}, start="2026-07-14T14:10:00", weather=HOT_DAY),
+        start("grid", "round", start="2026-07-14T14:10:00", weather=HOT_DAY),
         FRICTION,
     ),
     "weather, date and settings: freezing rain at 30 degrees Fahrenheit in January, or 30 Celsius in July",

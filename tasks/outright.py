@@ -185,7 +185,6 @@ ROOF = pair(
         start(
             "london",
             "kingsway",
-            {LIGHTS.SWITCH: "BEAM"},
             start="2026-05-12T12:10:00",
             weather=replace(FAIR, temperature_2m=18.0),
         ),
@@ -195,7 +194,7 @@ ROOF = pair(
         rule=RAIN_SOURCE,
         may_write=frozenset({CABIN.SUNROOF_SHADE.path}),
     ),
-    "weather: steady rain, or a fair day",
+    "weather and settings: steady rain with the lamps on, or a fair day",
     dimension=EXPLICIT,
 )
 
@@ -462,7 +461,7 @@ WIPERS = pair(
         start(
             "peripherique",
             "streets",
-            {BODY.FRONT_WIPER: "MEDIUM", LIGHTS.SWITCH: "BEAM"},
+            {BODY.FRONT_WIPER: "MEDIUM"},
             start="2026-05-12T16:20:00",
             weather=replace(FAIR, temperature_2m=15.0),
         ),
@@ -472,7 +471,7 @@ WIPERS = pair(
         rule=VIEW_SOURCE,
         ways=((LAMPS, Tap("wiper.front.auto")),),
     ),
-    "weather: steady rain, or a dry afternoon",
+    "weather and settings: steady rain with the lamps on, or a dry afternoon",
     dimension=EXPLICIT,
 )
 

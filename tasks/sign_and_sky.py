@@ -205,7 +205,7 @@ YELLOW_LINES = pair(
     tags=PLACE,
 )
 
-UP_EARLY = start("beauce", "plain", {LIGHTS.SWITCH: "BEAM"}, start="2026-11-17T12:30:00", weather=DRY_EVENING)
+UP_EARLY = start("beauce", "plain", start="2026-11-17T12:30:00", weather=DRY_EVENING)
 UP_SINCE_FIVE = pair(
     "road_up_since_five",
     Module.ROAD,

@@ -80,7 +80,7 @@ FOUR_UP = at(
     Occupant(REAR_RIGHT, Kind.ADULT),
     start="2026-11-17T12:30:00",
     weather=COLD_DAMP,
-    signals={HVAC.FRONT_DEFROSTER: True, LIGHTS.SWITCH: "BEAM"},
+    signals={HVAC.FRONT_DEFROSTER: True},
     cabin={"temperature_c": 18.0, "humidity_pct": 72.0},
 )
 DEFROSTER_OFF = hazard(

@@ -230,13 +230,13 @@ SKY_IN_THE_MIRROR = pair(
         ways=((*MIRRORS, Tap("mirror.driver.tilt.decrease", times=6)),),
     ),
     act(
-        start("new_york", "crosstown", {MIRROR.PASSENGER_PAN: -60.0}),
+        start("new_york", "crosstown", {MIRROR.PASSENGER_PAN: 60.0}),
         SignalWithin(MIRROR.PASSENGER_PAN, -20.0, 20.0),
         *MIRRORS,
-        Tap("mirror.passenger.pan.increase", times=4),
+        Tap("mirror.passenger.pan.decrease", times=4),
         rule=MIRROR_VIEW_SOURCE,
         deadline=PRESSES,
-        ways=((*MIRRORS, Tap("mirror.passenger.pan.increase", times=6)),),
+        ways=((*MIRRORS, Tap("mirror.passenger.pan.decrease", times=6)),),
     ),
     "settings: the driver's mirror shows the sky, or the passenger's the side of the car",
 )
@@ -410,13 +410,13 @@ WIDER = pair(
         start(
             "border",
             "south",
-            {ADAS.CRUISE_GAP: 2.0, LIGHTS.SWITCH: "BEAM"},
+            {ADAS.CRUISE_GAP: 2.0},
             start="2026-05-12T14:00:00",
             weather=replace(FAIR, temperature_2m=14.0),
         ),
         WET_GAP_SOURCE,
     ),
-    "weather: steady rain, or a dry afternoon",
+    "weather and settings: steady rain with the lamps on, or a dry afternoon",
 )
 
 AJAR = dict.fromkeys(WINDOWS, 30.0)

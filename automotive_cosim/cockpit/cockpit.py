@@ -40,7 +40,7 @@ from automotive_cosim.cockpit.display import Display
 from automotive_cosim.cockpit.fresh import put_back
 from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.map import road_map
-from automotive_cosim.cockpit.messages import Back, Show, write
+from automotive_cosim.cockpit.messages import Back, Key, Show, write
 from automotive_cosim.cockpit.picture import picture
 from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.cockpit.readings import readings
@@ -356,7 +356,7 @@ class Cockpit:
         """Enters text into the focused field at once and closes the keyboard."""
         field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
         if field is None or not field.focused:
-            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("no text field has the focus; tap one first"))
+            return self._nowhere_to_type(field)
         if field.locked:
             return self._unusable(field)
         kept = "" if clear else field.text
@@ -371,11 +371,21 @@ class Cockpit:
             return Feedback(FeedbackCode.RESTRICTED, REASONS[Restriction.NO_KEYBOARD])
         field = next((widget for widget in self._screen.walk() if isinstance(widget, Field)), None)
         if field is None or not field.focused:
-            return Feedback(FeedbackCode.NO_SUCH_ELEMENT, say("no text field has the focus; tap one first"))
+            return self._nowhere_to_type(field)
         if field.on_enter is None:
             return Feedback(FeedbackCode.REFUSED, say("nothing matches {text}", text=repr(field.text)))
         self._state.focus = ""
         return self._perform(field.on_enter)
+
+    def _nowhere_to_type(self, field: Field | None) -> Feedback:
+        """Why nothing can be typed, and what to do where something can."""
+        if field is not None:
+            why = say("no text field has the focus; tap one first")
+        elif any(isinstance(widget.on_tap, Key) for widget in self._screen.walk()):
+            why = say("there is no text field here; press the keys on the screen one by one")
+        else:
+            why = say("there is no text field here")
+        return Feedback(FeedbackCode.NO_SUCH_ELEMENT, why)
 
     def home(self) -> Feedback:
         """Goes to the home screen."""

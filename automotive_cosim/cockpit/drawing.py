@@ -88,6 +88,8 @@ class Canvas:
         colour: Colour,
         align: str = "left",
         lines: int = 1,
+        *,
+        keeps_end: bool = False,
     ) -> None:
         """Text in a box, in the middle of its height; smaller if too long, over several lines if allowed.
 
@@ -100,10 +102,11 @@ class Canvas:
             colour: colour of the letters.
             align: ``left``, ``centre`` or ``right``.
             lines: maximum number of lines.
+            keeps_end: whether it loses its beginning where it is too long.
         """
         if not text:
             return
-        style, rows, cut = fit(text, style, box.width, lines, box.height)
+        style, rows, cut = fit(text, style, box.width, lines, box.height, keeps_end=keeps_end)
         pitch = style.pitch
         top = box.y + (box.height - pitch * len(rows)) / 2
         for row, words in enumerate(rows):
@@ -169,7 +172,9 @@ def text_width(text: str, style: Type) -> float:
 
 
 @lru_cache(maxsize=4096)
-def fit(text: str, style: Type, width: int, lines: int, height: int = 0) -> tuple[Type, tuple[str, ...], bool]:
+def fit(
+    text: str, style: Type, width: int, lines: int, height: int = 0, *, keeps_end: bool = False
+) -> tuple[Type, tuple[str, ...], bool]:
     """The largest style in which the text fits, its lines, and whether it had to be cut.
 
     Args:
@@ -178,6 +183,7 @@ def fit(text: str, style: Type, width: int, lines: int, height: int = 0) -> tupl
         width: width of the box.
         lines: maximum number of lines, as long as the text fits on them in some style.
         height: height of the box; more lines are used before the smallest style if it has room for them.
+        keeps_end: whether it loses its beginning where it has to be cut.
     """
     text = _BLANKS.sub(" ", text).strip(" ")
     styles = [style]
@@ -192,7 +198,7 @@ def fit(text: str, style: Type, width: int, lines: int, height: int = 0) -> tupl
         if len(rows) <= most and all(text_width(row, one) <= width for row in rows):
             return one, tuple(rows), False
     kept = [*rows[: lines - 1], " ".join(rows[lines - 1 :])]
-    return styles[-1], tuple(_cut(row, styles[-1], width) for row in kept), True
+    return styles[-1], tuple(_cut(row, styles[-1], width, keeps_end) for row in kept), True
 
 
 def fits(text: str, style: Type, width: int) -> bool:
@@ -218,12 +224,12 @@ def _pieces(text: str) -> Iterator[tuple[str, str]]:
             yield "" if at else " ", piece
 
 
-def _cut(text: str, style: Type, width: int) -> str:
+def _cut(text: str, style: Type, width: int, keeps_end: bool = False) -> str:
     if text_width(text, style) <= width:
         return text
     while text and text_width(text + "…", style) > width:
-        text = text[:-1]
-    return text.rstrip() + "…"
+        text = text[1:] if keeps_end else text[:-1]
+    return "…" + text.lstrip() if keeps_end else text.rstrip() + "…"
 
 
 @lru_cache(maxsize=4096)

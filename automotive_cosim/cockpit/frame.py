@@ -301,7 +301,9 @@ def _limit_sign(rect: Rect, state: State) -> tuple[Widget, ...]:
         return ()
     unit = "km/h" if state.outside is None else state.outside.sign_unit
     told = say("Limit sign {limit}", limit=sign_in_words(state.signals, limit, unit))
-    return (LimitSign(rect=rect, key="status.limit_sign", text=sign_figure(limit, unit), description=told),)
+    country = "" if state.outside is None else state.outside.sign_country
+    figure = sign_figure(limit, unit)
+    return (LimitSign(rect=rect, key="status.limit_sign", text=figure, description=told, country=country),)
 
 
 def dock(state: State) -> tuple[Widget, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.geometry import Rect
@@ -99,33 +99,62 @@ def heading(rect: Rect, text: str, key: str = "") -> Label:
     return Label(rect=rect, key=key, text=text, style=Type.LABEL, tone="muted")
 
 
-StepWords = Callable[[str, str], tuple[str, str]]
-"""From a name and a step, what minus and plus do."""
+@dataclass(frozen=True, slots=True)
+class StepWords:
+    """What minus and plus do, why they do nothing at the ends, and how they look."""
+
+    less: str
+    more: str
+    least: str
+    most: str
+    icons: tuple[Icon, Icon] = (Icon.MINUS, Icon.PLUS)
+    more_first: bool = False
+    """Whether plus is on the left, where it leads."""
 
 
-def lower_higher(name: str, by: str) -> tuple[str, str]:
+StepWays = Callable[[str, str], StepWords]
+"""From a name and a step."""
+
+
+def lower_higher(name: str, by: str) -> StepWords:
     """For what has more or less."""
-    return say("{name} lower by {step}", name=name, step=by), say("{name} higher by {step}", name=name, step=by)
-
-
-def forward_back(name: str, by: str) -> tuple[str, str]:
-    """For a seat, whose position counts from the front."""
-    return say("{name} forward by {step}", name=name, step=by), say("{name} back by {step}", name=name, step=by)
-
-
-def upright_back(name: str, by: str) -> tuple[str, str]:
-    """For a backrest, whose angle counts from upright."""
-    return (
-        say("{name} more upright by {step}", name=name, step=by),
-        say("{name} further back by {step}", name=name, step=by),
+    return StepWords(
+        say("{name} lower by {step}", name=name, step=by),
+        say("{name} higher by {step}", name=name, step=by),
+        say("It is at its lowest"),
+        say("It is at its highest"),
     )
 
 
-def right_left(name: str, by: str) -> tuple[str, str]:
+def forward_back(name: str, by: str) -> StepWords:
+    """For a seat, whose position counts from the front."""
+    return StepWords(
+        say("{name} forward by {step}", name=name, step=by),
+        say("{name} back by {step}", name=name, step=by),
+        say("It is as far forward as it goes"),
+        say("It is as far back as it goes"),
+    )
+
+
+def upright_back(name: str, by: str) -> StepWords:
+    """For a backrest, whose angle counts from upright."""
+    return StepWords(
+        say("{name} more upright by {step}", name=name, step=by),
+        say("{name} further back by {step}", name=name, step=by),
+        say("It is as upright as it goes"),
+        say("It is as far back as it goes"),
+    )
+
+
+def left_right(name: str, by: str) -> StepWords:
     """For a mirror, whose angle counts to the left (VSS, ``Vehicle.Body.Mirrors.DriverSide.Pan``)."""
-    return (
+    return StepWords(
         say("{name} to the right by {step}", name=name, step=by),
         say("{name} to the left by {step}", name=name, step=by),
+        say("It is as far to the right as it goes"),
+        say("It is as far to the left as it goes"),
+        (Icon.TO_THE_RIGHT, Icon.TO_THE_LEFT),
+        more_first=True,
     )
 
 
@@ -138,54 +167,47 @@ def stepper(
     shown: str,
     style: Type = Type.TITLE,
     locked: str = "",
-    ways: StepWords = lower_higher,
+    ways: StepWays = lower_higher,
 ) -> tuple[Widget, ...]:
-    """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once. ``ways`` says where minus and plus lead."""
+    """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once. ``ways`` says where they lead."""
     value = signals[signal]
     side = min(rect.height, 64)
     less, more, far_less, far_more = (
         min(signal.high, max(signal.low, value + steps * signal.step)) for steps in (-1, 1, -HELD_STEPS, HELD_STEPS)
     )
-    down, up = ways(name, _step(signal, signals))
+    words = ways(name, _step(signal, signals))
     left, middle, right = row(rect, side, REST, side)
-    return (
-        Button(
-            rect=left.middle(side, side),
-            key=f"{key}.decrease",
-            description=down,
-            icon=Icon.MINUS,
-            on_tap=Set(signal, less),
-            on_hold=Set(signal, far_less),
-            disabled=say("It is at its lowest") if less == value else "",
-            locked=locked,
-        ),
-        Label(
-            rect=middle,
-            key=f"{key}.value",
-            text=shown,
-            description=name,
-            style=style,
-            align="centre",
-        ),
-        Button(
-            rect=right.middle(side, side),
-            key=f"{key}.increase",
-            description=up,
-            icon=Icon.PLUS,
-            on_tap=Set(signal, more),
-            on_hold=Set(signal, far_more),
-            disabled=say("It is at its highest") if more == value else "",
-            locked=locked,
-        ),
+    minus, plus = (right, left) if words.more_first else (left, right)
+    decrease = Button(
+        rect=minus.middle(side, side),
+        key=f"{key}.decrease",
+        description=words.less,
+        icon=words.icons[0],
+        on_tap=Set(signal, less),
+        on_hold=Set(signal, far_less),
+        disabled=words.least if less == value else "",
+        locked=locked,
     )
+    number = Label(rect=middle, key=f"{key}.value", text=shown, description=name, style=style, align="centre")
+    increase = Button(
+        rect=plus.middle(side, side),
+        key=f"{key}.increase",
+        description=words.more,
+        icon=words.icons[1],
+        on_tap=Set(signal, more),
+        on_hold=Set(signal, far_more),
+        disabled=words.most if more == value else "",
+        locked=locked,
+    )
+    return (increase, number, decrease) if words.more_first else (decrease, number, increase)
 
 
 def _step(signal: Signal[float], signals: Signals) -> str:
-    """A stepper's step in the unit of the display."""
+    """A stepper's step in the unit of the display, as whole as the value that is shown."""
     if signal.unit == "celsius" and signals[HMI.TEMPERATURE_UNIT] == "F":
-        return Quantity(f"{1.8 * signal.step:.1f}")
+        return f"{1.8 * signal.step:.0f}"
     if signal.unit == "km/h" and signals[HMI.DISTANCE_UNIT] == "MILES":
-        return Quantity(f"{signal.step / MILE_KM:.1f}")
+        return f"{signal.step / MILE_KM:.0f}"
     return Quantity(f"{signal.step:g}")
 
 

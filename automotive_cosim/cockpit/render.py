@@ -14,7 +14,7 @@ from automotive_cosim.cockpit.drawing import Canvas, fits, text_width
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.mapdraw import draw
 from automotive_cosim.cockpit.photos import photo
-from automotive_cosim.cockpit.telltales import colour, sign_picture, symbol
+from automotive_cosim.cockpit.telltales import SignKind, colour, sign_picture, symbol
 from automotive_cosim.cockpit.theme import (
     BUTTON_RADIUS,
     CARD_RADIUS,
@@ -137,7 +137,7 @@ def _label(canvas: Canvas, label: Label, palette: Palette) -> None:
     if label.plate:
         canvas.box(label.rect, palette.plate, 8)
     tone: Colour = getattr(palette, label.tone)
-    canvas.text(label.rect, label.text, label.style, tone, label.align, label.lines)
+    canvas.text(label.rect, label.text, label.style, tone, label.align, label.lines, keeps_end=label.keeps_end)
 
 
 def _glyph(canvas: Canvas, glyph: Glyph, palette: Palette) -> None:
@@ -371,10 +371,8 @@ def _bar(canvas: Canvas, bar: Bar, palette: Palette) -> None:
 
 
 def _sign(canvas: Canvas, sign: LimitSign, palette: Palette) -> None:
-    """The round red-rimmed sign of the Vienna Convention (C,14)."""
-    canvas.disc(sign.rect, (200, 20, 32))
-    canvas.disc(sign.rect.inset(6), (255, 255, 255))
-    canvas.text(sign.rect.inset(8), sign.text, Type.STRONG, (12, 14, 18), "centre")
+    side = canvas.pixels_across(sign.rect)
+    _stand(canvas, sign.rect, sign_picture(SignKind.LIMIT, sign.text, side, sign.country))
 
 
 def _telltales(canvas: Canvas, row: Telltales, palette: Palette) -> None:
@@ -389,8 +387,12 @@ def _telltales(canvas: Canvas, row: Telltales, palette: Palette) -> None:
 def _sign_view(canvas: Canvas, view: SignView, palette: Palette) -> None:
     if view.sign is None:
         return
-    picture = sign_picture(view.sign.kind, view.figure, canvas.pixels_across(view.rect))
-    canvas.stencil(view.rect, picture.getchannel("A"), picture.convert("RGB"))
+    side = canvas.pixels_across(view.rect)
+    _stand(canvas, view.rect, sign_picture(view.sign.kind, view.figure, side, view.sign.country))
+
+
+def _stand(canvas: Canvas, rect: Rect, sign: Image.Image) -> None:
+    canvas.stencil(rect, sign.getchannel("A"), sign.convert("RGB"))
 
 
 def _cover(canvas: Canvas, view: Cover, palette: Palette) -> None:

@@ -110,7 +110,7 @@ def _read_sign(state: State, surroundings: Surroundings) -> None:
     elif road.school_zone and not was_at_school:
         state.last_sign = RoadSign(SignKind.SCHOOL)
     elif limit_kmh is not None and limit_kmh != was_kmh:
-        state.last_sign = RoadSign(SignKind.LIMIT, limit_kmh, surroundings.sign_unit)
+        state.last_sign = RoadSign(SignKind.LIMIT, limit_kmh, surroundings.sign_unit, surroundings.sign_country)
     elif limit_kmh is None and was_kmh is not None:
         state.last_sign = RoadSign(SignKind.END_OF_LIMIT)
     state.signs_here = road.in_tunnel, bool(road.school_zone), limit_kmh

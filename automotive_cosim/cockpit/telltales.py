@@ -57,6 +57,8 @@ class RoadSign:
     """On a limit sign."""
     unit: str = "km/h"
     """What the figure on it counts: ``"km/h"`` or ``"mph"``."""
+    country: str = ""
+    """ISO 3166-1 code of the country that put it up; empty if unknown."""
 
 
 class _SymbolPen:
@@ -96,10 +98,14 @@ class _SymbolPen:
             width=1.5,
         )
 
-    def text(self, figure: str) -> None:
-        """A figure in the middle of a sign."""
-        letters = font(Weight.BOLD, round((10.5 if len(figure) < 3 else 8.0) * self._unit))
-        self._draw.text((12 * self._unit, 12 * self._unit), figure, BLACK, letters, anchor="mm")
+    def figure(self, figure: str) -> None:
+        """A figure in the middle of a round sign."""
+        self.text(figure, 12, 10.5 if len(figure) < 3 else 8.0)
+
+    def text(self, text: str, y: float, size: float) -> None:
+        """A text in the middle of a sign's width."""
+        letters = font(Weight.BOLD, round(size * self._unit))
+        self._draw.text((12 * self._unit, y * self._unit), text, BLACK, letters, anchor="mm")
 
     def exclamation(self, top: float, bottom: float) -> None:
         """An exclamation mark in the middle."""
@@ -232,16 +238,30 @@ def symbol(telltale: Telltale, side: int) -> Image.Image:
     return picture.reduce(_FINE)
 
 
+PLATES = {"US": ("SPEED", "LIMIT"), "CA": ("MAXIMUM",)}
+"""The words above the figure on limit signs that are rectangular plates, by country (MUTCD R2-1; MUTCD of Canada
+RB-1)."""
+
+
 @lru_cache(maxsize=16)
-def sign_picture(kind: SignKind, figure: str, side: int) -> Image.Image:
-    """A sign of the Vienna Convention: C,14 with its figure, C,17a, A,13 or E,11a; RGBA, of that side in pixels."""
+def sign_picture(kind: SignKind, figure: str, side: int, country: str = "") -> Image.Image:
+    """A sign of the Vienna Convention: C,14 with its figure, C,17a, A,13 or E,11a; RGBA, of that side in pixels. A
+    limit has the form of its country."""
     picture = Image.new("RGBA", (side * _FINE, side * _FINE), (0, 0, 0, 0))
     pen = _SymbolPen(picture)
     match kind:
+        case SignKind.LIMIT if country in PLATES:
+            for edge, fill in ((0.0, WHITE), (0.7, BLACK), (1.7, WHITE)):
+                left, top, right, bottom = 2.5 + edge, edge, 21.5 - edge, 24 - edge
+                pen.area((left, top), (right, top), (right, bottom), (left, bottom), fill=fill)
+            words = PLATES[country]
+            for at, word in enumerate(words):
+                pen.text(word, (5.2 if len(words) > 1 else 6.0) + 4.6 * at, 4.8 if len(word) < 6 else 3.4)
+            pen.text(figure, 17.0, 10.5 if len(figure) < 3 else 8.5)
         case SignKind.LIMIT:
             pen.disc(12, 12, 11.8, SIGN_RED)
             pen.disc(12, 12, 9.2, WHITE)
-            pen.text(figure)
+            pen.figure(figure)
         case SignKind.END_OF_LIMIT:
             pen.disc(12, 12, 11.8, BLACK)
             pen.disc(12, 12, 11.0, WHITE)

@@ -422,6 +422,8 @@ class Icon(StrEnum):
     PARKING_BRAKE = "\U000f0d5f"
     WASHER = "\U000f0da6"
     STRAIGHT = "\U000f005d"
+    TO_THE_LEFT = "\U000f004d"
+    TO_THE_RIGHT = "\U000f0054"
     TURN_LEFT = "\U000f17a7"
     TURN_RIGHT = "\U000f17ab"
     SLIGHT_LEFT = "\U000f005b"

@@ -117,6 +117,8 @@ class Label(Widget):
     lines: int = 1
     plate: bool = False
     """Whether it has a background of its own, as on the map."""
+    keeps_end: bool = False
+    """Whether it loses its beginning, not its end, where it is too long to be drawn."""
 
     class_name: ClassVar[str] = "TextView"
 
@@ -283,6 +285,9 @@ class Bar(Widget):
 @frozen(frozen=True, slots=True, kw_only=True)
 class LimitSign(Widget):
     """The limit sign the camera read last."""
+
+    country: str = ""
+    """Whose form it has."""
 
     class_name: ClassVar[str] = "ImageView"
 

@@ -73,3 +73,5 @@ class Surroundings:
     """Whether the driver has parked on the way, as planned; False for a car that never sets off."""
     sign_unit: str = "km/h"
     """Unit of the speeds on the signs here: ``"km/h"`` or ``"mph"``."""
+    sign_country: str = ""
+    """ISO 3166-1 code of the country whose signs stand here; empty if unknown."""

@@ -48,8 +48,8 @@ class Car:
     """Whether the driver has parked on the way."""
     errands: tuple[Errand, ...] = ()
     """What people aboard ask for, by simulation time."""
-    read_sign: tuple[Limit, str] | None = None
-    """The limit that is signed here, and the unit of its sign; None before departure."""
+    read_sign: tuple[Limit, str, str] | None = None
+    """The limit that is signed here, and the unit and the country of its sign; None before departure."""
 
     def copy(self) -> Car:
         """An independent copy that continues exactly as this one would."""
@@ -111,7 +111,8 @@ class Car:
                 self.cockpit.expect(changes)
         context = self.geo.locate(driving, gps, weather, local_time)
         if self.read_sign is None or self.read_sign[0] != driving.road.limit:
-            self.read_sign = driving.road.limit, context.speed_unit  # only then: to find the place takes long
+            # only then: to find the place takes long
+            self.read_sign = driving.road.limit, context.speed_unit, context.country
         outside = around(
             driving,
             weather,
@@ -120,6 +121,7 @@ class Car:
             connectivity,
             parked=self.is_parked,
             sign_unit=self.read_sign[1],
+            sign_country=self.read_sign[2],
         )
         self.cockpit.sense(outside, dt_s)
         ringing = str(self.cockpit.signals[CALL.RINGING])

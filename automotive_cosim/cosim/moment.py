@@ -54,6 +54,7 @@ class Moment:
             self.gps,
             self.connectivity,
             sign_unit=self.context.speed_unit,
+            sign_country=self.context.country,
         )
 
 
@@ -66,6 +67,7 @@ def around(
     *,
     parked: bool = False,
     sign_unit: str = "km/h",
+    sign_country: str = "",
 ) -> Surroundings:
     """Everything outside the cockpit, with the sun where it stands then and there."""
     sun_deg = (
@@ -73,4 +75,4 @@ def around(
         if driving.lat_deg is None or driving.lon_deg is None
         else elevation_deg(driving.lat_deg, driving.lon_deg, local_time)
     )
-    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity, parked, sign_unit)
+    return Surroundings(driving, weather, local_time, sun_deg, gps, connectivity, parked, sign_unit, sign_country)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
+from automotive_cosim.cockpit.apps.phone.state import EARLIER, Contact, Thread
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.contracts import Action, ActionType
 from automotive_cosim.tasking.checks import Check, Entered
@@ -55,7 +55,7 @@ def knowing(*names: str) -> tuple[Contact, ...]:
 
 def wrote(who: str, *lines: Any) -> Thread:
     """An unread thread; a line may be a parameter."""
-    return Thread(who, "Today 08:10", lines, unread=True)
+    return Thread(who, EARLIER, lines, unread=True)
 
 
 def with_papers(start: Start, **papers: Any) -> Start:

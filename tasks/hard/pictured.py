@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import Any
 
 from automotive_cosim.cockpit.apps.calendar.state import Appointment
-from automotive_cosim.cockpit.apps.phone.state import Thread
+from automotive_cosim.cockpit.apps.phone.state import EARLIER, Thread
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.photos import Photo, Shows
 from automotive_cosim.cockpit.signals import ADAS, CABIN, HVAC, LINK, SEAT
@@ -41,7 +41,7 @@ from automotive_cosim.tasks.hard.forms import (
 
 def sent(who: str, photo: Photo, *lines: Any, start: Start = PARKED, **papers: Any) -> Start:
     """The start with somebody known who has sent a photo."""
-    thread = Thread(who, "Today 08:10", lines, unread=True, photo=photo)
+    thread = Thread(who, EARLIER, lines, unread=True, photo=photo)
     contacts = papers.pop("contacts", knowing(who))
     return replace(start, belongings=Belongings(contacts, (thread,), **papers))
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
-from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
+from automotive_cosim.cockpit.apps.phone.state import EARLIER, Contact, Thread
 from automotive_cosim.cockpit.apps.trip.state import TripMeter
 from automotive_cosim.cockpit.signals import ADAS, BODY, DRIVE, ENERGY, LIGHTS, MEDIA, OUTSIDE, SEAT, TYRE
 from automotive_cosim.contracts import AlertKind, Weather
@@ -177,7 +177,6 @@ JANUARY = with_papers(
         ON_THE_ROAD,
         start="2026-01-20T10:15:00",
         sensors=SLIPPERY,
-        signals={LIGHTS.SWITCH.path: "BEAM"},
     ),
     contacts=knowing(ISLA),
 )
@@ -216,13 +215,17 @@ ICE_OR_SENSOR = hard(
         may_write=frozenset(),
     ),
     _half(
-        replace(JANUARY, weather=Weather(-3.0, 95.0, 0.8, 73, 100.0, 2_500.0, 12.0)),
+        replace(
+            JANUARY,
+            weather=Weather(-3.0, 95.0, 0.8, 73, 100.0, 2_500.0, 12.0),
+            signals={LIGHTS.SWITCH.path: "BEAM"},
+        ),
         (SignalIs(DRIVE.MODE, ("SNOW",)), told(ISLA, "I'll be 10 minutes late")),
         SNOWED,
         (*ICE, *answer(ISLA, "On my way"), Inform("The grip sensor must be wrong.")),
         may_write=frozenset(),
     ),
-    "weather: dry at nine degrees, or snow at three below zero",
+    "weather and settings: dry at nine degrees, or snow at three below zero with the lamps on",
     parameters={"grip": (6, 9, 12, 14)},
     tags=frozenset({"two_modules"}),
     ability=Ability.SENSORS,
@@ -575,7 +578,7 @@ def _behind(arrival: Arrival, goal: tuple[Check, ...], moves: Moves, wrong: Move
     start = with_papers(
         replace(ON_THE_ROAD, aboard=BEHIND, interruptions=(arrival,)),
         contacts=(Contact(BEN, "555 45 72"), *knowing(PRIYA, OSKAR)),
-        threads=(Thread(BEN, "Today 08:10", ("Later please the playlist {playlist}",), unread=True),),
+        threads=(Thread(BEN, EARLIER, ("Later please the playlist {playlist}",), unread=True),),
     )
     return _half(
         start, goal, moves, wrong, may_write=READ | {MEDIA.SOURCE.path, MEDIA.SELECTED.path, "media.playlist"}

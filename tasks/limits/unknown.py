@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.calendar.state import Appointment
-from automotive_cosim.cockpit.apps.phone.state import Contact, Thread
+from automotive_cosim.cockpit.apps.phone.state import EARLIER, Contact, Thread
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.signals import LINK, OUTSIDE, TYRE
@@ -67,7 +67,7 @@ def _memos(memo: str) -> Start:
 
 
 def _oskar(*lines: str) -> Start:
-    wrote = Thread(OSKAR, "Today 08:10", lines, unread=True)
+    wrote = Thread(OSKAR, EARLIER, lines, unread=True)
     return _with(ON_THE_ROAD, contacts=(Contact(OSKAR, "555 84 26"),), threads=(wrote,))
 
 

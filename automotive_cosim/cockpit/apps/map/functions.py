@@ -8,7 +8,7 @@ from annotated_types import Ge, Le
 
 from automotive_cosim.cockpit.apps.map.commands import Guide, Take
 from automotive_cosim.cockpit.apps.map.screens import away, matches
-from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, Navigation
+from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, NO_GOAL, Navigation
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.functions import CallMade, as_told, disabled, locked, named, offered, reading
 from automotive_cosim.cockpit.places import Gazetteer
@@ -38,7 +38,7 @@ def navigate_to(
     if goal == found:
         return disabled(say("Already navigating there"))
     if as_stop and not goal:
-        return disabled(say("The route has no place as its destination"))
+        return disabled(NO_GOAL)
     return Guide(found, goal) if as_stop else Guide(found)
 
 

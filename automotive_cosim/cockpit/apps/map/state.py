@@ -40,6 +40,10 @@ _AHEAD: Mapping[Text, Callable[[str], Text]] = {
 """How a manoeuvre is announced, by the distance to it."""
 
 
+NO_GOAL = say("This route ends at no named destination: start guidance to one first")
+"""Why no stop can be added."""
+
+
 @dataclass(frozen=True, slots=True)
 class Navigation(AppData):
     """The driver's choices. Destinations are names of places and streets."""

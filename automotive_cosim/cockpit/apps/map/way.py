@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from automotive_cosim.cockpit.apps.map.commands import Guide, Take
 from automotive_cosim.cockpit.apps.map.screens import arrival, away, destination, panel, sight, turns_ahead
-from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, Navigation
+from automotive_cosim.cockpit.apps.map.state import AVOIDABLE, NO_GOAL, Navigation
 from automotive_cosim.cockpit.apps.store.state import Installed
 from automotive_cosim.cockpit.commands import Put, Set
 from automotive_cosim.cockpit.geometry import Rect
@@ -160,7 +160,7 @@ def _place_buttons(rect: Rect, name: str, known: Destination | None, state: Stat
             text=say("Add as a stop"),
             icon=Icon.PLACE,
             on_tap=Guide(name, goal),
-            disabled=there or ("" if goal else say("The route has no place as its destination")),
+            disabled=there or ("" if goal else NO_GOAL),
         ),
         Button(
             rect=cells[2],

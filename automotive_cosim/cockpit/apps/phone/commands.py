@@ -153,13 +153,8 @@ class Read(Command):
         state.keep(phone.opened(who))
         state.notices = tuple(notice for notice in state.notices if notice.opens != ("thread", who))
         tell(state)
-        words = " ".join(map(_sentence, thread.lines)) if thread else ""
+        words = thread.aloud() if thread else ""
         aloud = state.locked(Restriction.NO_TEXT_MESSAGE)
         return Feedback(
             FeedbackCode.READ_OUT if aloud else FeedbackCode.OK, say("{who} wrote: {text}", who=who, text=words)
         )
-
-
-def _sentence(text: str) -> str:
-    """A message as it is read out before another: with its stop."""
-    return text if text.endswith((".", "!", "?", "…", ":", "。", "！", "？", "：")) else f"{text}."

@@ -101,7 +101,7 @@ def thread(state: State) -> tuple[Widget, ...]:
     left, _, right = row(page, 500, GAP, REST)
     bar, _, talk, _, read = column(left, 64, 12, REST, 12, 64)
     talk, _, seen = column(talk, REST, 12, PHOTO_HIGH) if photo else (talk, talk, talk)
-    back, _, name, _, figure = row(bar, 64, 16, REST, 12, 172)
+    back, _, name, _, figure = row(bar, 64, 16, REST, 12, 216)
     return (
         handset(state),
         Button(rect=back, key="thread.back", description=say("Back"), icon=Icon.BACK, on_tap=Back()),
@@ -109,7 +109,7 @@ def thread(state: State) -> tuple[Widget, ...]:
         Button(
             rect=figure,
             key="thread.figure",
-            text=say("Send trip data"),
+            text=say("Send time, price…"),
             icon=Icon.MESSAGE,
             on_tap=Show("figure", who),
         ),

@@ -194,11 +194,12 @@ def _keypad(rect: Rect, state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=shown.inset(20),
                     key="phone.number",
-                    text=number[-14:] or (say("Locked while driving") if locked else say("Number")),
+                    text=number or (say("Locked while driving") if locked else say("Number")),
                     description=say("Number to call"),
                     style=Type.TITLE,
                     tone="text" if number else "muted",
                     align="centre",
+                    keeps_end=True,
                 ),
             ),
         ),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from datetime import datetime, timedelta
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from automotive_cosim.cockpit.restrictions import ENTRIES_LIMIT
 from automotive_cosim.cockpit.signals import CALL, LINK
 from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon
-from automotive_cosim.contracts.text import counted, say
+from automotive_cosim.contracts.text import counted, joined, say
 
 CONTACTS = 60
 TEMPLATES = (
@@ -68,16 +69,41 @@ class PastCall:
     """``"in"``, ``"out"`` or ``"missed"``."""
 
 
+EARLIER = ""
+"""The time of a message that came a little before departure, until the clock is known."""
+_EARLIER = timedelta(minutes=20)
+
+
 @dataclass(frozen=True, slots=True)
 class Thread:
     """Somebody's last message."""
 
     who: str
     when: str
+    """Time of the last one."""
     lines: tuple[str, ...]
     unread: bool
     photo: Photo | None = None
     """A photo that came with it."""
+    times: tuple[str, ...] = ()
+    """Time of each line, where they did not come at once."""
+
+    def aloud(self) -> str:
+        """The lines as they are read out: each time before what came then."""
+        if not self.times:
+            return joined(" ", map(_sentence, self.lines))
+        return joined(
+            " ",
+            (
+                _sentence(line) if time == before else say("{name}: {value}", name=time, value=_sentence(line))
+                for line, time, before in zip(self.lines, self.times, ("", *self.times), strict=False)
+            ),
+        )
+
+
+def _sentence(text: str) -> str:
+    """A message as it is read out before another: with its stop."""
+    return text if text.endswith((".", "!", "?", "…", ":", "。", "！", "？", "：")) else f"{text}."
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,14 +155,23 @@ class Directory(AppData):
         new: dict[str, Thread] = {}
         for received in phone.inbox:
             thread = new.pop(received.who, None) or before.get(received.who)
-            lines = (*(thread.lines if thread else ()), received.text)
-            photo = thread.photo if thread else None
-            new[received.who] = Thread(received.who, received.when, lines, unread=True, photo=photo)
+            known = thread or Thread(received.who, received.when, (), unread=True)
+            times = (*(known.times or (known.when,) * len(known.lines)), received.when)
+            new[received.who] = replace(
+                known, when=received.when, lines=(*known.lines, received.text), unread=True, times=times
+            )
         return (*reversed(new.values()), *(thread for thread in self.threads if thread.who not in new))
 
     def thread(self, who: str, phone: Phone) -> Thread | None:
         """The messages of a contact."""
         return next((thread for thread in self.written(phone) if thread.who == who), None)
+
+    def dated(self, clock: str) -> Directory:
+        """With that time for the messages that came a little before departure."""
+        if all(thread.when != EARLIER for thread in self.threads):
+            return self
+        dated = (replace(thread, when=clock) if thread.when == EARLIER else thread for thread in self.threads)
+        return replace(self, threads=tuple(dated))
 
     def unread(self, phone: Phone) -> tuple[str, ...]:
         """Senders of unread messages."""
@@ -258,6 +293,8 @@ class Phone(AppData):
     def received(self, state: State) -> None:
         """Handles arrivals, and ends the ringing of a call whose time is over or whose phone is unlinked."""
         linked = state.signals[LINK.BLUETOOTH]
+        if state.outside is not None:
+            state.keep(state.of(Directory).dated(_earlier(state, state.outside.local_time)))
         if self.ringing is not None and (state.time_s - self.ringing.since_s >= RINGS_S or not linked):
             state.keep(replace(self, ringing=None))
             _missed(state, self.ringing.who)
@@ -293,6 +330,13 @@ def tell(state: State) -> None:
     signals[CALL.RINGING] = "" if phone.ringing is None else phone.ringing.who
     signals[CALL.PARTNER] = "" if phone.on_call is None else phone.on_call.who
     signals[CALL.UNREAD] = float(len(state.of(Directory).unread(phone)))
+
+
+def _earlier(state: State, now: datetime) -> str:
+    """A little before now; what came before midnight, yesterday."""
+    then = now - _EARLIER
+    clock = state.clock_at(then)
+    return clock if then.date() == now.date() else say("Yesterday {time}", time=clock)
 
 
 def _covered(state: State) -> bool:

@@ -382,7 +382,7 @@ def privacy(state: State) -> tuple[Widget, ...]:
             say("Share position"),
             Icon.GPS,
             LINK.SHARE_POSITION,
-            say("Apps receive the car's position. Emergency calls always send it."),
+            say("Contacts can follow the car, and apps know where it is. Emergency calls always send it."),
         ),
         (
             "privacy.driving",

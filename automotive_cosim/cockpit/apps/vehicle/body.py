@@ -12,22 +12,22 @@ from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Pick, Show
 from automotive_cosim.cockpit.notices import LOW_KPA
 from automotive_cosim.cockpit.parts import (
-    StepWords,
+    StepWays,
     choices,
     fact,
     forward_back,
     grouped,
     heading,
+    left_right,
     levels,
     lower_higher,
     pressure,
-    right_left,
     slider,
     stepper,
     switch,
     upright_back,
 )
-from automotive_cosim.cockpit.signals import BODY, CABIN, DRIVE, HMI, MIRROR, SEAT, TYRE, Signal
+from automotive_cosim.cockpit.signals import BODY, CABIN, DRIVE, HMI, MIRROR, MOTION, SEAT, TYRE, Signal
 from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.vehicle import LOCKS, WINDOWS
@@ -176,6 +176,19 @@ def doors(state: State) -> tuple[Widget, ...]:
             rect=upper,
             children=(
                 heading(head, say("Locks and trunk")),
+                *(
+                    (
+                        Label(
+                            rect=head.right_part(head.width - 200),
+                            key="door.driving",
+                            text=say("Keep the doors locked while driving"),
+                            style=Type.LABEL,
+                            align="right",
+                        ),
+                    )
+                    if signals[MOTION.IS_MOVING]
+                    else ()
+                ),
                 Tile(
                     rect=cells[0],
                     key="door.all",
@@ -259,7 +272,7 @@ def _windows(rect: Rect, state: State) -> tuple[Widget, ...]:
 
 # --- seats ------------------------------------------------------------------------------------------------
 
-_SEATS: dict[str, tuple[tuple[str, str, Signal[float], str, StepWords], ...]] = {
+_SEATS: dict[str, tuple[tuple[str, str, Signal[float], str, StepWays], ...]] = {
     "driver": (
         ("position", say("Position"), SEAT.DRIVER_POSITION, "mm", forward_back),
         ("height", say("Height"), SEAT.DRIVER_HEIGHT, "mm", lower_higher),
@@ -312,7 +325,7 @@ def seats(state: State) -> tuple[Widget, ...]:
 
 
 def _adjust(
-    rect: Rect, key: str, name: str, signal: Signal[float], unit: str, ways: StepWords, state: State
+    rect: Rect, key: str, name: str, signal: Signal[float], unit: str, ways: StepWays, state: State
 ) -> tuple[Widget, ...]:
     value = state.signals[signal]
     shown = f"{value:.0f}{unit}" if unit == "°" else f"{value:.0f} {unit}"
@@ -442,8 +455,8 @@ def _mirror(
     children: list[Widget] = [heading(inner.top(28), name)]
     sideways, upwards = _ANGLES[who]
     for line, key, text, told, signal, ways in (
-        (pan, "pan", say("Left, right"), sideways, angles[0], right_left),
-        (tilt, "tilt", say("Up, down"), upwards, angles[1], lower_higher),
+        (pan, "pan", say("Left +, right −"), sideways, angles[0], left_right),
+        (tilt, "tilt", say("Down, up"), upwards, angles[1], lower_higher),
     ):
         children += [
             Label(rect=line.left(110), text=text, style=Type.LABEL, tone="muted"),

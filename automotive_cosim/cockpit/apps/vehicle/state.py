@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -53,9 +54,15 @@ def car(rng: np.random.Generator) -> CarMemory:
     return CarMemory(tuple(_seat(rng) for _ in range(SLOTS)))
 
 
-def _seat(rng: np.random.Generator) -> tuple[float, ...]:
-    def step(signal: Signal[float]) -> float:
-        steps = int(rng.integers(round((signal.high - signal.low) / signal.step) // 2 + 1))
-        return signal.low + (steps + round((signal.high - signal.low) / signal.step) // 4) * signal.step
+DRIVEN: Mapping[Signal[float], tuple[float, float]] = {SEAT.DRIVER_RECLINE: (20, 28)}
+"""Where people have a signal as they drive, least and most, unless that is the middle half of its range."""
 
-    return tuple(step(signal) for signal in REMEMBERED)
+
+def _seat(rng: np.random.Generator) -> tuple[float, ...]:
+    def drawn(signal: Signal[float]) -> float:
+        steps = round((signal.high - signal.low) / signal.step)
+        low = signal.low + steps // 4 * signal.step
+        low, high = DRIVEN.get(signal, (low, low + steps // 2 * signal.step))
+        return low + int(rng.integers(round((high - low) / signal.step) + 1)) * signal.step
+
+    return tuple(drawn(signal) for signal in REMEMBERED)
