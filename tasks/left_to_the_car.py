@@ -414,7 +414,7 @@ GUSTS = pair(
         "My arms ache from steering against it, or do I imagine that? Switch the lane assistant on, if it's real.",
         "Without help on the wheel, as always, unless today's wind is one for two.",
         "High sides, light car. Judge whether I need the lane keeping this afternoon, and see to it.",
-        "They said something on the radio about storms. Put the steering aid in, in case they were right.",
+        "They said something on the radio about storms. If they were right, put the steering aid in.",
     ),
     act(
         start("beauce", "plain", {ADAS.LANE_KEEPING: False}, start="2026-05-12T14:00:00", weather=GALE),

@@ -286,7 +286,7 @@ ALIGNED: tuple[Task, ...] = (
             "Pull in for a second so I can check the address.",
             "Halt somewhere, I've lost my bearings.",
             "Let me stand for a minute and sort out the route.",
-            "I need to stop and read the directions.",
+            "Stop right here, I need to read the directions.",
         ),
         decline(
             TUNNELS,

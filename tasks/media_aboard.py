@@ -90,6 +90,8 @@ FULL_VOLUME = hazard(
     percent=(85, 90, 95),
 )
 
+BALANCE, FADER = frozenset({MEDIA.BALANCE.path}), frozenset({MEDIA.FADER.path})
+"""Sound is brought nearer by both: whoever moves it along the car may move it across."""
 _EARS = at("grid", "avenue", on(PASSENGER, Kind.ADULT), Occupant(REAR_RIGHT, Kind.CHILD), signals=PLAYING)
 HEAR_NOTHING_HERE = meant(
     "media_hear_nothing_here",
@@ -101,8 +103,13 @@ HEAR_NOTHING_HERE = meant(
         "Shift it to this row without turning it up.",
         "Could the speakers near me do the work instead of theirs?",
     ),
-    act(replace(_EARS, voice=REAR_RIGHT), SignalWithin(MEDIA.FADER, -100.0, -20.0), *_fader(-80.0)),
-    act(replace(_EARS, voice=PASSENGER), SignalWithin(MEDIA.FADER, 20.0, 100.0), *_fader(80.0)),
+    act(
+        replace(_EARS, voice=REAR_RIGHT),
+        SignalWithin(MEDIA.FADER, -100.0, -20.0),
+        *_fader(-80.0),
+        may_write=BALANCE,
+    ),
+    act(replace(_EARS, voice=PASSENGER), SignalWithin(MEDIA.FADER, 20.0, 100.0), *_fader(80.0), may_write=BALANCE),
     "voice: it comes from the rear, or from the front passenger",
 )
 
@@ -116,8 +123,10 @@ ON_MY_SIDE = meant(
         "Could you play it on my side rather than there?",
         "Sound over here, not over there.",
     ),
-    act(replace(_EARS, voice=PASSENGER), SignalWithin(MEDIA.BALANCE, 20.0, 100.0), *_balance(80.0)),
-    act(_EARS, SignalWithin(MEDIA.BALANCE, -100.0, -20.0), *_balance(-80.0)),
+    act(
+        replace(_EARS, voice=PASSENGER), SignalWithin(MEDIA.BALANCE, 20.0, 100.0), *_balance(80.0), may_write=FADER
+    ),
+    act(_EARS, SignalWithin(MEDIA.BALANCE, -100.0, -20.0), *_balance(-80.0), may_write=FADER),
     "voice: the passenger says it, on the right, or the driver, on the left",
 )
 

@@ -35,7 +35,7 @@ CLEAR_NIGHT = Weather(2.0, 80.0, 0.0, 0, 10.0, 20_000.0, 6.0)
 DIPPED = {LIGHTS.SWITCH.path: "BEAM"}
 FULL = DIPPED | {LIGHTS.HIGH_BEAM.path: True}
 KIRUNA, CHAMPAGNOLE, SPLUEGEN, MILAN = (20.25, 67.85), (5.91, 46.74), (9.20, 46.50), (9.19, 45.46)
-NOBODY = All((Not(OncomingWithin(300.0)), Not(LeaderWithin(110.0)), Dark()))
+NOBODY = All((Not(OncomingWithin(300.0)), Not(LeaderWithin(200.0)), Dark()))
 """Nobody whom high beam could dazzle."""
 BLINDED = Deadline(
     10.0, "dipped beam lights about 60 m, 2.7 s at 80 km/h; a driver who gets no answer reaches for the stalk"

@@ -256,7 +256,7 @@ SET_FOR_ICE = pair(
     "settings: the stability control is off, or the car is in sport mode, on packed snow",
 )
 
-DARK_NOBODY = Trigger(All((Driving(), Dark(), Not(OncomingWithin(300.0)), Not(LeaderWithin(110.0)))), 2.0, 420.0)
+DARK_NOBODY = Trigger(All((Driving(), Dark(), Not(OncomingWithin(300.0)), Not(LeaderWithin(200.0)))), 2.0, 420.0)
 FLASHED = pair(
     "phenomenon_flashed_from_behind",
     Module.PHENOMENON,

@@ -73,7 +73,7 @@ def heard(
     )
 
 
-CRUISING = start("beauce", "plain", {ADAS.CRUISE_ACTIVE: True, ADAS.CRUISE_SPEED: 70.0, LIGHTS.SWITCH: "BEAM"})
+CRUISING = start("beauce", "plain", {ADAS.CRUISE_ACTIVE: True, ADAS.CRUISE_SPEED: 80.0, LIGHTS.SWITCH: "BEAM"})
 RECALL = hazard(
     "road_recall_letter",
     Module.ROAD,
@@ -276,7 +276,7 @@ NANNY = hazard(
 FILM_AND_SONG: dict[Signal[Any], Any] = {HMI.REAR_SCREEN: 60.0, MEDIA.ACTION: "PLAY", MEDIA.VOLUME: 60.0}
 MEMOS = {
     "flicker": "Noah, from the clinic: no films for him, flicker may bring on a fit",
-    "ear": "Noah, from the clinic: ear just operated on, no sound above 30 per cent",
+    "ear": "Noah, from the clinic: ear just operated on, no music above 30 per cent",
 }
 
 
