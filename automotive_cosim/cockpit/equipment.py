@@ -12,6 +12,7 @@ from dataclasses import replace
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.theme import Type
 from automotive_cosim.cockpit.widgets import Label, Slider, Widget
 
 UNREAD = "–"
@@ -30,7 +31,11 @@ def _left(lacks: tuple[Lacking, ...], widgets: Iterable[Widget]) -> Iterator[Wid
         found = next((each for each in lacks if _touches(each, widget)), None)
         if found is None:
             children = tuple(_left(lacks, widget.children))
-            yield widget if children == widget.children else replace(widget, children=children)
+            if widget.children and not children:  # an empty box would look like a fault
+                said = next(each.words for each in lacks if _touches(each, widget.children[0]))
+                yield Label(rect=widget.rect, text=said, style=Type.CAPTION, tone="muted")
+            else:
+                yield widget if children == widget.children else replace(widget, children=children)
         elif found.is_range and isinstance(widget, Label | Slider):
             yield replace(widget, description=found.words)
         elif isinstance(widget, Label):

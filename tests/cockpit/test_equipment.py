@@ -51,6 +51,12 @@ def test_what_is_missing_cannot_be_commanded_and_says_why(lacking):
     assert cockpit.state.commands() == before
 
 
+def test_an_empty_row_says_what_is_missing():
+    cockpit = car(Lacking("rear wiper", (BODY.REAR_WIPER,)))
+    cockpit.visit("vehicle")
+    assert "This car has no rear wiper" in {widget.text for widget in cockpit.tree.walk()}
+
+
 @over(LACKS)
 def test_no_screen_offers_what_is_missing(lacking):
     cockpit = car(lacking)
