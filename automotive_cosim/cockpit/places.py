@@ -217,4 +217,7 @@ def _detail(kind: PlaceKind, rng: np.random.Generator) -> str:
         return say("Your address")
     if kind is PlaceKind.HOSPITAL:
         return say("Emergency room, day and night")
-    return say("Open until {time}", time=f"{rng.integers(17, 24)}:00")
+    closes = int(rng.integers(17, 24))
+    if kind is PlaceKind.HOTEL:
+        return say("Open day and night")
+    return say("Open until {time}", time=f"{closes}:00")

@@ -168,7 +168,7 @@ AFTERNOON = hard(
         (*letter(WANDA), *_shifts(2), *answer(WANDA, "Yes")),
     ),
     _half(
-        with_letter(PARKED, WANDA, "I'm in bed with a fever,", "so no theatre for us", agenda=DAY),
+        with_letter(PARKED, WANDA, "I'm in bed with a fever", "So no theatre for us", agenda=DAY),
         (
             _left(SALES),
             told(WANDA, "Yes"),
@@ -451,7 +451,7 @@ THE_FAIR = hard(
         " write her 'On my way'.",
     ),
     _fair(("Looking forward to tonight!", "Bring your badge"), "Hotel {hotel}", ELSEWHERE),
-    _fair(("Burst pipe in the hall,", MOVED_TO), ELSEWHERE, "Hotel {hotel}"),
+    _fair(("Burst pipe in the hall", MOVED_TO), ELSEWHERE, "Hotel {hotel}"),
     "content: she writes nothing of the place, or that it has changed",
     parameters={"hotel": tuple(HOTELS)},
     tags=frozenset({"two_modules"}),

@@ -511,7 +511,7 @@ CARGO = {"9.4": 9.4, "8.7": 8.7, "10.2": 10.2, "9.9": 9.9}
 
 def _front_seat(line: str, goal: tuple[Check, ...], moves: Moves, *wrong: Moves, **more: Any) -> Half:
     thing = Occupant(Seat.PASSENGER, Kind.BABY, param("kg", CARGO))
-    start = with_letter(replace(PARKED, aboard=(thing,)), ISLA, "All ready for you,", line)
+    start = with_letter(replace(PARKED, aboard=(thing,)), ISLA, "All ready for you", line)
     look = (*letter(ISLA), Open("cabin"))
     return _half(
         start,
