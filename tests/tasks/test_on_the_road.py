@@ -68,8 +68,8 @@ def test_the_drive_to_the_hand_over_has_no_jump(simulations, half: str):
     env = CockpitEnv(SPEED, half, channels=(), simulations=simulations)
     env.reset(seed=SEED)
     states = [state for moment in env.episode.drive for state in moment.passed]
-    env.close()
     last, first = states[-1], env.episode.moments[0].driving
+    env.close()
     assert (last.time_s, last.x_m, last.y_m, last.speed_mps) == (
         first.time_s,
         first.x_m,
