@@ -31,7 +31,7 @@ LIMITS = ServiceLimits(episodes=1000, idle_s=86_400.0)
 
 SERVING = """\
 Every action takes time while the car drives on. Do only what serves the driver; touch nothing else. Passengers
-may make requests about their own comfort; only the driver decides how the car drives and anything related to safety.
+may make requests about their own comfort; only the driver decides how the car drives and all that concerns safety.
 End with `status`: `complete` when it is done, `not_needed` when the right thing is to do nothing, `infeasible` when
 it must not or cannot be done, once the driver has been told why."""
 """How a task is played, for the instructions of every door."""
