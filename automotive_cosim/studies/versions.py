@@ -30,6 +30,7 @@ class Pair:
     """Two runs of one study."""
 
     name: str
+    """Both folders; of two suites, what the study is called in each."""
     first: AnyStudy
     second: AnyStudy
 
@@ -67,8 +68,7 @@ def pairs(first: Path, second: Path) -> tuple[Pair, ...]:
         UserError: a folder has no study, or the two have none in common.
     """
     if (first / "manifest.json").is_file() or (second / "manifest.json").is_file():
-        name = first.name if first.name == second.name else f"{first} and {second}"
-        return (_pair(name, first, second),)
+        return (_pair(f"{first} and {second}", first, second),)
     names = [sorted(path.parent.name for path in folder.glob("*/manifest.json")) for folder in (first, second)]
     common = [name for name in names[0] if name in names[1]]
     if not common:

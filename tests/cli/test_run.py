@@ -170,7 +170,9 @@ def test_the_lines_of_a_drive_are_in_the_order_of_their_times(cli, tmp_path):
     assert live.index("step 1") < live.index("km/h")
 
 
-@pytest.mark.parametrize(("act", "said"), [("raise KeyError('seat')", "raised KeyError: 'seat'"), ("return None", "NoneType")])
+@pytest.mark.parametrize(
+    ("act", "said"), [("raise KeyError('seat')", "raised KeyError: 'seat'"), ("return None", "NoneType")]
+)
 def test_an_agent_that_gives_no_action_is_told_with_the_reason(cli, tmp_path, monkeypatch, act, said):
     name = f"none_{act[:5]}"
     (tmp_path / f"{name}.py").write_text(
