@@ -75,8 +75,8 @@ def findings(found: Calibration) -> Iterator[str]:
         if found.is_worse_elsewhere:
             was, now = (found.met(held_out=True, unfitted=unfitted) for unfitted in (True, False))
             yield (
-                "warning: where nothing was calibrated, the fit made traffic worse: held-out counts within the limit "
-                f"(GEH below {GOOD_GEH:g}): {was.good} before, {now.good} after, of {now.count}"
+                "warning: the fit made traffic worse where nothing was calibrated: held-out counts within the "
+                f"limit (GEH below {GOOD_GEH:g}): {was.good} before, {now.good} after, of {now.count}"
             )
     else:
         yield "held out: none, so nothing is known about uncounted roads"

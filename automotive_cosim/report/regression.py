@@ -98,8 +98,8 @@ class SuccessChange:
         return not self.is_worse(allowed) and not self.is_incomplete
 
     def outcome(self, allowed: float) -> str:
-        """``worse`` or ``incomplete``, which do not pass; else ``unchanged`` if the rates are the same, ``better`` or
-        ``within threshold`` if the interval leaves out zero, or ``not distinguishable`` if it does not.
+        """``worse`` or ``incomplete``, which do not pass; else ``unchanged`` if the rates are the same, ``better``
+        or ``within threshold`` if the interval leaves out zero, and ``not distinguishable`` if it does not.
         """
         if self.is_worse(allowed):
             return "worse"

@@ -1,4 +1,4 @@
-"""What a plan names of one's own, as hashes: results are not resumed with another agent or scenario of that name."""
+"""What a plan names of one's own, as hashes: results are not resumed with another agent or scenario of a name."""
 
 from __future__ import annotations
 

@@ -75,14 +75,14 @@ def test_a_broken_one_is_told_what_is_missing(module, text, said):
 @pytest.mark.parametrize(
     ("name", "said"),
     [
-        ("my_agents", "did you mean my_agents:Cautious\\?"),
-        ("my_agents.py", "did you mean my_agents:Cautious\\?"),
+        ("my_agents", r"did you mean my_agents:Cautious\?"),
+        ("my_agents.py", r"did you mean my_agents:Cautious\?"),
         ("my_agents.py:Cautious", "omit the .py, as in my_agents:Cautious"),
     ],
 )
 def test_a_forgotten_class_and_a_needless_suffix_are_told(tmp_path, monkeypatch, name, said):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "my_agents.py").write_text(f"class Words: ...\nclass Cautious:\n{WHOLE.partition(chr(10))[2]}")
+    (tmp_path / "my_agents.py").write_text("class Words: ...\n" + WHOLE.replace("Mine", "Cautious"))
     with pytest.raises(UserError, match=said):
         make_agent(name)
 
