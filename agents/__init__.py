@@ -11,7 +11,7 @@ from automotive_cosim.agents.a2a import A2AAgent, is_remote
 from automotive_cosim.agents.base import Agent, Learner, Privileged, Stage, StageName, Thinker
 from automotive_cosim.agents.by_calls import OracleByCalls
 from automotive_cosim.agents.caller import Caller, tools
-from automotive_cosim.agents.guest import load
+from automotive_cosim.agents.guest import classes_in, load
 from automotive_cosim.agents.human import Human
 from automotive_cosim.agents.model_agent import ModelAgent
 from automotive_cosim.agents.native import FORMATS, NativeAgent, chosen
@@ -140,6 +140,8 @@ def make_agent(
         without_format, form = chosen(model)
         return NativeAgent(model, chat_model or make_model(without_format, form.api), form, settings)
     if name not in SIMPLE:
+        if own := classes_in(name):
+            raise UserError(f"agent {name!r} names no class; did you mean {' or '.join(own)}?")
         raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
     return SIMPLE[name](settings)
 

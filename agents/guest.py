@@ -7,6 +7,7 @@ of ``act`` is treated as an AndroidWorld agent (``androidworld.py``).
 
 from __future__ import annotations
 
+import ast
 import importlib
 import inspect
 import sys
@@ -97,10 +98,30 @@ def load(spec: str) -> Agent:
     return Guest(_made(spec, made))
 
 
+def classes_in(module_name: str) -> tuple[str, ...]:
+    """The agents in a module of the working folder, as ``package.module:Class``, for who forgot the class.
+
+    It is read and not imported. Nothing if there is no such file, or it is not Python.
+    """
+    module_name = module_name.removesuffix(".py")
+    try:
+        code = ast.parse(Path(*module_name.split(".")).with_suffix(".py").read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return ()
+    return tuple(
+        f"{module_name}:{each.name}"
+        for each in code.body
+        if isinstance(each, ast.ClassDef)
+        and any(isinstance(made, ast.FunctionDef) and made.name in {"act", "step"} for made in each.body)
+    )
+
+
 def _found(spec: str, module_name: str, class_name: str) -> Any:
     here = str(Path.cwd())
     if here not in sys.path:
         sys.path.insert(0, here)
+    if module_name.endswith(".py"):
+        raise UserError(f"agent {spec!r}: omit the .py, as in {module_name.removesuffix('.py')}:{class_name}")
     try:
         module = importlib.import_module(module_name)
     except ImportError as error:

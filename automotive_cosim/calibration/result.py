@@ -173,6 +173,11 @@ class Calibration:
         return Met.of([(row.unfitted if unfitted else row.simulated, row.counted) for row in rows])
 
     @property
+    def is_worse_elsewhere(self) -> bool:
+        """Whether fewer of the held-out counts are met than before the fit."""
+        return self.met(held_out=True).good < self.met(held_out=True, unfitted=True).good
+
+    @property
     def carried(self) -> Carried:
         """The kept demand, driven."""
         return self.tries[self.kept].carried

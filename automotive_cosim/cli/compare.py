@@ -35,9 +35,13 @@ def compare(
     """
     from automotive_cosim.report import regression
     from automotive_cosim.run.record import write_whole
+    from automotive_cosim.run.store import read_manifest
 
     if not 0 <= threshold <= 100:
         raise UserError(f"--threshold is {threshold:g}; give percentage points from 0 to 100")
+    for folder in (before, after):
+        if "study" in read_manifest(folder)["plan"]:
+            raise UserError(f"{folder} is a study; `automotive-cosim study compare` compares two of one kind")
     found = regression.changes(before, after, mixed=mixed)
     summary = regression.markdown(found, threshold / 100)
     for path, text in ((junit, regression.junit(found)), (markdown, summary)):
@@ -47,5 +51,5 @@ def compare(
         print_json(regression.as_json(found, threshold / 100))
     else:
         typer.echo(summary, nl=False)
-    if any(each.outcome(threshold / 100) != "unchanged" for each in found):
+    if not all(each.passes(threshold / 100) for each in found):
         raise typer.Exit(1)

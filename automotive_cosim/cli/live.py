@@ -38,12 +38,24 @@ PLAIN_EVERY_S = 10.0
 
 
 class Notes(EpisodeObserver):
-    """Prints only the assumptions about a scenario, to standard error."""
+    """Prints only the assumptions about a scenario, and why answers were no actions, to standard error."""
+
+    def __init__(self) -> None:
+        self._episode: Episode | None = None
 
     def loading(self, scenario: Scenario) -> None:
         """See ``EpisodeObserver``."""
         for note in scenario.notes:
             print(f"note: {note}", file=sys.stderr)
+
+    def begun(self, session: Episode, shot: Shot) -> None:
+        """See ``EpisodeObserver``."""
+        self._episode = session
+
+    def finished(self, result: EpisodeResult) -> None:
+        """See ``EpisodeObserver``."""
+        if lost := _no_action(self._episode):
+            print(lost, file=sys.stderr)
 
 
 class Live(EpisodeObserver):
@@ -52,6 +64,7 @@ class Live(EpisodeObserver):
     def __init__(self, console: Console | None = None) -> None:
         self._console = console or Console(highlight=False)
         self._display: Display | None = None
+        self._episode: Episode | None = None
         self._title = "starting"
         self._goal = ""
         self._action = ""
@@ -100,6 +113,7 @@ class Live(EpisodeObserver):
 
     def begun(self, session: Episode, shot: Shot) -> None:
         """The driver's words."""
+        self._episode = session
         self._hand_over_s = shot.step.moment.time_s
         self._begins = shot.step.moment
         self._title = "the agent acts"
@@ -134,6 +148,8 @@ class Live(EpisodeObserver):
         if self._display is not None:
             self._display.stop()
         self._release()
+        if lost := _no_action(self._episode):
+            self._console.print(Text(lost, style="yellow"), soft_wrap=True)
         if result.steps or result.verdict:
             self._console.print(_verdict(result), soft_wrap=True)
 
@@ -173,6 +189,12 @@ class Live(EpisodeObserver):
         if self._hand_over_s is None:
             return f"{moment.local_time:%H:%M:%S}"
         return f"{moment.time_s - self._hand_over_s:+7.1f} s"
+
+
+def _no_action(episode: Episode | None) -> str:
+    """In how many steps the agent gave no action, and the first reason, e.g. its own exception; else empty."""
+    why = episode.malformed if episode else ()
+    return f"the agent gave no action in {counted(len(why), 'step')}, at first: {why[0]}" if why else ""
 
 
 def _drive(moment: Moment) -> str:

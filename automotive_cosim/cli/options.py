@@ -129,7 +129,9 @@ AgentName = Annotated[
 ModelName = Annotated[
     str,
     typer.Option(
-        "--model", help="Model for the agent: rules, replay/FOLDER, replay/NAME, openai/NAME, PROVIDER/NAME."
+        "--model",
+        help="Model for the agent: rules, local, local/FILE.gguf, replay/FOLDER, replay/NAME, openai/NAME, "
+        "PROVIDER/NAME.",
     ),
 ]
 MinutesMost = Annotated[

@@ -12,7 +12,7 @@ from automotive_cosim.cli.options import AsJson, TasksFrom, number, print_json, 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 
-Folder = Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)]
+Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 
 
 @reads_results

@@ -45,7 +45,7 @@ MANIFEST = "manifest.json"
 PLAN_ON_TRUST = frozenset({"models", "everywhere", "limits", "spare_traffic", "rephrase"})
 """Fields of a plan that may not show in its episodes: models that no agent uses, limits that none reached, another
 phrasing of repeats where there is one run of each, ..."""
-STARTS_ON_TRUST = frozenset({"started", "platform", "git", "versions", "own_code"})
+STARTS_ON_TRUST = frozenset({"started", "platform", "git", "versions", "own_code", "own_scenarios"})
 """Fields of a start that nothing else records, except the version of the suite."""
 UNKNOWN = (
     "whether the named agent and model gave these actions: a drive shows what was done, but not by whom",
@@ -204,7 +204,7 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator
     if not starts:
         yield Problem(MANIFEST, "starts", "is empty")
     for number, start in enumerate(starts):
-        if start.keys() - {"own_code"} != {"started", "versions", "platform", "git"}:
+        if start.keys() - {"own_code", "own_scenarios"} != {"started", "versions", "platform", "git"}:
             yield Problem(MANIFEST, f"starts[{number}]", "lacks a field or has an unknown one")
             return
         yield from differences(
@@ -213,6 +213,11 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator
         code = start.get("own_code", {})  # not in bundles of 0.2
         if not isinstance(code, dict) or not code.keys() <= {*plan["agents"]}:
             yield Problem(MANIFEST, f"starts[{number}].own_code", "names an agent that the plan does not have")
+        own = start.get("own_scenarios", {})  # not in earlier bundles
+        if not isinstance(own, dict) or not own.keys() <= {*plan["scenarios"]}:
+            yield Problem(
+                MANIFEST, f"starts[{number}].own_scenarios", "names a scenario that the plan does not have"
+            )
         try:
             datetime.fromisoformat(start["started"])
         except (TypeError, ValueError):

@@ -72,6 +72,12 @@ def findings(found: Calibration) -> Iterator[str]:
     if any(row.held_out for row in found.rows):
         yield f"held out: {found.met(held_out=True)}"
         yield f"held out, before the fit: {found.met(held_out=True, unfitted=True)}"
+        if found.is_worse_elsewhere:
+            was, now = (found.met(held_out=True, unfitted=unfitted) for unfitted in (True, False))
+            yield (
+                "warning: the fit made traffic worse where nothing was calibrated: held-out counts within the "
+                f"limit (GEH below {GOOD_GEH:g}): {was.good} before, {now.good} after, of {now.count}"
+            )
     else:
         yield "held out: none, so nothing is known about uncounted roads"
     carried = found.carried

@@ -93,9 +93,24 @@ class SuccessChange:
         """Whether either evaluation has not run everything that was planned, or nothing was judged both times."""
         return self.found is None or bool(self.problems) or any(each.not_run for each in self.rates)
 
+    def passes(self, allowed: float) -> bool:
+        """Whether it is known to be no worse."""
+        return not self.is_worse(allowed) and not self.is_incomplete
+
     def outcome(self, allowed: float) -> str:
-        """``worse``, ``incomplete`` or ``unchanged``."""
-        return "worse" if self.is_worse(allowed) else "incomplete" if self.is_incomplete else "unchanged"
+        """``worse`` or ``incomplete``, which do not pass; else ``unchanged`` if the rates are the same, ``better``
+        or ``within threshold`` if the interval leaves out zero, and ``not distinguishable`` if it does not.
+        """
+        if self.is_worse(allowed):
+            return "worse"
+        if self.found is None or self.is_incomplete:
+            return "incomplete"
+        if not self.found.difference:
+            return "unchanged"
+        interval = self.found.interval
+        if interval.low <= 0 <= interval.high:
+            return "not distinguishable"
+        return "better" if interval.low > 0 else "within threshold"
 
 
 def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessChange, ...]:
@@ -194,7 +209,8 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
                 *(f"{count}/{judged}" for count in solved.values()),
                 "–"
                 if compared is None
-                else f"{compared.difference:+.1%} ({compared.interval.low:+.0%} to {compared.interval.high:+.0%})",
+                else f"{100 * compared.difference:+.1f} points ({100 * compared.interval.low:+.0f} to "
+                f"{100 * compared.interval.high:+.0f})",
                 *(str(each.count(kind)) for kind in ("lost", "won", "error")),
             )
         )
@@ -215,8 +231,9 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
             "Not judged now",
         ),
         tuple(rows),
-        "On the instances that were judged before, with 95 % intervals over tasks. Worse: success fell by "
-        f"more than {allowed:.1%}, or something is no longer judged. Incomplete: success did not fall, but "
+        "On the instances that were judged before, in percentage points, with 95 % intervals over tasks. Worse: "
+        f"success fell by more than {100 * allowed:g} points, or something is no longer judged. Not "
+        "distinguishable: the interval contains zero. Incomplete: success did not fall, but "
         "something planned was not run, or it is not known what was planned. Judged: out of what was planned.",
         heads=3,
     )
@@ -238,7 +255,7 @@ def sentence(found: Sequence[SuccessChange], allowed: float) -> str:
     told = [
         f"{each.contestant.label} is {each.outcome(allowed)}: {_before_and_after(each)}"
         for each in found
-        if each.outcome(allowed) != "unchanged"
+        if not each.passes(allowed)
     ]
     if not told and not any(rate.value for each in found for rate in each.rates):
         return f"No agent succeeds, neither before nor after: {_before_and_after(found[-1])}."
@@ -289,7 +306,7 @@ def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
         for each in found
     ]
     return {
-        "ok": all(each["outcome"] == "unchanged" for each in contestants),
+        "ok": all(each.passes(allowed) for each in found),
         "answer": sentence(found, allowed),
         "versions": list(found[0].versions),
         "mixed_versions": bool(mixed_versions(found)),

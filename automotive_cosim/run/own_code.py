@@ -1,12 +1,17 @@
-"""The code of an agent of one's own, as a hash: results are not resumed with another agent of that name."""
+"""What a plan names of one's own, as hashes: results are not resumed with another agent or scenario of a name."""
 
 from __future__ import annotations
 
 import hashlib
 import sys
 from collections.abc import Iterable
+from contextlib import suppress
 from importlib.machinery import PathFinder
 from pathlib import Path
+
+from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.scenery.opening import own_files
 
 
 def own_code(agents: Iterable[str]) -> dict[str, str]:
@@ -21,6 +26,23 @@ def own_code(agents: Iterable[str]) -> dict[str, str]:
         files = _files(module.partition(".")[0]) if colon and made.isidentifier() else []
         if files:
             found[name] = _sha256(files)
+    return found
+
+
+def own_scenarios(plan: Json) -> dict[str, dict[str, str]]:
+    """The hashes of the files of each scenario of one's own that a plan names, by name of the file.
+
+    Args:
+        plan: with one ``scenario`` or several ``scenarios``. Those that cannot be read have none.
+    """
+    found: dict[str, dict[str, str]] = {}
+    for name in (plan.get("scenario"), *(plan.get("scenarios") or ())):
+        with suppress(UserError, OSError):
+            named: dict[str, list[Path]] = {}
+            for file in own_files(name) if name else ():
+                named.setdefault(file.name, []).append(file)
+            if named:
+                found[str(name)] = {file: _sha256(paths) for file, paths in named.items()}
     return found
 
 
@@ -40,5 +62,6 @@ def _files(module: str) -> list[Path]:
 def _sha256(files: Iterable[Path]) -> str:
     hashed = hashlib.sha256()
     for path in files:
-        hashed.update(hashlib.sha256(path.read_bytes()).digest())
+        with path.open("rb") as file:
+            hashed.update(hashlib.file_digest(file, "sha256").digest())
     return hashed.hexdigest()

@@ -28,7 +28,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
 from automotive_cosim.run.former import plan_values
-from automotive_cosim.run.own_code import own_code
+from automotive_cosim.run.own_code import own_code, own_scenarios
 from automotive_cosim.run.record import STAMPED, write_whole
 from automotive_cosim.run.row import R, as_json, from_line
 from automotive_cosim.run.versions import installed
@@ -271,6 +271,7 @@ def _manifest(folder: Path, plan: Json, planned: int | None, *, grows: bool) -> 
     """Writes the manifest, or adds this start to an existing one."""
     now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **stamp()}
     now["own_code"] = own_code(plan.get("agents", ()))
+    now["own_scenarios"] = own_scenarios(plan)
     if not (folder / "manifest.json").exists():
         count = {} if planned is None else {"episodes": planned}
         manifest: Json = {"format": FORMAT, "plan": plan, **count, "starts": [now]}
@@ -285,7 +286,9 @@ def _manifest(folder: Path, plan: Json, planned: int | None, *, grows: bool) -> 
                 f"{folder / 'manifest.json'} does not list the versions; give --out another folder"
             ) from error
         _same("version", before, now["versions"], folder)
-        _same_code(manifest["starts"][0].get("own_code", {}), now["own_code"], folder)
+        first = manifest["starts"][0]  # one of an earlier version lacks what it did not keep
+        _unchanged(_code(first), _code(now), folder)
+        _unchanged(_scenario_files(first), _scenario_files(now), folder)
         manifest["starts"].append(now)
     write_whole(folder / "manifest.json", json.dumps(manifest, indent=1))
 
@@ -297,12 +300,24 @@ def _same(what: str, before: Json, now: Json, folder: Path) -> None:
         raise UserError(f"{folder} was started with a different {what}: {told}. Give --out another folder")
 
 
-def _same_code(before: Json, now: Json, folder: Path) -> None:
-    changed = sorted(name for name in before if before[name] != now.get(name, before[name]))
+def _code(start: Json) -> dict[str, str]:
+    return {f"the code of {name}": code for name, code in start.get("own_code", {}).items()}
+
+
+def _scenario_files(start: Json) -> dict[str, str]:
+    return {
+        name if file == Path(name).name else f"{file} of {name}": digest
+        for name, files_ in start.get("own_scenarios", {}).items()
+        for file, digest in files_.items()
+    }
+
+
+def _unchanged(before: Mapping[str, str], now: Mapping[str, str], folder: Path) -> None:
+    changed = sorted(what for what in before if before[what] != now.get(what, before[what]))
     if changed:
         raise UserError(
-            f"the code of {', '.join(changed)} has changed since the trials in {folder} were run. Give --out "
-            "another folder, or delete that one"
+            f"{', '.join(changed)} {'has' if len(changed) == 1 else 'have'} changed since the trials in {folder} "
+            "were run. Give --out another folder, or delete that one"
         )
 
 

@@ -24,11 +24,11 @@ def action_in_words(action: Action | None, elements: Sequence[Element]) -> str:
     """Describes an action, as a sentence without a subject.
 
     Args:
-        action: None for an answer that could not be read.
+        action: None if the agent raised, or its answer could not be read.
         elements: the list the agent saw when it acted.
     """
     if action is None:
-        return "gives an unreadable answer"
+        return "gives no action"
     on = _target(action, elements)
     match action.action_type:
         case ActionType.CLICK:

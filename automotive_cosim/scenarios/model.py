@@ -171,6 +171,8 @@ class Scenario(Described):
     """Assumptions, in words for the user."""
     language: str = ""
     """Of the names of streets in a network that is moved, as an ISO 639-1 code."""
+    states_step: bool = True
+    """Whether its files state the length of a step, or it was chosen for them."""
     mirrored: bool = False
     """Whether the network is the mirror image of the one in its file, because traffic keeps the other side."""
 

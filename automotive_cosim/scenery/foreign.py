@@ -99,6 +99,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         weather=(WeatherAt(0.0, FAIR),) if network.unplaced else (),
         has_place=not network.unplaced,
         notes=tuple(notes),
+        states_step="step-length" in configuration.options,
     )
 
 

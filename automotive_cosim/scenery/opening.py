@@ -64,14 +64,39 @@ def network_of(scenario: Scenario) -> Network:
     return placed(read_mapped(read_configuration(scenario.config)), scenario)
 
 
-def _opened(name: str | Path, *, to_be_moved: bool) -> Scenario:
-    path = Path(name)
+def own_files(name: str | Path) -> tuple[Path, ...]:
+    """The files of a scenario of one's own: its configuration, what that names, and its ``scenario.toml``.
+
+    Args:
+        name: as ``open_scenario`` takes it. A shipped scenario has none: it belongs to the version.
+
+    Raises:
+        ScenarioError: it cannot be read.
+    """
+    path = _configuration(Path(name))
+    described: tuple[Path, ...] = ()
+    if path.is_dir() or path.name == "scenario.toml":
+        scenario = scenarios.load(path if path.is_dir() else path.parent)
+        path, described = scenario.config, (scenario.folder / "scenario.toml",)
+    if not path.is_file():
+        return ()
+    named = read_configuration(path).files.values()
+    return tuple(dict.fromkeys((*described, path.absolute(), *(file for files in named for file in files))))
+
+
+def _configuration(path: Path) -> Path:
+    """The only configuration of a folder without ``scenario.toml``; any other path as it is."""
     if path.is_dir() and not (path / "scenario.toml").is_file():
         configurations = sorted(path.glob("*.sumocfg"))
         if len(configurations) > 1:
             found = ", ".join(configuration.name for configuration in configurations)
             raise ScenarioError(f"{path} has no scenario.toml but several configurations; name one of {found}")
-        path = configurations[0] if configurations else path
+        return configurations[0] if configurations else path
+    return path
+
+
+def _opened(name: str | Path, *, to_be_moved: bool) -> Scenario:
+    path = _configuration(Path(name))
     if not path.is_file():
         if path.name.endswith((".sumocfg", ".xml", ".gz")):
             raise ScenarioError(f"there is no file {path}")

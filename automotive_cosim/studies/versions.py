@@ -13,7 +13,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.tables import Table, TableRow
-from automotive_cosim.run.row import steady
+from automotive_cosim.run.row import JobRow, steady
 from automotive_cosim.run.store import read_manifest
 from automotive_cosim.studies.congestion.plan import name_of
 from automotive_cosim.studies.congestion.results import CongestionStudy, delay_h, read_congestion
@@ -30,13 +30,14 @@ class Pair:
     """Two runs of one study."""
 
     name: str
+    """Both folders; of two suites, what the study is called in each."""
     first: AnyStudy
     second: AnyStudy
 
     @property
     def rows(self) -> tuple[int, int, int]:
         """Rows that both have, how many of these are the same, and how many only one has."""
-        one, two = ({row.id: steady(row) for row in study.rows} for study in (self.first, self.second))
+        one, two = ({row.id: _result(row) for row in study.rows} for study in (self.first, self.second))
         both = one.keys() & two.keys()
         return len(both), sum(agree(one[each], two[each]) for each in both), len(one.keys() ^ two.keys())
 
@@ -67,7 +68,7 @@ def pairs(first: Path, second: Path) -> tuple[Pair, ...]:
         UserError: a folder has no study, or the two have none in common.
     """
     if (first / "manifest.json").is_file() or (second / "manifest.json").is_file():
-        return (_pair(first.name, first, second),)
+        return (_pair(f"{first} and {second}", first, second),)
     names = [sorted(path.parent.name for path in folder.glob("*/manifest.json")) for folder in (first, second)]
     common = [name for name in names[0] if name in names[1]]
     if not common:
@@ -81,6 +82,11 @@ def _pair(name: str, first: Path, second: Path) -> Pair:
         raise UserError(f"{first} is a study of {kinds[0]}, {second} one of {kinds[1]}; give two of one kind")
     read: Callable[[Path], AnyStudy] = read_congestion if kinds[0] == CongestionSettings.kind else read_study
     return Pair(name, read(first), read(second))
+
+
+def _result(row: JobRow) -> Json:
+    """A row without where its scenario's files were: a copy of them elsewhere gives the same result."""
+    return {name: value for name, value in steady(row).items() if name != "scenario"}
 
 
 def _versions(study: AnyStudy) -> Json:

@@ -106,14 +106,14 @@ def placebos(study: Study) -> Iterator[str]:
 
 
 def other_steps(study: Study) -> Iterator[str]:
-    """The study drives at other steps than the scenario."""
+    """The study drives at other steps than the scenario's files state."""
     yield from steps_told(study.plan.opened, study.plan.step_s)
 
 
 def steps_told(scenario: Scenario, driven_s: float) -> Iterator[str]:
     """The same for any study of a scenario."""
     own_s = scenario.sumo.step_length_s
-    if own_s != driven_s:
+    if scenario.states_step and own_s != driven_s:
         yield (
             f"Driven at steps of {driven_s:g} s, while the scenario's own are {own_s:g} s: figures differ from "
             f"those at its own steps (--step {own_s:g})."

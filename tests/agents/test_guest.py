@@ -72,6 +72,21 @@ def test_a_broken_one_is_told_what_is_missing(module, text, said):
     assert "\n" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("my_agents", r"did you mean my_agents:Cautious\?"),
+        ("my_agents.py", r"did you mean my_agents:Cautious\?"),
+        ("my_agents.py:Cautious", "omit the .py, as in my_agents:Cautious"),
+    ],
+)
+def test_a_forgotten_class_and_a_needless_suffix_are_told(tmp_path, monkeypatch, name, said):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "my_agents.py").write_text("class Words: ...\n" + WHOLE.replace("Mine", "Cautious"))
+    with pytest.raises(UserError, match=said):
+        make_agent(name)
+
+
 @pytest.mark.parametrize("name", ["nowhere_to_be_found:X", ":X", "x:", "os:path", "os:no_such_thing"])
 def test_a_name_that_leads_nowhere_is_told(name):
     with pytest.raises(UserError, match="agent"):

@@ -134,6 +134,22 @@ def test_the_folder_carries_what_its_record_says(made: tuple[Path, Calibration],
 
 
 @pytest.mark.slow
+def test_a_fit_that_makes_held_out_sites_worse_is_told_and_not_green(made: tuple[Path, Calibration]) -> None:
+    target, found = made
+    assert not found.is_worse_elsewhere
+    assert "pill good" in write_page(target).read_text(encoding="utf-8")
+    rows = tuple(replace(row, simulated=row.counted + 5000.0) if row.held_out else row for row in found.rows)
+    worse = replace(found, rows=rows)
+    before, count = worse.met(held_out=True, unfitted=True).good, worse.met(held_out=True).count
+    assert f"{before} before, 0 after, of {count}" in "\n".join(findings(worse))
+    record = target / "calibration.json"
+    kept = record.read_bytes()
+    record.write_text(json.dumps(worse.record()), encoding="utf-8")
+    assert "pill good" not in write_page(target).read_text(encoding="utf-8")
+    record.write_bytes(kept)
+
+
+@pytest.mark.slow
 def test_the_page_tells_all_sites_and_times(made: tuple[Path, Calibration]) -> None:
     target, found = made
     text = write_page(target).read_text(encoding="utf-8")

@@ -198,3 +198,12 @@ def test_a_dry_run_needs_no_key_and_says_how_long_and_what_is_missing(cli, monke
     refused = cli("eval", *plan)
     assert refused.code == 2
     assert "NOWHERE_API_KEY" in refused.err
+
+
+def test_two_studies_are_sent_to_their_own_command(cli, tmp_path):
+    (tmp_path / "s").mkdir()
+    (tmp_path / "s/manifest.json").write_text('{"format": 1, "plan": {"study": "congestion"}}')
+    ran = cli("compare", "s", "s")
+    assert (ran.code, "s is a study; `automotive-cosim study compare` compares" in ran.err) == (2, True)
+    assert "`study`" in cli("report", "--help").out
+    assert "local/FILE.gguf" in cli("run", "--help").out.replace("\n", "")

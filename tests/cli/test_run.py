@@ -168,3 +168,18 @@ def test_the_lines_of_a_drive_are_in_the_order_of_their_times(cli, tmp_path):
     assert len(times) > 5
     assert times == sorted(times)
     assert live.index("step 1") < live.index("km/h")
+
+
+@pytest.mark.parametrize(
+    ("act", "said"), [("raise KeyError('seat')", "raised KeyError: 'seat'"), ("return None", "NoneType")]
+)
+def test_an_agent_that_gives_no_action_is_told_with_the_reason(cli, tmp_path, monkeypatch, act, said):
+    name = f"none_{act[:5]}"
+    (tmp_path / f"{name}.py").write_text(
+        f"class Agent:\n    def reset(self, goal): ...\n    def act(self, seen): {act}\n"
+    )
+    for more, told in (((), "out"), (("--json", "--force"), "err")):
+        ran = cli("run", *more, *GRID, "--agent", f"{name}:Agent", "--out", "out", "--most-steps", "2")
+        lines = [line for line in getattr(ran, told).splitlines() if said in line]
+        assert len(lines) == 1, ran
+        assert "gave no action in 2 steps, at first: " in lines[0]

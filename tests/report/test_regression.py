@@ -42,6 +42,18 @@ def test_the_same_twice_is_as_good(tmp_path):
     assert "Lost," not in markdown(found, 0.0)
 
 
+def test_a_difference_within_chance_is_not_distinguishable_and_in_points(tmp_path):
+    found = changes(write(tmp_path / "a", lost={1}), write(tmp_path / "b"))
+    told = markdown(found, 0.0)
+    assert found[0].outcome(0.0) == "not distinguishable"
+    assert found[0].passes(0.0)
+    assert f"{100 / len(PLAN.jobs()):+.1f} points (" in told
+    assert as_json(found, 0.0)["ok"]
+    assert not changes(tmp_path / "b", tmp_path / "a")[0].passes(0.0), "a fall is worse all the same"
+    clear = changes(write(tmp_path / "c", lost=set(range(len(PLAN.jobs())))), tmp_path / "b")
+    assert clear[0].outcome(0.0) == "better"
+
+
 def test_a_fall_is_worse_beyond_what_is_allowed_and_named(tmp_path):
     found = changes(write(tmp_path / "a", lost={1}), write(tmp_path / "b", lost={1, 2}))
     episodes = found[0]

@@ -49,6 +49,28 @@ def test_results_are_not_resumed_with_other_code_of_the_agent(tmp_path, monkeypa
         pass
 
 
+def test_results_are_not_resumed_after_a_file_of_ones_own_scenario_has_changed(tmp_path):
+    config, net = tmp_path / "mine.sumocfg", tmp_path / "mine.net.xml"
+    net.write_text("<net/>")
+    config.write_text('<configuration><input><net-file value="mine.net.xml"/></input></configuration>')
+    plans = {"study": {"scenario": str(config)}, "eval": {"agents": ["oracle"], "scenarios": ["grid", str(config)]}}
+    for name, plan in plans.items():
+        for _ in range(2):
+            with opened(tmp_path / name, plan, JobRow):
+                pass
+        assert [*read_manifest(tmp_path / name)["starts"][0]["own_scenarios"]] == [str(config)], "not the shipped"
+    net.write_text("<net><location/></net>")
+    for name, plan in plans.items():
+        other = opened(tmp_path / name, plan, JobRow)
+        with pytest.raises(UserError, match=r"mine\.net\.xml of .*mine\.sumocfg has changed.*Give --out"), other:
+            pass
+        manifest = read_manifest(tmp_path / name)
+        del manifest["starts"][0]["own_scenarios"]
+        (tmp_path / name / "manifest.json").write_text(json.dumps(manifest))
+        with opened(tmp_path / name, plan, JobRow):
+            pass  # as an earlier version wrote it
+
+
 def test_a_package_counts_with_all_its_modules(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "mine").mkdir()

@@ -185,7 +185,7 @@ def test_a_step_without_an_action_is_shown(serving: Serving, tmp_path: Path) -> 
     (run / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
     browser = serving(tmp_path)
     shown = browser(f"/api/runs/{ids(browser)[0]}/steps").json["steps"][2]
-    assert shown["words"] == "gives an unreadable answer"
+    assert shown["words"] == "gives no action"
     assert shown["target"] is None
 
 

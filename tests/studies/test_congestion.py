@@ -245,6 +245,10 @@ def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> N
     assert json.loads(told.output)["same"]
     lines = again / "episodes.jsonl"
     row = json.loads(lines.read_text(encoding="utf-8"))
+    lines.write_text(json.dumps(row | {"scenario": "elsewhere", "wall_seconds": 9.0}) + "\n", encoding="utf-8")
+    told = CliRunner().invoke(app, ["compare", str(driven), str(again)])
+    assert told.exit_code == 0, "where the files are is no result"
+    assert f"| {driven} and {again} |" in told.output
     row["outcomes"][1]["cells"][0]["flow"]["lost_s"] += 3600.0
     lines.write_text(json.dumps(row) + "\n", encoding="utf-8")
     told = CliRunner().invoke(app, ["compare", str(driven), str(again)])

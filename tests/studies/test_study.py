@@ -41,6 +41,7 @@ from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
 from automotive_cosim.studies.tables import policies as policy_table
 from automotive_cosim.studies.tracks import TRACKS
+from automotive_cosim.studies.warnings import steps_told
 from automotive_cosim.traffic.chance import Fresh
 
 from .conftest import EDGES, MORE_TRIPS, Draw
@@ -694,6 +695,12 @@ def test_a_sumo_configuration_is_studied_as_it_is_between_places(two_ways: Draw,
     run_study(plan, tmp_path / "s")
     study = read_study(tmp_path / "s")
     assert [(row.trip, len(row.decisions)) for row in study.rows] == [("chosen", 1)]
+    assert not [*steps_told(plan.opened, 1.0)], "the configuration states no step"
+    stated = configuration.with_name("stated.sumocfg")
+    inner = configuration.read_text().replace("<input>", '<time><step-length value="0.5"/></time><input>')
+    stated.write_text(inner)
+    assert "0.5 s" in " ".join(steps_told(replace(plan, scenario=str(stated)).opened, 1.0))
+    stated.unlink()
     assert {path.name: path.read_bytes() for path in configuration.parent.iterdir()} == before
     with pytest.raises(UserError, match="no street or edge 'nowhere'"):
         replace(plan, from_place="nowhere").check()
