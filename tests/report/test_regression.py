@@ -228,3 +228,11 @@ def test_folders_of_drives_name_their_agents_when_they_share_none(tmp_path):
     other = make_plan({"agents": ["asurada", "t3a"], "drives": ["grid_june"], "seeds": [0]})
     with pytest.raises(UserError, match=r"b \(asurada.*; t3a.*\) have no agent in common"):
         changes(scored(tmp_path / "a", [0] * 6), scored(tmp_path / "b", [0, 0], other))
+
+
+def test_a_file_that_cannot_be_written_is_named_itself(tmp_path):
+    from automotive_cosim.run.record import write_whole
+
+    with pytest.raises(FileNotFoundError) as found:
+        write_whole(tmp_path / "none" / "x.xml", "x")
+    assert found.value.filename == str(tmp_path / "none" / "x.xml")
