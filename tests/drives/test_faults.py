@@ -76,3 +76,13 @@ def test_the_words_of_outcomes_are_explained_where_they_occur() -> None:
 
 def test_a_wet_road_is_no_contradiction_of_what_slippery_means() -> None:
     assert "not while it is only wet" in KINDS["slippery"].about
+
+
+def test_a_word_beside_a_bar_is_left_out_where_another_bar_of_its_kind_is_in_the_way() -> None:
+    from automotive_cosim.report.drivechart import _is_free
+
+    before, last = missed(40.0, 70.0), missed(560.0, 570.0)
+    assert _is_free(last, False, (before, last), 600.0)
+    near = missed(500.0, 530.0)
+    assert not _is_free(last, False, (before, near, last), 600.0)
+    assert _is_free(before, True, (before, near, last), 600.0)
