@@ -373,6 +373,7 @@ def test_a_slow_car_does_not_end_what_stands_ahead(name: str) -> None:
     drive = [*stream(10, **scene), *slow, *(moment(float(second), **scene) for second in range(55, 70))]
     (event,) = [each for each in found(drive, name) if not each.lookalike]
     assert event.last_s == 69.0
+    assert event.words[0].islower(), "as the words of all events, though the cockpit's line has a capital"
 
 
 def test_a_red_light_does_not_end_an_open_belt() -> None:
