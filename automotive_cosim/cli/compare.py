@@ -16,7 +16,10 @@ def compare(
     before: Annotated[Path, typer.Argument(help="Results folder of `eval` before the change.", show_default=False)],
     after: Annotated[Path, typer.Argument(help="Results folder of `eval` after the change.", show_default=False)],
     threshold: Annotated[
-        float, typer.Option(help="By how many percentage points success may fall.", metavar="POINTS")
+        float,
+        typer.Option(
+            help="By how many percentage points success, or points the score of drives, may fall.", metavar="POINTS"
+        ),
     ] = 0.0,
     junit: Annotated[
         Path | None, typer.Option(help="File for a JUnit report with one case per instance.", show_default=False)
@@ -31,7 +34,8 @@ def compare(
 ) -> None:
     """Compare two evaluations on the same instances.
 
-    Exit code 1 if success fell by more than the threshold, or something that was planned was not run.
+    Exit code 1 if success, or the score of drives, fell by more than the threshold, or something that was planned
+    was not run.
     """
     from automotive_cosim.report import regression
     from automotive_cosim.run.record import write_whole

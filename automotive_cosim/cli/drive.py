@@ -122,7 +122,7 @@ def drives(as_json: AsJson = False) -> None:
 
 def _tell(console: Console, row: DriveTrialRow) -> None:
     """The drive's events and acts in chronological order, what went wrong and why, and its score."""
-    from automotive_cosim.drives.faults import became, clock, faults, was
+    from automotive_cosim.drives.faults import became, clock, faults, key_of, was
     from automotive_cosim.drives.judge import Worth
 
     lines = [
@@ -142,6 +142,8 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         console.print(
             f"{int(time_s) // 60:3}:{int(time_s) % 60:02}  {words}  [{came}]", markup=False, soft_wrap=True
         )
+    if key := key_of(row.events):
+        console.print(f"In brackets: {key}", markup=False, soft_wrap=True)
     if wrong := faults(row.events, row.acts):
         console.print("Missed, late and needless:", soft_wrap=True)
     for fault in wrong:
@@ -157,7 +159,10 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
     )
     if row.harm is not None and row.baseline_harm is not None:
         near_s, nobodys_s = row.harm.short_ttc_s, row.baseline_harm.short_ttc_s
-        console.print(f"Near-collision time {near_s:.0f} s; without the agent {nobodys_s:.0f} s", soft_wrap=True)
+        console.print(
+            f"Near-collision time with the vehicle ahead {near_s:.0f} s; without the agent {nobodys_s:.0f} s",
+            soft_wrap=True,
+        )
     if row.unwatched_from_s is not None:
         console.print(
             f"Nobody watched from {clock(row.unwatched_from_s)} on: {row.agent_error or row.end}", soft_wrap=True

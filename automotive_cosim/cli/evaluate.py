@@ -44,6 +44,7 @@ from automotive_cosim.run.settings import EvaluationSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
+    from automotive_cosim.report.results import Results
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.plan import Plan
     from automotive_cosim.run.trial_row import TrialRow
@@ -105,7 +106,8 @@ def evaluate(
     at_least: Annotated[
         float,
         typer.Option(
-            help="End with 1 if a smaller share of what was planned succeeded, 0 to 1, as in 0.8.",
+            help="End with 1 if a smaller share of the planned episodes succeeded, or drives score a smaller share "
+            "of 100 points; 0 to 1, as in 0.8.",
             metavar="X",
             parser=number(0, 1),
         ),
@@ -225,10 +227,26 @@ def evaluate(
             f"{len(errors)} of {counted(end.planned, unit)} ended in an infrastructure error, which no rate "
             "counts as a success; rerun the command to retry them"
         )
-    if end.successes < at_least * end.planned:
-        planned = counted(end.planned, unit)
-        typer.echo(f"{end.successes:,} of {planned} succeeded, a smaller share than {at_least:g}", err=True)
+    if at_least and (short := _short(found, at_least)):
+        typer.echo("; ".join(short), err=True)
         raise typer.Exit(1)
+
+
+def _short(found: Results, at_least: float) -> list[str]:
+    """What is below a share: of the planned episodes, or of the score of drives, which must all have run."""
+    from automotive_cosim.report.drives import grouped, whole
+
+    told = []
+    planned, won = len(found.rows) + len(found.not_run), sum(row.has_succeeded for row in found.rows)
+    if won < at_least * planned:
+        told.append(f"{won:,} of {counted(planned, 'episode')} succeeded, a smaller share than {at_least:g}")
+    for each, rows in grouped(found.drives).items():
+        points = whole(rows).value
+        if points < 100 * at_least:
+            told.append(f"{each.label}: score {points:.0f}, less than {at_least:g} of 100 points")
+    if found.drives_not_run:
+        told.append(f"{counted(len(found.drives_not_run), 'drive')} not run")
+    return told
 
 
 def _named(tasks: Sequence[str]) -> str:

@@ -9,7 +9,6 @@ import typer
 
 from automotive_cosim.cli.options import number
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import UserError
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS, Thresholds
 
 Above = number(0.001, 10_000)
@@ -55,11 +54,9 @@ def measures(
     from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
     from automotive_cosim.measures.encounters import as_csv, as_frame
     from automotive_cosim.run.record import write_whole
-    from automotive_cosim.run.road import NAME, read_record
+    from automotive_cosim.run.road import read_record, road_in
 
-    path = record / NAME if record.is_dir() else record
-    if not path.is_file():
-        raise UserError(f"{record} has no {NAME}; `drive --out` and `eval --pictures all` record the road")
+    path = record if record.is_file() else road_in(record)
     check_formats(parquet=out is not None and out.suffix == ".parquet")
     scenes = [(second.at_s, second.vehicles) for second in read_record(path).seconds]
     thresholds = Thresholds(ttc, drac, DEFAULT_THRESHOLDS.mdrac_mps2, pet, reach)

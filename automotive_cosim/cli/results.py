@@ -47,9 +47,12 @@ def report(
 
 def _safety(folder: Path, agent: str) -> None:
     from automotive_cosim.safety.dossier.filing import write_dossier
+    from automotive_cosim.safety.dossier.subject import read_subject
 
-    page, pdf = write_dossier(folder, agent)
-    typer.echo(f"{page} written; its data in {page.parent / 'data'}")
+    subject = read_subject(folder, agent)
+    page, pdf = write_dossier(folder, subject.agent)
+    beside = f" (--agent takes one of the others: {', '.join(subject.others)})" if subject.others else ""
+    typer.echo(f"{page} written, about {subject.agent}{beside}; its data in {page.parent / 'data'}")
     typer.echo(f"{pdf} written" if pdf else "no PDF: pip install 'automotive-cosim[pdf]'")
 
 

@@ -64,6 +64,25 @@ def clock(time_s: float) -> str:
     return f"{int(time_s) // 60}:{int(time_s) % 60:02d}"
 
 
+OUTCOMES = {
+    EventOutcome.HIT: "met in time",
+    EventOutcome.PREPARED: "met ahead of time",
+    EventOutcome.LATE: "too late",
+    EventOutcome.CAUSED: "missed: its own doing",
+    EventOutcome.EVADED: "missed: the car was held back",
+    EventOutcome.VOID: "nothing was due",
+    EventOutcome.AVOIDED: "rightly left alone",
+    EventOutcome.TAKEN: "false alarm",
+}
+"""Outcomes in plain words; the others say it by their name."""
+
+
+def key_of(events: Sequence[JudgedEvent]) -> str:
+    """What the outcomes of these events mean: ``void, nothing was due; avoided, rightly left alone``."""
+    found = {event.outcome for event in events}
+    return "; ".join(f"{one}, {words}" for one, words in OUTCOMES.items() if one in found)
+
+
 def became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
     """What became of an event, in words; of one that was lost also when something was due, and what came when.
 

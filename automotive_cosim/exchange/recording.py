@@ -13,7 +13,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json
 from automotive_cosim.report.page import element
 from automotive_cosim.run.drive_recorder import SHOWN
-from automotive_cosim.run.road import NAME, RoadRecord, read_record
+from automotive_cosim.run.road import RoadRecord, read_record, road_in
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.words import action_in_words
 
@@ -61,9 +61,7 @@ def read_recording(folder: Path) -> Recording:
     Raises:
         UserError: it has no recorded road, or cannot be read.
     """
-    path = folder / NAME
-    if not path.is_file():
-        raise UserError(f"{folder} has no {NAME}; `run`, `drive --out` and `eval --pictures all` record the road")
+    path = road_in(folder)
     road = read_record(path)
     if not road.seconds:
         raise UserError(f"{path} has no second of a drive; record the trial again")

@@ -212,7 +212,7 @@ NAMED = frozenset(
 )
 """Outcomes that stand beside their bars, in words."""
 ROOM = 0.08
-"""What such a word takes of the drive's length; left out where the next one of its kind stands before that."""
+"""What such a word takes of the drive's length; left out where another bar of its kind is in the way."""
 
 
 def _events(axes: Axes, row: DriveTrialRow, kinds: Sequence[str], end_s: float) -> None:
@@ -239,10 +239,8 @@ def _events(axes: Axes, row: DriveTrialRow, kinds: Sequence[str], end_s: float) 
                     axes.plot(time_s, place, mark, color=INK, markersize=7 if mark == "|" else 4, clip_on=False)
             if event.acted_s is not None:
                 axes.plot(event.acted_s, place, "o", color=INK, markersize=3.5)
-        after_s = [each.observable_s for each in row.events if each.kind == event.kind and each.outcome in NAMED]
-        is_free = not any(0 < next_s - event.observable_s < length_s + ROOM * end_s for next_s in after_s)
-        if event.outcome in NAMED and is_free:
-            right = event.observable_s + length_s < 0.85 * end_s
+        right = event.observable_s + length_s < 0.85 * end_s
+        if event.outcome in NAMED and _is_free(event, right, row.events, end_s):
             at_s = event.observable_s + (length_s if right else 0.0)
             axes.annotate(
                 str(event.outcome),
@@ -254,6 +252,17 @@ def _events(axes: Axes, row: DriveTrialRow, kinds: Sequence[str], end_s: float) 
                 va="center",
                 annotation_clip=False,
             )
+
+
+def _is_free(event: JudgedEvent, right: bool, events: Sequence[JudgedEvent], end_s: float) -> bool:
+    """Whether no other bar of its kind stands where the word beside a bar would."""
+    length_s = max(LEAST_S, event.ends_s - event.observable_s)
+    from_s = event.observable_s + length_s if right else event.observable_s - ROOM * end_s
+    return not any(
+        other.observable_s < from_s + ROOM * end_s and from_s < max(other.ends_s, other.observable_s + LEAST_S)
+        for other in events
+        if other is not event and other.kind == event.kind
+    )
 
 
 def _acts(axes: Axes, row: DriveTrialRow, near_s: float) -> None:

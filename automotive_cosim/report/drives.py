@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -161,16 +162,61 @@ EFFECTS: tuple[tuple[str, Figure, str], ...] = (
 
 def interval(rows: Sequence[DriveTrialRow], figure: Figure) -> Interval | None:
     """Bounds from resampling whole drives, each with its repeats; None with fewer than ``LEAST_DRIVES``."""
-    clusters: dict[tuple[str, int], list[DriveTrialRow]] = {}
-    for row in rows:
-        clusters.setdefault((row.family, row.seed), []).append(row)
+    return _resampled([(row, row) for row in rows], lambda picked: figure([row for row, _ in picked]))
+
+
+@dataclass(frozen=True, slots=True)
+class ScoreChange:
+    """The score of the same drives before and after, each of all of them together, in points."""
+
+    before: float
+    after: float
+    bounds: Interval | None
+    """Of the difference in points, from resampling whole drives; None with fewer than ``LEAST_DRIVES``."""
+
+    @property
+    def difference(self) -> float:
+        """After minus before as a share of the score's 100 points, as rates have it."""
+        return (self.after - self.before) / 100
+
+    @property
+    def interval(self) -> Interval | None:
+        """The bounds as shares of the score."""
+        return None if self.bounds is None else Interval(self.bounds.low / 100, self.bounds.high / 100)
+
+
+def score_change(judged: Sequence[tuple[DriveTrialRow, DriveTrialRow]]) -> ScoreChange | None:
+    """Compares the scores of drives that were judged both times; None without any.
+
+    Args:
+        judged: each drive before and after.
+    """
+
+    def scores(picked: RowPairs) -> tuple[float, float]:
+        before, after = (whole([pair[which] for pair in picked]).value for which in (0, 1))
+        return before, after
+
+    def difference(picked: RowPairs) -> float:
+        before, after = scores(picked)
+        return after - before
+
+    return ScoreChange(*scores(judged), _resampled(judged, difference)) if judged else None
+
+
+RowPairs = Sequence[tuple[DriveTrialRow, DriveTrialRow]]
+
+
+def _resampled(pairs: RowPairs, figure: Callable[[RowPairs], float | None]) -> Interval | None:
+    clusters: dict[tuple[str, int], list[tuple[DriveTrialRow, DriveTrialRow]]] = {}
+    for pair in pairs:
+        clusters.setdefault((pair[0].family, pair[0].seed), []).append(pair)
     groups = list(clusters.values())
     if len(groups) < LEAST_DRIVES:
         return None
     rng = np.random.default_rng(0)
     found = []
     for picks in rng.integers(len(groups), size=(DRAWS, len(groups))):
-        value = figure([row for pick in picks for row in groups[pick]])
+        value = figure([pair for pick in picks for pair in groups[pick]])
         if value is not None:
             found.append(value)
     if not found:

@@ -10,10 +10,12 @@ from xml.etree import ElementTree
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.report.results import Contestant, contestant, pair_instance, pairs, read_results
+from automotive_cosim.report.drives import ScoreChange, score_change
+from automotive_cosim.report.results import Contestant, Results, contestant, pair_instance, pairs, read_results
 from automotive_cosim.report.stats import Comparison, Rate, compare
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.report.tables import Table
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import minor
@@ -33,13 +35,27 @@ class ComparedInstance:
 
     @property
     def kind(self) -> str:
-        """``lost``, ``won``, ``solved``, ``not solved`` (both times), or ``error``: judged before and not now."""
+        """``lost``, ``won``, ``solved``, ``not solved`` (both times), or ``error``: judged before and not now.
+
+        A drive is lost if its score fell and won if it rose.
+        """
         now = None if self.after is None else self.after.outcome
         if now is None:
             return "error"
+        if self.scores is not None and self.scores[0] != self.scores[1]:
+            return "lost" if self.scores[1] < self.scores[0] else "won"
+        if self.scores is not None:
+            return "solved" if now else "not solved"
         if self.before.outcome:
             return "solved" if now else "lost"
         return "won" if now else "not solved"
+
+    @property
+    def scores(self) -> tuple[float, float] | None:
+        """A drive's before and after, in points; None for an episode, or if it is not judged now."""
+        rows = self.before, self.after
+        before, after = (row.score if isinstance(row, DriveTrialRow) else None for row in rows)
+        return None if before is None or after is None else (before.value, after.value)
 
     @property
     def why(self) -> str:
@@ -52,7 +68,8 @@ class ComparedInstance:
             why = self.after.error
             return f"{self.after.error_kind}: {why}" if why else "one half is not judged"
         missing = [part.replace("_", " ") for part in self.after.missing]
-        told = [f"missing: {', '.join(missing)}"] if missing else []
+        told = [] if self.scores is None else [_points(self.scores)]
+        told += [f"missing: {', '.join(missing)}"] if missing else []
         if self.after.agent_error is not None:
             told.append(f"the agent failed: {self.after.agent_error}")
         if self.after.malformed and missing:
@@ -70,10 +87,12 @@ class SuccessChange:
     unit: str
     """``episodes``, ``pairs`` or ``drives``."""
     cases: tuple[ComparedInstance, ...]
-    found: Comparison | None
-    """After compared with before; None if nothing was judged both times."""
+    found: Comparison | ScoreChange | None
+    """After compared with before, of drives by their score; None if nothing was judged both times."""
     rates: tuple[Rate, Rate]
-    """Before and after, each over everything that was planned then."""
+    """Before and after, each over what both planned."""
+    planned: tuple[Rate, Rate]
+    """The same over everything that was planned then."""
     problems: tuple[str, ...] = ()
     """Why it is not known what was planned."""
     versions: tuple[str, str] = ("", "")
@@ -84,14 +103,15 @@ class SuccessChange:
         return sum(case.kind == kind for case in self.cases)
 
     def is_worse(self, allowed: float) -> bool:
-        """Whether success fell by more than ``allowed`` (0 to 1), or something judged before is not judged now."""
+        """Whether success, or the score of drives, fell by more than ``allowed`` (a share, 0 to 1), or something
+        judged before is not judged now."""
         fell = self.found is not None and -self.found.difference > allowed + 1e-9
         return fell or self.count("error") > 0
 
     @property
     def is_incomplete(self) -> bool:
         """Whether either evaluation has not run everything that was planned, or nothing was judged both times."""
-        return self.found is None or bool(self.problems) or any(each.not_run for each in self.rates)
+        return self.found is None or bool(self.problems) or any(each.not_run for each in self.planned)
 
     def passes(self, allowed: float) -> bool:
         """Whether it is known to be no worse."""
@@ -140,20 +160,25 @@ def changes(before: Path, after: Path, *, mixed: bool = False) -> tuple[SuccessC
             before_pairs, after_pairs = ([pair for pair, _ in pairs(rows)] for rows in (before_rows, after_rows))
             if before_pairs:
                 found.append(_change(each, "pairs", before_pairs, after_pairs, problems, versions))
-    for each in dict.fromkeys(map(contestant, old.drives)):
+    for each in dict.fromkeys(map(contestant, (*old.drives, *old.drives_not_run))):
         before_drives, after_drives = (
             [row for row in (*side.drives, *side.drives_not_run) if contestant(row) == each] for side in (old, new)
         )
         if after_drives:
             found.append(_change(each, "drives", before_drives, after_drives, problems, versions))
     if not found:
-        labels = ("; ".join(each.label for each in results.contestants) or "nobody" for results in (old, new))
+        labels = (_labels(results) for results in (old, new))
         named = " and ".join(f"{folder} ({label})" for folder, label in zip((before, after), labels, strict=True))
         raise UserError(
             f"{named} have no agent in common; compare the same agent, model and geo control before and after "
             "a change. To compare two agents, or people and an agent, use Compare in `automotive-cosim serve`"
         )
     return tuple(found)
+
+
+def _labels(results: Results) -> str:
+    drivers = map(contestant, (*results.drives, *results.drives_not_run))
+    return "; ".join(each.label for each in dict.fromkeys((*results.contestants, *drivers))) or "nobody"
 
 
 def _change(
@@ -167,18 +192,35 @@ def _change(
     def key(row: TrialRow) -> tuple[object, ...]:
         return pair_instance(row) if unit == "pairs" and isinstance(row, EpisodeRow) else row.instance
 
-    news = {key(row): row for row in new}
+    olds, news = ({key(row): row for row in rows} for rows in (old, new))
     cases = tuple(
         ComparedInstance(_name(row, unit), row, news.get(key(row))) for row in old if row.outcome is not None
     )
     judged = {case.name: case for case in cases if case.kind != "error"}
-    clusters: dict[Hashable, Hashable] = {name: case.before.subject for name, case in judged.items()}
-    found = compare(
-        {name: bool(case.after.outcome) for name, case in judged.items() if case.after},
-        {name: bool(case.before.outcome) for name, case in judged.items()},
-        clusters,
+    found: Comparison | ScoreChange | None
+    if unit == "drives":
+        rows = [(case.before, case.after) for case in judged.values()]
+        found = score_change(
+            [
+                (before, after)
+                for before, after in rows
+                if isinstance(before, DriveTrialRow) and isinstance(after, DriveTrialRow)
+            ]
+        )
+    else:
+        clusters: dict[Hashable, Hashable] = {name: case.before.subject for name, case in judged.items()}
+        found = compare(
+            {name: bool(case.after.outcome) for name, case in judged.items() if case.after},
+            {name: bool(case.before.outcome) for name, case in judged.items()},
+            clusters,
+        )
+    before, after = (
+        rate_of([row for row in old if key(row) in news]),
+        rate_of([row for row in new if key(row) in olds]),
     )
-    return SuccessChange(each, unit, cases, found, (rate_of(old), rate_of(new)), problems, versions)
+    return SuccessChange(
+        each, unit, cases, found, (before, after), (rate_of(old), rate_of(new)), problems, versions
+    )
 
 
 def _name(row: TrialRow, unit: str) -> str:
@@ -187,30 +229,33 @@ def _name(row: TrialRow, unit: str) -> str:
     if isinstance(row, EpisodeRow):
         where = "" if unit == "pairs" else f"{f', {row.half} half' if row.pair else ''}, {row.scenario}"
         return f"{row.task}{where}, seed {row.seed}{repeat}"
-    return " ".join(map(str, row.instance))
+    assert isinstance(row, DriveTrialRow)
+    words = (row.family, row.scenario, row.settings.words, f"seed {row.seed}")
+    return ", ".join(filter(None, words)) + repeat
+
+
+def _points(scores: tuple[float, float]) -> str:
+    before, after = (f"{score:.0f}".replace("-", "−") for score in scores)
+    return f"score {before} before, {after} after"
 
 
 def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
     """A summary for a pull request."""
     rows = []
     for each in found:
-        compared = each.found
         judged = sum(case.kind != "error" for case in each.cases)
-        solved = {
-            "before": each.count("solved") + each.count("lost"),
-            "after": each.count("solved") + each.count("won"),
-        }
+        if isinstance(each.found, ScoreChange):
+            levels = [f"{score:.0f}" for score in (each.found.before, each.found.after)]
+        else:
+            levels = [f"{each.count('solved') + each.count(kind)}/{judged}" for kind in ("lost", "won")]
         rows.append(
             (
                 each.outcome(allowed),
                 each.contestant.label,
                 each.unit,
                 *(f"{rate.judged} of {rate.planned}" for rate in each.rates),
-                *(f"{count}/{judged}" for count in solved.values()),
-                "–"
-                if compared is None
-                else f"{100 * compared.difference:+.1f} points ({100 * compared.interval.low:+.0f} to "
-                f"{100 * compared.interval.high:+.0f})",
+                *levels,
+                _difference(each.found),
                 *(str(each.count(kind)) for kind in ("lost", "won", "error")),
             )
         )
@@ -231,9 +276,10 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
             "Not judged now",
         ),
         tuple(rows),
-        "On the instances that were judged before, in percentage points, with 95 % intervals over tasks. Worse: "
-        f"success fell by more than {100 * allowed:g} points, or something is no longer judged. Not "
-        "distinguishable: the interval contains zero. Incomplete: success did not fall, but "
+        "On the instances that were judged before, in percentage points or points of score, with 95 % intervals "
+        "over tasks or drives. Drives are compared by the score of all of them together, and a drive is lost if its "
+        f"score fell. Worse: success or score fell by more than {100 * allowed:g} points, or something is no longer "
+        "judged. Not distinguishable: the interval contains zero. Incomplete: it did not fall, but "
         "something planned was not run, or it is not known what was planned. Judged: out of what was planned.",
         heads=3,
     )
@@ -250,6 +296,18 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
     )
 
 
+def _difference(found: Comparison | ScoreChange | None) -> str:
+    """With its interval, in percentage points of success or points of score."""
+    if found is None:
+        return "–"
+    if isinstance(found, ScoreChange):
+        bounds = found.bounds
+        beside = "" if bounds is None else f" ({bounds.low:+.0f} to {bounds.high:+.0f})"
+        return f"{100 * found.difference:+.0f} points{beside}"
+    bounds = found.interval
+    return f"{100 * found.difference:+.1f} points ({100 * bounds.low:+.0f} to {100 * bounds.high:+.0f})"
+
+
 def sentence(found: Sequence[SuccessChange], allowed: float) -> str:
     """The result in a sentence: each contestant that is worse or incomplete, by how much, or that none is."""
     told = [
@@ -257,14 +315,26 @@ def sentence(found: Sequence[SuccessChange], allowed: float) -> str:
         for each in found
         if not each.passes(allowed)
     ]
-    if not told and not any(rate.value for each in found for rate in each.rates):
+    by_success = [each for each in found if not isinstance(each.found, ScoreChange)]
+    if not told and by_success == list(found) and not any(rate.value for each in found for rate in each.rates):
         return f"No agent succeeds, neither before nor after: {_before_and_after(found[-1])}."
     return "; ".join(told or [f"No agent is worse: {_before_and_after(found[-1])}"]) + "."
 
 
 def _before_and_after(each: SuccessChange) -> str:
-    shares = " before, ".join("–" if rate.value is None else f"{rate.value:.0%}" for rate in each.rates)
-    return f"{shares} after, of {each.rates[1].planned:,} {each.unit}"
+    if isinstance(each.found, ScoreChange):
+        told = _points((each.found.before, each.found.after))
+    else:
+        shares = " before, ".join("–" if rate.value is None else f"{rate.value:.0%}" for rate in each.rates)
+        told = f"{shares} after"
+    unit, (old, new) = each.unit.removesuffix("s"), each.planned
+    common = each.rates[1].planned
+    told += f", of {counted(common, unit)}"
+    if (old.planned, new.planned) != (common, common):
+        told += f" that both planned ({old.planned:,} before, {new.planned:,} after)"
+    for when, rate in (("before", old), ("after", new)):
+        told += f"; stopped early {when}, {rate.not_run:,} of {rate.planned:,} not run" if rate.not_run else ""
+    return told
 
 
 def mixed_versions(found: Sequence[SuccessChange]) -> str:
@@ -299,7 +369,8 @@ def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
             "before": asdict(each.rates[0]) | {"planned": each.rates[0].planned},
             "after": asdict(each.rates[1]) | {"planned": each.rates[1].planned},
             "difference": None if each.found is None else each.found.difference,
-            "interval": None if each.found is None else asdict(each.found.interval),
+            "interval": None if each.found is None or each.found.interval is None else asdict(each.found.interval),
+            "score": [each.found.before, each.found.after] if isinstance(each.found, ScoreChange) else None,
             "problems": list(each.problems),
             "instances": [{"name": case.name, "kind": case.kind, "why": case.why} for case in each.cases],
         }
@@ -334,7 +405,7 @@ def junit(found: Sequence[SuccessChange]) -> str:
             element = {"lost": "failure", "error": "error"}.get(case.kind)
             if element:
                 told = ElementTree.SubElement(entry, element, message=case.why or "not solved now")
-                if case.after is not None:
+                if case.after is not None and case.after.has_run:
                     told.text = f"trial {case.after.id}: `automotive-cosim serve` with its folder shows each step"
     ElementTree.indent(root)
     return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"

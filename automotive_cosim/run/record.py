@@ -137,10 +137,13 @@ def screenshot(folder: Path, step: int) -> Path:
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Writes a file of plain text completely or not at all."""
+    """Writes a file of plain text completely or not at all; an error names the file, and not its draft."""
     draft = path.with_name(f".{path.name}.part")
-    draft.write_text(plain(text), encoding="utf-8", newline="\n")
-    draft.replace(path)
+    try:
+        draft.write_text(plain(text), encoding="utf-8", newline="\n")
+        draft.replace(path)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def remove(path: Path) -> None:

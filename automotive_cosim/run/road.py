@@ -92,6 +92,24 @@ EMPTY = RoadRecord(RoadShapes((), ()), ())
 """Of a drive without observers."""
 
 
+def road_in(folder: Path) -> Path:
+    """The recorded road of a trial's folder.
+
+    Raises:
+        UserError: it has none; of an evaluation's folder, the trials in it that have one are named.
+    """
+    path = folder / NAME
+    if path.is_file():
+        return path
+    trials = sorted(each.parent for each in folder.glob(f"pictures/**/{NAME}"))
+    if trials:
+        more = f", and {len(trials) - 3} more" if len(trials) > 3 else ""
+        raise UserError(
+            f"{folder} is an evaluation; give one of its trials: {', '.join(map(str, trials[:3]))}{more}"
+        )
+    raise UserError(f"{folder} has no {NAME}; `run`, `drive --out` and `eval --pictures all` record the road")
+
+
 def read_record(path: Path) -> RoadRecord:
     """A whole file, or as much as was written before a kill.
 

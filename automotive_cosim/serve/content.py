@@ -10,7 +10,7 @@ from typing import Any
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
-from automotive_cosim.drives.faults import times, was
+from automotive_cosim.drives.faults import OUTCOMES, times, was
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
@@ -394,14 +394,6 @@ def _span(event: JudgedEvent, acts: Sequence[JudgedAct]) -> Json:
         "from_s": event.observable_s,
         "to_s": event.deadline_s or event.ends_s,
     }
-
-
-OUTCOMES = {
-    "hit": "met in time", "prepared": "met ahead of time", "late": "too late", "caused": "missed: its own doing",
-    "evaded": "missed: the car was held back", "void": "nothing was due", "avoided": "rightly left alone",
-    "taken": "false alarm",
-}  # fmt: skip
-"""What a reader is told of an outcome; the others say it by their name."""
 
 
 def _became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:

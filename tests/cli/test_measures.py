@@ -60,4 +60,15 @@ def test_tables_come_as_parquet(cli: Cli, tmp_path: Path) -> None:
 def test_what_was_not_recorded_is_said_in_a_line(cli: Cli, tmp_path: Path) -> None:
     ran = cli("measures", tmp_path)
     assert ran.code == 2
-    assert "has no road.jsonl.gz; `drive --out`" in ran.err
+    assert "has no road.jsonl.gz; `run`, `drive --out`" in ran.err
+
+
+@pytest.mark.parametrize("command", [("measures",), ("export", "--csv")])
+def test_of_an_evaluation_the_trials_with_a_road_are_named(cli, tmp_path, command):
+    for name in ("one", "two"):
+        (tmp_path / "e/pictures" / name).mkdir(parents=True)
+        (tmp_path / "e/pictures" / name / "road.jsonl.gz").touch()
+    ran = cli(*command, tmp_path / "e")
+    told = " ".join(str(ran.err).split())
+    assert "is an evaluation; give one of its trials: " in told
+    assert "pictures/one, " in told

@@ -8,6 +8,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import pytest
+import yaml
 
 from automotive_cosim.scenarios import load
 
@@ -69,6 +70,41 @@ def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(ev
     assert alone.returncode == 1, alone.stderr
     told = (tmp_path / "third/compare.md").read_text(encoding="utf-8")
     assert "No agent succeeds, neither before nor after" in told
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a script for bash")
+def test_a_refused_second_start_names_the_scripts_argument_and_keeps_the_reports(evaluate, tmp_path):
+    (tmp_path / "out").mkdir()
+    kept = [tmp_path / "out" / name for name in ("compare.xml", "compare.md")]
+    for each in kept:
+        each.write_text("earlier", encoding="utf-8")
+    (tmp_path / "checkout/my_agent.py").unlink()
+    ran = evaluate("checkout", "checkout/plan.toml", "out")
+    assert ran.returncode == 2
+    assert "OUT out, the third argument" in ran.stderr
+    assert [each.read_text(encoding="utf-8") for each in kept] == ["earlier", "earlier"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="a script for bash")
+@pytest.mark.parametrize(("code", "ends", "is_kept"), [(0, 0, True), (1, 0, True), (2, 0, False), (3, 3, True)])
+def test_the_action_takes_a_base_that_cannot_be_evaluated_for_no_baseline(tmp_path, code, ends, is_kept):
+    steps = yaml.safe_load(SCRIPT.with_name("action.yml").read_text(encoding="utf-8"))["runs"]["steps"]
+    (step,) = [each for each in steps if each.get("name") == "Evaluate the base branch"]
+    script = tmp_path / "evaluate.sh"
+    script.write_text(f'#!/bin/bash\nmkdir -p "$3/after"\nexit {code}\n', encoding="utf-8")
+    script.chmod(0o755)
+    given = {"GITHUB_ACTION_PATH": str(tmp_path), "RUNNER_TEMP": str(tmp_path), "PLAN": "plan.toml"}
+    ran = subprocess.run(
+        ["bash", "-e", "-o", "pipefail", "-c", step["run"]],
+        cwd=tmp_path,
+        env=os.environ | given,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert ran.returncode == ends
+    assert ("No baseline" in ran.stdout) == (code == 2)
+    assert (tmp_path / "base").is_dir() == is_kept
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a script for bash")

@@ -360,6 +360,7 @@ def test_a_child_with_an_adult_and_an_empty_car_need_nobody() -> None:
 def test_everybody_aboard_is_belted_and_things_need_not_be(kind: str, is_lookalike: bool) -> None:
     aboard = behind(kind)
     (event,) = found(stream(20, signals=aboard), "belt")
+    assert "object's" not in event.words, "a thing has no belt of its own"
     assert (event.lookalike, event.obliged_s is None) == (is_lookalike, is_lookalike)
     assert not found(stream(20, signals={**aboard, OCCUPANT.REAR_LEFT.belted.path: True}), "belt")
 
@@ -372,6 +373,7 @@ def test_a_slow_car_does_not_end_what_stands_ahead(name: str) -> None:
     drive = [*stream(10, **scene), *slow, *(moment(float(second), **scene) for second in range(55, 70))]
     (event,) = [each for each in found(drive, name) if not each.lookalike]
     assert event.last_s == 69.0
+    assert event.words[0].islower(), "as the words of all events, though the cockpit's line has a capital"
 
 
 def test_a_red_light_does_not_end_an_open_belt() -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from automotive_cosim.drives.faults import became, faults, was
+from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.faults import became, faults, key_of, was
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Judgement, Worth
 from automotive_cosim.drives.score import score
 
@@ -65,3 +66,23 @@ def test_a_false_alarm_says_when_it_would_have_been_right_and_what_was_due() -> 
     assert was(act, [belt, missed(80.0)]) == (
         "wrong: no tunnel is ahead; 28 s before tunnel could be known, at 1:20; due was belt, from 0:45"
     )
+
+
+def test_the_words_of_outcomes_are_explained_where_they_occur() -> None:
+    void = JudgedEvent("tunnel", "a tunnel", False, 1.0, EventOutcome.VOID, 1.0, None, None, 9.0)
+    assert key_of((void, missed(), void)) == "void, nothing was due"
+    assert key_of((missed(),)) == ""
+
+
+def test_a_wet_road_is_no_contradiction_of_what_slippery_means() -> None:
+    assert "not while it is only wet" in KINDS["slippery"].about
+
+
+def test_a_word_beside_a_bar_is_left_out_where_another_bar_of_its_kind_is_in_the_way() -> None:
+    from automotive_cosim.report.drivechart import _is_free
+
+    before, last = missed(40.0, 70.0), missed(560.0, 570.0)
+    assert _is_free(last, False, (before, last), 600.0)
+    near = missed(500.0, 530.0)
+    assert not _is_free(last, False, (before, near, last), 600.0)
+    assert _is_free(before, True, (before, near, last), 600.0)

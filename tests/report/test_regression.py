@@ -11,6 +11,7 @@ from automotive_cosim.contracts.given import Clock
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.regression import as_json, changes, junit, markdown
+from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.plan import make_plan
@@ -166,3 +167,84 @@ def test_two_minor_versions_are_compared_only_if_told_and_that_is_said(tmp_path)
     (before / "manifest.json").write_text(json.dumps(manifest))
     with pytest.raises(UserError, match="unknown"):
         changes(before, after)
+
+
+DRIVES = make_plan({"agents": ["silent"], "drives": ["grid_june"], "seeds": list(range(6))})
+
+
+def scored(folder, points, plan=DRIVES):
+    """An evaluation of drives with one event each, whose costs give these scores; None has not been run."""
+    from automotive_cosim.drives.judge import Judgement
+    from automotive_cosim.drives.score import score
+
+    empty = score(Judgement((), ()), 600.0)
+    with opened(folder, plan.as_json(), DriveTrialRow) as store:
+        for job, value in zip(sorted(plan.jobs(), key=lambda job: job.setup.seed), points, strict=True):
+            if value is not None:
+                made = replace(empty, events=1, missed=1, worth=1.0, cost=1.0 - value / 50)
+                assert made.value == pytest.approx(value)
+                store.append(replace(job.planned(), score=made, value=made.value))
+    return folder
+
+
+def test_drives_are_compared_by_their_score_and_never_by_success(tmp_path):
+    before, after = scored(tmp_path / "a", [0] * 6), scored(tmp_path / "b", [0, -533, 0, 0, 40, 0])
+    (found,) = changes(before, after)
+    assert found.unit == "drives"
+    assert 100 * found.found.difference == pytest.approx((40 - 533) / 6)
+    assert found.found.bounds.low < (40 - 533) / 6 < found.found.bounds.high
+    assert (found.outcome(0.0), found.outcome(0.81), found.outcome(0.83)) == ("worse", "worse", "unchanged")
+    assert (found.count("lost"), found.count("won")) == (1, 1)
+    told = markdown((found,), 0.0)
+    assert told.startswith("**silent (negative control) is worse: score 0 before, −82 after, of 6 drives")
+    assert "−533 after" in told.partition("**Lost")[2]
+    assert "score 0 before, −533 after" in junit((found,))
+    assert as_json((found,), 0.0)["contestants"][0]["score"] == pytest.approx([0, (40 - 533) / 6])
+    alike = changes(before, before)
+    assert "No agent is worse: score 0 before, 0 after, of 6 drives" in markdown(alike, 0.0)
+
+
+def test_few_drives_have_no_interval(tmp_path):
+    few = make_plan({"agents": ["silent"], "drives": ["grid_june"], "seeds": [0, 1]})
+    (found,) = changes(scored(tmp_path / "a", [0, 0], few), scored(tmp_path / "b", [0, -10], few))
+    assert found.found.bounds is None
+    assert "-5 points |" in markdown((found,), 0.0)
+
+
+def test_a_share_of_the_score_is_asked_of_drives(tmp_path):
+    from automotive_cosim.cli.evaluate import _short
+    from automotive_cosim.report.results import read_results
+
+    done = read_results(scored(tmp_path / "a", [100, 100, 100, 100, 100, -20]))
+    assert _short(done, 0.8) == []
+    assert "score 80, less than 0.9 of 100 points" in _short(done, 0.9)[0]
+    stopped = read_results(scored(tmp_path / "b", [100, 100, 100, 100, 100, None]))
+    assert _short(stopped, 0.8) == ["1 drive not run"]
+
+
+def test_of_two_plans_only_what_both_have_is_compared_and_the_headline_says_so(tmp_path):
+    part = make_plan({"agents": ["silent"], "drives": ["grid_june"], "seeds": [0, 1]})
+    found = changes(scored(tmp_path / "a", [0, 0], part), scored(tmp_path / "b", [0, 0, -90, -90, -90, -90]))
+    told = markdown(found, 0.0)
+    assert "score 0 before, 0 after, of 2 drives that both planned (2 before, 6 after)" in told
+
+
+def test_the_headline_says_that_an_evaluation_was_stopped_and_no_case_of_it_has_steps(tmp_path):
+    found = changes(scored(tmp_path / "a", [0] * 6), scored(tmp_path / "b", [0, 0, 0, 0, 0, None]))
+    assert "stopped early after, 1 of 6 not run" in markdown(found, 0.0).splitlines()[0]
+    assert "it has not been run" in junit(found)
+    assert "shows each step" not in junit(found)
+
+
+def test_folders_of_drives_name_their_agents_when_they_share_none(tmp_path):
+    other = make_plan({"agents": ["asurada", "t3a"], "drives": ["grid_june"], "seeds": [0]})
+    with pytest.raises(UserError, match=r"b \(asurada.*; t3a.*\) have no agent in common"):
+        changes(scored(tmp_path / "a", [0] * 6), scored(tmp_path / "b", [0, 0], other))
+
+
+def test_a_file_that_cannot_be_written_is_named_itself(tmp_path):
+    from automotive_cosim.run.record import write_whole
+
+    with pytest.raises(FileNotFoundError) as found:
+        write_whole(tmp_path / "none" / "x.xml", "x")
+    assert found.value.filename == str(tmp_path / "none" / "x.xml")

@@ -155,6 +155,8 @@ def test_an_agent_must_be_named_if_there_are_several(tmp_path: Path) -> None:
     assert len(subject.rows) == len(subject.reference) == 6
     with pytest.raises(UserError, match="no trial of agent 'me'"):
         read_subject(folder, "me")
+    assert subject.others == ["m3a", "rule-perfect"]
+    assert read_subject(run(tmp_path / "two", 0, ("asurada", "rule-perfect"))).others == ["rule-perfect"]
 
 
 def test_bounds_are_their_closed_forms() -> None:

@@ -46,3 +46,17 @@ def test_neither_a_file_nor_a_name_is_refused(tmp_path: Path) -> None:
         space_file("cutin")
     with pytest.raises(UserError, match=r"there is no file mine\.toml"):
         space_file("mine.toml")
+
+
+def test_the_guides_first_search_is_of_events_that_its_staging_makes_due() -> None:
+    import re
+    import tomllib
+    from pathlib import Path
+
+    import automotive_cosim.safety
+
+    guide = Path(__file__).parents[2] / "docs/failures.md"
+    name = re.findall(r"search --space (\S+)", guide.read_text("utf-8"))[0]
+    file = Path(automotive_cosim.safety.__file__).parent / "spaces" / f"{name}.toml"
+    space = tomllib.loads(file.read_text("utf-8"))
+    assert space["factors"]["stage"] in space["failure"]["events"]

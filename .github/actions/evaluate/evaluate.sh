@@ -8,9 +8,9 @@
 #   PLAN       plan.toml
 #   OUT        gets after/ (the evaluation), compare.xml (JUnit) and compare.md; a folder of its own for each state of
 #              the agent, as a second start resumes the first
-#   BEFORE     an earlier evaluation of the same plan; without one, the new one is compared with itself, and something
-#              must have succeeded
-#   THRESHOLD  percentage points by which success may fall; 0 by default
+#   BEFORE     an earlier evaluation; without one, as where the base has no such agent yet, the new one is compared with
+#              itself, and something must have succeeded
+#   THRESHOLD  percentage points by which success may fall, or points of the score of drives; 0 by default
 #
 # Exit code 1 if success fell by more than that, nothing ever succeeded, or something planned was not run; 2 if the plan or the agent cannot be
 # used, 3 if something failed that is no fault of the agent's: automotive-cosim's own codes.
@@ -21,7 +21,6 @@ plan=$(realpath "$2")
 mkdir -p "$3"
 out=$(realpath "$3")
 before=$(realpath -m "${4:-$out/after}")
-rm -f "$out/compare.xml" "$out/compare.md"
 cd "$1"
 least=0
 if [ ! -f "$before/manifest.json" ] || [ "$before" = "$out/after" ]; then
@@ -32,6 +31,10 @@ fi
 # It ends with 1 below the least, and with 3 if errors are left, which compare names.
 code=0
 automotive-cosim eval --plan "$plan" --workers 2 --out "$out/after" --at-least $least || code=$?
-case $code in 0 | 1 | 3) ;; *) exit $code ;; esac
+case $code in
+    0 | 1 | 3) ;;
+    *) echo "evaluate.sh: nothing was compared; its --out is OUT/after, with OUT $3, the third argument" >&2; exit $code ;;
+esac
+rm -f "$out/compare.xml" "$out/compare.md"
 automotive-cosim compare "$before" "$out/after" --threshold "${5:-0}" --junit "$out/compare.xml" --markdown "$out/compare.md"
 [ $code != 1 ]

@@ -60,6 +60,7 @@ class Belt(EventKind):
             if one.belted:
                 continue
             whose = "the driver's belt is open" if one.seat is Seat.DRIVER else f"the {one.kind}'s belt is open"
+            whose = whose if one.kind.is_person else "the belt on a seat with an object is open"
             if not one.kind.is_person:
                 yield Sighting(whose, one.seat, lookalike=True)
             elif now.signals[MOTION.GEAR.path] == "P" or all(speed_kmh(then) < 1.0 for then in drive[-HALT_S:]):

@@ -205,7 +205,7 @@ class StandsAhead(EventKind):
                 yield Sighting(f"{kind.value.replace('_', ' ')} reported elsewhere", lookalike=True)
         elif there.distance_m:  # not within it
             yield Sighting(
-                there.text,
+                there.text[:1].lower() + there.text[1:],
                 due=there.distance_m <= STANDS_DUE_S * mps and mps > STANDS_FROM_MPS,
                 severity=_urgency(there.distance_m, mps, PASS_SHARE * mps),
                 left_s=time_left_s(there.distance_m, mps, PASS_SHARE * mps),

@@ -105,7 +105,7 @@ class Slippery(EventKind):
 
     told_by = ("grip", "weather", "speed")
     name = "slippery"
-    about = "the road has the grip of snow or ice and the car is fast"
+    about = "the road loses grip: due when it has that of snow or ice and the car is fast, not while it is only wet"
     lookalike = "cold, but a dry road"
     source = "friction: VTI meddelande 911A; deadline: 20 s, 450 m at 80 km/h"
     neutral = "a wet road, above all one that loses its grip; snow or ice below 40 km/h"

@@ -68,6 +68,12 @@ class Subject:
     """Drives of the rule-perfect watcher in the same run."""
 
     @property
+    def others(self) -> list[str]:
+        """The other agents of the run, references and controls too."""
+        every = (*self.results.rows, *self.results.drives)
+        return [name for name in _agents(map(contestant, every)) if name != self.agent]
+
+    @property
     def judged(self) -> list[TrialRow]:
         """The trials with a judgement."""
         return [row for row in self.rows if row.outcome is not None]
