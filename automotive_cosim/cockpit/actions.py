@@ -72,6 +72,8 @@ class Takes:
     about: str
     about_by_point: str = ""
     """The same for who is given no list of elements, where it differs."""
+    about_bounded: str = ""
+    """The same beside the bounds of the fields, where it differs."""
     target: bool = False
     required: tuple[str, ...] = ()
     optional: tuple[str, ...] = ()
@@ -100,7 +102,11 @@ FIELDS: Mapping[ActionType, Takes] = {
     ActionType.NAVIGATE_HOME: Takes("go to the home screen"),
     ActionType.NAVIGATE_BACK: Takes("go back one screen"),
     ActionType.OPEN_APP: Takes("open a screen by its name", required=("app_name",)),
-    ActionType.WAIT: Takes("let 1 to 10 seconds pass", optional=("seconds",)),
+    ActionType.WAIT: Takes(
+        "let 1 to 10 seconds pass",
+        about_bounded="let that many seconds pass, or one; while watching over a drive, until something changes",
+        optional=("seconds",),
+    ),
     ActionType.ANSWER: Takes(
         "tell the driver something, in up to 120 characters: it answers a question, it is no warning",
         required=("text",),
@@ -327,7 +333,7 @@ def _member(kind: ActionType, takes: Takes) -> Json:
     named = (("index", "x", "y") if takes.target else ()) + takes.required + takes.optional
     schema: Json = {
         "title": str(kind),
-        "description": takes.about,
+        "description": takes.about_bounded or takes.about,
         "properties": {"action_type": {"const": str(kind)}} | {name: field_schema(name) for name in named},
         "required": ["action_type", *takes.required],
         "additionalProperties": False,

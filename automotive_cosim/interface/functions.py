@@ -127,7 +127,8 @@ def _of_action(kind: ActionType) -> Function:
         "required": list(takes.required),
         "additionalProperties": False,
     }
-    return Function(str(kind), f"{takes.about[0].upper()}{takes.about[1:]}.", schema)
+    about = takes.about_bounded or takes.about
+    return Function(str(kind), f"{about[0].upper()}{about[1:]}.", schema)
 
 
 def signature(function: Function, *, is_told: bool = True) -> str:

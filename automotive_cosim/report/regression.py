@@ -277,9 +277,9 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
         ),
         tuple(rows),
         "On the instances that were judged before, in percentage points or points of score, with 95 % intervals "
-        "over tasks or drives. Drives are compared by the score of all of them together, and a drive is lost if its "
-        f"score fell. Worse: success or score fell by more than {100 * allowed:g} points, or something is no longer "
-        "judged. Not distinguishable: the interval contains zero. Incomplete: it did not fall, but "
+        "over tasks or drives. Drives are compared by the score of all of them together, and a drive is lost if "
+        f"its score fell. Worse: success or score fell by more than {100 * allowed:g} points, or something is no "
+        "longer judged. Not distinguishable: the interval contains zero. Incomplete: it did not fall, but "
         "something planned was not run, or it is not known what was planned. Judged: out of what was planned.",
         heads=3,
     )
