@@ -119,7 +119,8 @@ class SuccessChange:
 
     def outcome(self, allowed: float) -> str:
         """``worse`` or ``incomplete``, which do not pass; else ``unchanged`` if the rates are the same, ``better``
-        or ``within threshold`` if the interval leaves out zero, and ``not distinguishable`` if it does not.
+        or ``within threshold`` if the interval leaves out zero, and ``not distinguishable`` if it does not, or if
+        too few drives give none.
         """
         if self.is_worse(allowed):
             return "worse"
@@ -128,7 +129,7 @@ class SuccessChange:
         if not self.found.difference:
             return "unchanged"
         interval = self.found.interval
-        if interval.low <= 0 <= interval.high:
+        if interval is None or interval.low <= 0 <= interval.high:
             return "not distinguishable"
         return "better" if interval.low > 0 else "within threshold"
 

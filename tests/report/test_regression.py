@@ -193,7 +193,8 @@ def test_drives_are_compared_by_their_score_and_never_by_success(tmp_path):
     assert found.unit == "drives"
     assert 100 * found.found.difference == pytest.approx((40 - 533) / 6)
     assert found.found.bounds.low < (40 - 533) / 6 < found.found.bounds.high
-    assert (found.outcome(0.0), found.outcome(0.81), found.outcome(0.83)) == ("worse", "worse", "unchanged")
+    assert (found.outcome(0.0), found.outcome(0.81)) == ("worse", "worse")
+    assert found.outcome(0.83) == "not distinguishable"
     assert (found.count("lost"), found.count("won")) == (1, 1)
     told = markdown((found,), 0.0)
     assert told.startswith("**silent (negative control) is worse: score 0 before, −82 after, of 6 drives")
