@@ -253,7 +253,7 @@ def comfort(state: State) -> tuple[Widget, ...]:
 
 def _rear(rect: Rect, state: State) -> Widget:
     signals = state.signals
-    head, _, seats, _, air, _, facts = column(rect.inset(28, 24), 40, 20, 120, 40, 40, 16, 212)
+    head, _, seats, _, air, _, facts = column(rect.inset(28, 24), 40, 20, 120, 32, 48, 16, 212)
     tiles = seats.columns(2, 16)
     known = (
         ("temperature", say("Temperature"), temperature(signals, signals[HVAC.CABIN_TEMPERATURE])),
