@@ -19,9 +19,10 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim import scenarios
-from automotive_cosim.calibration import CalibrationOptions, calibrate
+from automotive_cosim.calibration.calibrate import calibrate
 from automotive_cosim.calibration.driving import CountedTime, drive
 from automotive_cosim.calibration.result import Met
+from automotive_cosim.calibration.settings import CalibrationOptions
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 

@@ -22,10 +22,10 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, GoalStatus, Observation
 from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.errors import BudgetSpentError
-from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.jobs import TrialJob
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import as_json
+from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.worker import run_with
 from automotive_cosim.safety.hunt import Hunt, hunt

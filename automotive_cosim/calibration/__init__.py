@@ -1,5 +1,6 @@
 """A scenario and hourly counts -> a demand that carries the counts when it is driven.
 
+settings    what can be set
 counts      reads counts, places of sites, travel times
 capacity    what roads and signals carry at most
 sites       site -> edge, and what is doubtful
@@ -10,8 +11,3 @@ search      fit and drive, until the simulation carries the counts
 result      the figures
 calibrate   all of it in order; writes the scenario
 """
-
-from automotive_cosim.calibration.calibrate import CalibrationOptions, calibrate
-from automotive_cosim.calibration.result import Calibration, read_calibration
-
-__all__ = ["Calibration", "CalibrationOptions", "calibrate", "read_calibration"]

@@ -16,6 +16,7 @@ from automotive_cosim.calibration.counts import Counts, TravelTime, read_counts,
 from automotive_cosim.calibration.driving import HOUR_S, CountedTime, DrivenDemand, drive
 from automotive_cosim.calibration.result import RECORD, Calibration, Carried, Met, SiteHour, TimeRow, Try
 from automotive_cosim.calibration.search import FitRound, SearchWorld, search
+from automotive_cosim.calibration.settings import CalibrationOptions
 from automotive_cosim.calibration.sites import Mapped, map_sites
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError
@@ -42,26 +43,6 @@ OTHER_EDGE_S = 10.0
 
 COVERED = 0.1
 """An hour whose departures are fewer than this share of the busiest's has no demand of its own."""
-
-
-@dataclass(frozen=True, slots=True)
-class CalibrationOptions:
-    """The user's options."""
-
-    sites: Path | None = None
-    """A file that says where the sites stand."""
-    times: Path | None = None
-    """A file of measured travel times."""
-    hours: tuple[int, int] | None = None
-    """First and last local hour; None takes all that were counted."""
-    at_hour: int | None = None
-    """When the ego departs; None is the first hour."""
-    hold_out: float = 0.3
-    """Share of the sites that the fit does not see."""
-    rounds: int = 10
-    """Most rounds of fit and simulation."""
-    seed: int = 0
-    """Seed of what is held out, of the routes and of SUMO."""
 
 
 def calibrate(

@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import Workers
+from automotive_cosim.cli.batches import ExecutorSettings
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import TasksFrom, whole_number
 from automotive_cosim.errors import SetupError, UserError
 
 
+@takes(ExecutorSettings, only=["workers"])
 def a2a(
     host: Annotated[str, typer.Option(help="Address to listen at; 0.0.0.0 for every one.")] = "127.0.0.1",
     port: Annotated[int, typer.Option(help="Port.", metavar="N", parser=whole_number(1, 65535))] = 9009,
@@ -18,8 +20,8 @@ def a2a(
         str,
         typer.Option(help="Its address as others see it, for its card.", show_default="http://HOST:PORT/"),
     ] = "",
-    workers: Workers = None,
     tasks_from: TasksFrom = None,
+    **settings: Any,
 ) -> None:
     """Serve the benchmark as an evaluating agent over A2A, as AgentBeats has it."""
     try:
@@ -33,6 +35,6 @@ def a2a(
     url = card_url or f"http://{host}:{port}/"
     typer.echo(url)
     try:
-        serve(host, port, url, workers or 1)
+        serve(host, port, url, filled(ExecutorSettings, settings).processes)
     except SystemExit as error:  # the address is in use, or not this machine's
         raise UserError(f"cannot serve at {host}:{port}; choose another address with --host and --port") from error

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 
 import typer
+from annotated_types import Ge, Le
 
-from automotive_cosim.cli.options import whole_number
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.annotations import Option
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
     from automotive_cosim.run.executor import Executor
     from automotive_cosim.run.forecast import CostForecast, Range
-    from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.row import JobRow
+    from automotive_cosim.run.settings import Budget
     from automotive_cosim.scenarios import Scenario
 
 R = TypeVar("R", bound="JobRow")
@@ -28,61 +29,49 @@ R = TypeVar("R", bound="JobRow")
 EXECUTORS = ("processes", "ray")
 WHERE = "Where to run"
 
-Workers = Annotated[
-    int | None,
-    typer.Option(
-        help="How many run in parallel.",
-        metavar="N",
-        parser=whole_number(1, 4096),
-        show_default="1; with ray, the CPUs of the cluster",
-        rich_help_panel=WHERE,
-    ),
-]
-ExecutorName = Annotated[
-    str,
-    typer.Option(
-        "--executor", help="Where to run: processes of this machine, or ray for a cluster.", rich_help_panel=WHERE
-    ),
-]
-RayAddress = Annotated[
-    str | None,
-    typer.Option(
-        help="A running Ray cluster, as in 10.0.0.4:6379.",
-        show_default="RAY_ADDRESS, else a new one on this machine",
-        rich_help_panel=WHERE,
-    ),
-]
-RaySend = Annotated[
-    Path | None,
-    typer.Option(
-        help="A folder of your own agents, tasks or scenarios. Every node gets a copy and runs in it.",
-        metavar="FOLDER",
-        show_default=False,
-        rich_help_panel=WHERE,
-    ),
-]
 
+@dataclass(frozen=True, slots=True)
+class ExecutorSettings:
+    """Where to run."""
 
-def executor_of(name: str, workers: int | None, ray_address: str | None, ray_send: Path | None) -> Executor:
-    """The executor that the options above select.
+    workers: Annotated[
+        int | None, Ge(1), Le(4096), Option(default="1; with ray, the CPUs of the cluster", panel=WHERE)
+    ] = None
+    """How many run in parallel."""
+    executor: Annotated[str, Option(panel=WHERE)] = EXECUTORS[0]
+    """Where to run: processes of this machine, or ray for a cluster."""
+    ray_address: Annotated[
+        str | None, Option(default="RAY_ADDRESS, else a new one on this machine", panel=WHERE)
+    ] = None
+    """A running Ray cluster, as in 10.0.0.4:6379."""
+    ray_send: Annotated[Path | None, Option(form="FOLDER", panel=WHERE)] = None
+    """A folder of your own agents, tasks or scenarios. Every node gets a copy and runs in it."""
 
-    Raises:
-        UnknownNameError: there is no such executor.
-        UserError: an option belongs to another executor.
-        SetupError: ray is not installed.
-    """
-    from automotive_cosim.run.processes import Processes
+    @property
+    def processes(self) -> int:
+        """How many run in parallel on this machine."""
+        return self.workers or 1
 
-    if name not in EXECUTORS:
-        raise UnknownNameError("executor", name, EXECUTORS)
-    if name == "ray":
-        from automotive_cosim.run.on_ray import OnRay
+    def opened(self) -> Executor:
+        """The executor that they select.
 
-        return OnRay(ray_address or os.environ.get("RAY_ADDRESS"), workers, ray_send)
-    for option, value in (("--ray-address", ray_address), ("--ray-send", ray_send)):
-        if value is not None:
-            raise UserError(f"{option} requires --executor ray; give both or neither")
-    return Processes(workers or 1)
+        Raises:
+            UnknownNameError: there is no such executor.
+            UserError: an option belongs to another executor.
+            SetupError: ray is not installed.
+        """
+        from automotive_cosim.run.processes import Processes
+
+        if self.executor not in EXECUTORS:
+            raise UnknownNameError("executor", self.executor, EXECUTORS)
+        if self.executor == "ray":
+            from automotive_cosim.run.on_ray import OnRay
+
+            return OnRay(self.ray_address or os.environ.get("RAY_ADDRESS"), self.workers, self.ray_send)
+        for name, value in (("--ray-address", self.ray_address), ("--ray-send", self.ray_send)):
+            if value is not None:
+                raise UserError(f"{name} requires --executor ray; give both or neither")
+        return Processes(self.processes)
 
 
 class ProgressView(Generic[R]):

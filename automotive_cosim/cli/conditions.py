@@ -9,47 +9,40 @@ from typing import Annotated, Any, TypeVar
 import typer
 
 from automotive_cosim.cli.batches import words
+from automotive_cosim.cli.derived import with_options
 from automotive_cosim.cli.options import number
-from automotive_cosim.episode.conditions import TABLE, Condition, condition
+from automotive_cosim.episode.conditions import TABLE, Condition
 from automotive_cosim.episode.own_prompt import resolved
 
 F = TypeVar("F", bound=Callable[..., Any])
 
 
 def takes_conditions(*, lists: bool = False) -> Callable[[F], F]:
-    """Gives a command an option for each condition; it gets those that were given as ``**conditions``.
+    """Gives a command an option for each condition; it gets what was given as ``**settings``.
 
     Args:
         lists: whether an option takes several values, separated by commas.
     """
-
-    def given(command: F) -> F:
-        signature = inspect.signature(command, eval_str=True)
-        own = [each for each in signature.parameters.values() if each.kind is not inspect.Parameter.VAR_KEYWORD]
-        more = [_parameter(each, lists=lists) for each in TABLE]
-        any_command: Any = command
-        any_command.__signature__ = signature.replace(parameters=[*own, *more])
-        return command
-
-    return given
+    return with_options(_parameter(each, lists=lists) for each in TABLE)
 
 
-def values_of(conditions: Mapping[str, str | None]) -> dict[str, list[Any]]:
+def values_of(settings: Mapping[str, Any]) -> dict[str, list[Any]]:
     """The values between the commas of the options that were given, by the conditions' names.
 
     Raises:
         UserError: an option is empty.
     """
-    return {
-        name: [_value(condition(name), word) for word in words(condition(name).word, text)]
-        for name, text in conditions.items()
-        if text is not None
-    }
+    return {each.name: [_value(each, word) for word in words(each.word, text)] for each, text in _told(settings)}
 
 
-def given(conditions: Mapping[str, str | None]) -> dict[str, Any]:
+def given(settings: Mapping[str, Any]) -> dict[str, Any]:
     """The values of the options that were given, by the conditions' names."""
-    return {name: _value(condition(name), text) for name, text in conditions.items() if text is not None}
+    return {each.name: _value(each, text) for each, text in _told(settings)}
+
+
+def _told(settings: Mapping[str, Any]) -> list[tuple[Condition, str]]:
+    """The conditions among what was given."""
+    return [(each, settings[each.name]) for each in TABLE if settings[each.name] is not None]
 
 
 def _value(each: Condition, word: str) -> Any:

@@ -3,55 +3,80 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable, Collection, Iterator, Mapping
-from contextlib import suppress
+import operator
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from dataclasses import MISSING, Field, fields
+from enum import EnumMeta
+from functools import partial
+from pathlib import Path
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin, get_type_hints
 
 import typer
+from annotated_types import Ge, Gt, Le, Lt
 
 from automotive_cosim.cli.batches import numbers_in, whole_numbers_in, words
+from automotive_cosim.errors import UnknownNameError
+from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.docs import inherited_field_docs
 from automotive_cosim.formats.options import option_name, shown_as
 
 F = TypeVar("F", bound=Callable[..., Any])
+T = TypeVar("T")
+
+BOUNDS = {
+    Ge: ("from", operator.ge),
+    Gt: ("above", operator.gt),
+    Le: ("to", operator.le),
+    Lt: ("below", operator.lt),
+}
+"""How a bound is told, and what keeps it."""
 
 
-def takes(kind: type, but: Collection[str] = ()) -> Callable[[F], F]:
+def takes(kind: type, *, only: Collection[str] = (), but: Collection[str] = ()) -> Callable[[F], F]:
     """Gives a command an option for each field of a dataclass; it gets what was given as ``**settings``.
 
-    Name, help, default and form follow from the field's name, docstring, default and type, or from its ``Option``.
+    Name, help, default, form and bounds follow from the field's name, docstring, default and type, or from its
+    ``Option``. A field that is true unless said otherwise has an option that denies it.
 
     Args:
         kind: the dataclass.
+        only: the fields that have an option; empty for all.
         but: fields that have no option.
     """
+    return with_options(
+        each for each in _parameters(kind) if (not only or each.name in only) and each.name not in but
+    )
+
+
+def with_options(more: Iterable[inspect.Parameter]) -> Callable[[F], F]:
+    """Gives a command further options, after those that it requires; it gets what was given by name."""
 
     def given(command: F) -> F:
         signature = inspect.signature(command, eval_str=True)
-        own = [each for each in signature.parameters.values() if each.kind is not inspect.Parameter.VAR_KEYWORD]
-        more = [each for each in _parameters(kind) if each.name not in but]
-        keyword = [each.replace(kind=inspect.Parameter.KEYWORD_ONLY) for each in own]
+        kinds = inspect.Parameter.VAR_KEYWORD, inspect.Parameter.KEYWORD_ONLY
+        own = [each.replace(kind=kinds[1]) for each in signature.parameters.values() if each.kind is not kinds[0]]
+        required = [each for each in own if each.default is inspect.Parameter.empty]
+        optional = [each for each in own if each.default is not inspect.Parameter.empty]
         any_command: Any = command
-        any_command.__signature__ = signature.replace(parameters=[*more, *keyword])
+        any_command.__signature__ = signature.replace(parameters=[*required, *more, *optional])
         return command
 
     return given
 
 
 def settings_in(kind: type, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The values of the options that were given, by the names of the fields.
-
-    Numbers are read where the field takes them; what is none stays a text, for the type's own check to refuse.
-
-    Raises:
-        UserError: an option has no value, or a list of numbers has something else.
-    """
-    hints = get_type_hints(kind, include_extras=True)
+    """The values of a type's options that were given, by the names of its fields."""
     return {
-        name: _value(name, hints[name], value) for name, value in given.items() if value not in (None, False, [])
+        each.name: _value(each, given[each.name])
+        for each in fields(kind)
+        if not any(given.get(each.name) is nothing for nothing in (None, False)) and given[each.name] != []
     }
+
+
+def filled(kind: type[T], given: Mapping[str, Any]) -> T:
+    """The type with the values of its options that were given, and its defaults for the others."""
+    return kind(**settings_in(kind, given))
 
 
 def _parameters(kind: type) -> Iterator[inspect.Parameter]:
@@ -62,19 +87,23 @@ def _parameters(kind: type) -> Iterator[inspect.Parameter]:
 
 def _parameter(each: Field[Any], hint: Any, text: str) -> inspect.Parameter:
     option, bare = shown_as(hint), _bare(hint)
-    given: Any = bool if bare is bool else list[str] if option.repeats else str
+    name, is_flag = option_name(each.name, hint), bare is bool
+    kind: Any = bool if is_flag else list[str] if option.repeats else bare if bare is Path else str
     told = option.default or _told(each.default)
+    is_denied = is_flag and each.default is True and not option.name
     made = typer.Option(
-        f"--{option_name(each.name, hint)}",
+        f"--no-{name}" if is_denied else f"--{name}",
         help=text.replace("`", ""),
-        metavar=None if bare is bool or option.repeats else _form(bare),
-        show_default=told or ("none" if option.repeats else False),
+        metavar=option.form or (None if is_flag or option.repeats else _form(bare)),
+        parser=None if is_flag or option.repeats else option.read or _reader(name, hint),
+        show_default=False if is_flag else told or ("none" if option.repeats else False),
+        rich_help_panel=option.panel,
     )
     return inspect.Parameter(
         each.name,
         inspect.Parameter.KEYWORD_ONLY,
-        default=False if bare is bool else None,
-        annotation=Annotated[given if bare is bool else given | None, made],
+        default=False if is_flag else None,
+        annotation=Annotated[kind if is_flag else kind | None, made],
     )
 
 
@@ -106,21 +135,71 @@ def _told(default: Any) -> str:
     if default is MISSING or default is None or default is False:
         return ""
     if not isinstance(default, tuple):
-        return f"{default:g}" if isinstance(default, int | float) else str(default)
+        return f"{default:g}" if isinstance(default, float) else str(default)
     if len(default) > 1 and isinstance(default[0], int) and default == (*range(default[0], default[-1] + 1),):
         return f"{default[0]}-{default[-1]}"
     return ",".join(map(_told, default))
 
 
-def _value(name: str, hint: Any, given: Any) -> Any:
+def _value(each: Field[Any], given: Any) -> Any:
+    if given is True:
+        return not each.default
+    return tuple(given) if isinstance(given, list) else given
+
+
+def _reader(name: str, hint: Any) -> Callable[[str], Any] | None:
+    """What turns a text into a value of this type; None for a text as it is."""
     bare = _bare(hint)
-    if isinstance(given, list):
-        return tuple(given)
-    if not isinstance(given, str):
-        return given
     if (item := _item(bare)) is not None:
-        read: Any = {int: whole_numbers_in, float: numbers_in}.get(item, words)
-        return tuple(read(option_name(name, hint), given))
-    with suppress(ValueError):
-        return bare(given) if bare in (int, float) else given
-    return given
+        listed: Callable[[str, str], list[Any]] = {int: whole_numbers_in, float: numbers_in}.get(item, words)  # type: ignore[assignment]
+        return lambda text: tuple(listed(name, text))
+    if isinstance(bare, EnumMeta):
+        (names,) = [each for each in _annotations(hint) if isinstance(each, OneOf)]
+        return partial(_member, bare, names)
+    if bare in (int, float):
+        return partial(_number, bare, tuple(_beside(hint)), tuple(_annotations(hint)))
+    return None
+
+
+def _member(kind: type[T], names: OneOf, text: str) -> T:
+    if text not in set(names.names):
+        raise UnknownNameError(names.what, text, names.names)
+    return kind(text)  # type: ignore[call-arg]
+
+
+def _beside(hint: Any) -> Iterator[str]:
+    """The words that a type takes beside numbers."""
+    if get_origin(hint) is Literal:
+        yield from get_args(hint)
+    elif get_origin(hint) in (Annotated, Union, UnionType):
+        for each in get_args(hint):
+            yield from _beside(each)
+
+
+def _annotations(hint: Any) -> Iterator[Any]:
+    """All annotations of a type and of the types that it is made of."""
+    yield from getattr(hint, "__metadata__", ())
+    if get_origin(hint) in (Annotated, Union, UnionType):
+        for each in get_args(hint):
+            yield from _annotations(each)
+
+
+def _number(kind: type[int | float], words_beside: tuple[str, ...], annotations: tuple[Any, ...], text: str) -> Any:
+    """A number within its bounds, or one of the words beside."""
+    if text in words_beside:
+        return text
+    bounds = [
+        (*BOUNDS[type(each)], getattr(each, type(each).__name__.lower()))
+        for each in annotations
+        if type(each) in BOUNDS
+    ]
+    try:
+        value = kind(text)
+    except ValueError:
+        value = None
+    if value is None or not all(keeps(value, bound) for _, keeps, bound in bounds):
+        within = "".join(f" {told} {_told(bound)}" for told, _, bound in bounds)
+        beside = "".join(f" nor {word}" for word in words_beside)
+        what = f"{'neither' if beside else 'not'} a {'whole number' if kind is int else 'number'}{within}{beside}"
+        raise typer.BadParameter(f"{text!r} is {what}")
+    return value

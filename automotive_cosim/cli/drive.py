@@ -3,25 +3,21 @@
 from __future__ import annotations
 
 from contextlib import closing
-from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
+from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.options import (
     AgentName,
     AsJson,
+    DriveChanges,
     Force,
-    MinutesMost,
+    LimitSettings,
     ModelName,
-    MostSeconds,
-    MostSteps,
-    MostTokens,
-    MostWallSeconds,
     Seed,
-    WithErrands,
     print_json,
 )
 from automotive_cosim.episode.conditions import Conditions
@@ -32,6 +28,8 @@ if TYPE_CHECKING:
 
 
 @takes_conditions()
+@takes(LimitSettings)
+@takes(DriveChanges)
 def drive(
     family: Annotated[
         str, typer.Argument(help="Family of the drive; `show drives` lists them.", show_default=False)
@@ -46,19 +44,13 @@ def drive(
         ),
     ] = "",
     seed: Seed = 0,
-    minutes: MinutesMost = None,
-    errands: WithErrands = False,
-    most_steps: MostSteps = None,
-    most_tokens: MostTokens = None,
-    most_seconds: MostSeconds = None,
-    most_wall_seconds: MostWallSeconds = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder for the results.", show_default="runs/<time>-<family>-<agent>-seed<seed>"),
     ] = None,
     force: Force = False,
     as_json: AsJson = False,
-    **conditions: str | None,
+    **settings: Any,
 ) -> None:
     """Run one drive of ten to thirty minutes, in which an agent keeps watch."""
     from automotive_cosim.agents import AgentSettings, make_agent
@@ -72,8 +64,9 @@ def drive(
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
 
-    under = Conditions.named(given(conditions))
-    limits = Limits().of_drives.within(most_tokens, most_seconds)
+    under = Conditions.named(given(settings))
+    limited = filled(LimitSettings, settings)
+    limits = Limits().of_drives.within(limited.most_tokens, limited.most_seconds)
     told = instructions(under.prompt)
     budget = AgentSettings(
         under, seed=seed, most_tokens=limits.tokens, most_seconds=limits.model_s, instructions=told
@@ -84,8 +77,8 @@ def drive(
         seed,
         under,
         scenario,
-        DriveSettings(minutes=minutes, errands=errands or None),
-        most_steps or limits.steps,
+        DriveSettings(**settings_in(DriveChanges, settings)),
+        limited.most_steps or limits.steps,
         agent=player.name,
         model=player.model,
     )
@@ -94,8 +87,7 @@ def drive(
     check_folder(folder, force=force)
     recorder, road = DriveRecorder(folder), RoadRecorder(folder, setup.about)
     with closing(recorder), closing(road):
-        wall_s = float(most_wall_seconds or inf)
-        record = run_drive(planned, setup, player, observers=(recorder, road), wall_s=wall_s)
+        record = run_drive(planned, setup, player, observers=(recorder, road), wall_s=limited.wall_s)
     if as_json:
         print_json({**row_json(record.row), "out": str(folder)})
         return

@@ -11,36 +11,27 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from automotive_cosim.cli.batches import (
-    ExecutorName,
+    ExecutorSettings,
     ProgressView,
-    RayAddress,
-    RaySend,
-    Workers,
     check_prices,
-    executor_of,
     forecast_in_words,
     tell_notes,
     tell_stopped,
 )
 from automotive_cosim.cli.conditions import takes_conditions, values_of
-from automotive_cosim.cli.derived import settings_in, takes
+from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.options import (
     AsJson,
-    MinutesMost,
-    MostSeconds,
-    MostSteps,
-    MostTokens,
+    DriveChanges,
+    LimitSettings,
     TasksFrom,
-    WithErrands,
-    number,
     print_json,
-    whole_number,
 )
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError
-from automotive_cosim.run.settings import EvaluationSettings
+from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -49,12 +40,14 @@ if TYPE_CHECKING:
     from automotive_cosim.run.plan import Plan
     from automotive_cosim.run.trial_row import TrialRow
 
-PICTURED = 50
-"""Evaluations of up to this many runs keep all pictures by default: few enough to look at each."""
-
 
 @takes_conditions(lists=True)
 @takes(EvaluationSettings, but=[each.name for each in TABLE])
+@takes(ExecutorSettings)
+@takes(RunSettings)
+@takes(Budget)
+@takes(DriveChanges)
+@takes(LimitSettings, but=["most_wall_seconds"])
 def evaluate(
     plan_file: Annotated[
         Path | None,
@@ -66,52 +59,6 @@ def evaluate(
             help="A set of limits: 2026 is ten steps, as in the authors' newer edition.", show_default=False
         ),
     ] = None,
-    workers: Workers = None,
-    executor: ExecutorName = "processes",
-    ray_address: RayAddress = None,
-    ray_send: RaySend = None,
-    retries: Annotated[
-        int,
-        typer.Option(
-            help="Further attempts after an infrastructure error.",
-            metavar="N",
-            parser=whole_number(0, 100),
-        ),
-    ] = 2,
-    budget_tokens: Annotated[
-        int | None,
-        typer.Option(
-            help="Stop after this many tokens to and from the models in total; rerun with more to continue.",
-            metavar="N",
-            parser=whole_number(1, 10**15),
-            show_default=False,
-        ),
-    ] = None,
-    budget_usd: Annotated[
-        float | None,
-        typer.Option(
-            help="Stop after this many US dollars, at the prices in the models' names.",
-            metavar="X",
-            parser=number(0.000001, 10**9),
-            show_default=False,
-        ),
-    ] = None,
-    pictures: Annotated[
-        str | None,
-        typer.Option(
-            help="Keep the screenshots, and the road with its vehicles, of: none, failures or all.",
-            show_default=f"all of up to {PICTURED} runs, none of more",
-        ),
-    ] = None,
-    at_least: Annotated[
-        float,
-        typer.Option(
-            help="End with 1 if a smaller share of the planned episodes succeeded, or drives score a smaller share "
-            "of 100 points; 0 to 1, as in 0.8.",
-            metavar="X",
-            parser=number(0, 1),
-        ),
-    ] = 0.0,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -119,11 +66,6 @@ def evaluate(
         ),
     ] = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
-    minutes: MinutesMost = None,
-    errands: WithErrands = False,
-    most_steps: MostSteps = None,
-    most_tokens: MostTokens = None,
-    most_seconds: MostSeconds = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
@@ -133,47 +75,43 @@ def evaluate(
     Rerun the command to resume.
     """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.errors import UnknownNameError, UserError
+    from automotive_cosim.errors import UserError
     from automotive_cosim.report.answer import answer
     from automotive_cosim.report.charts import is_installed
     from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
     from automotive_cosim.run.batch import run_plan
-    from automotive_cosim.run.collect import Pictures
     from automotive_cosim.run.coverage import unit_of
     from automotive_cosim.run.fit import misfits
     from automotive_cosim.run.forecast import forecast
-    from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan, read_plan, with_preset
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenery import open_scenario
 
-    if pictures is not None and pictures not in set(Pictures):
-        raise UnknownNameError("choice of pictures", pictures, Pictures)
-    conditions = {each.name: settings.pop(each.name) for each in TABLE}
+    running = filled(RunSettings, settings)
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
-    values |= settings_in(EvaluationSettings, settings) | values_of(conditions)
-    told = {name: value for name, value in (("minutes", minutes), ("errands", errands)) if value}
+    values |= settings_in(EvaluationSettings, settings) | values_of(settings)
+    told = settings_in(DriveChanges, settings)
     values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
     values = with_preset(values, preset) if preset is not None else values
-    own = _limits(most_steps, most_tokens, most_seconds)
+    own = _limits(filled(LimitSettings, settings))
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
-    budget = Budget(budget_tokens, budget_usd)
+    budget = filled(Budget, settings)
     plan = make_plan(values)
     folder = out or _folder(plan)
-    where = executor_of(executor, workers, ray_address, ray_send)
+    choice = filled(ExecutorSettings, settings)
+    where = choice.opened()
     console = Console(stderr=as_json, highlight=False)
     lacks, unit = plan.check(dry=dry_run), unit_of(plan.as_json())
     check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
-    kept = Pictures(pictures or (Pictures.ALL if len(plan.jobs()) <= PICTURED else Pictures.NONE))
     known = read_trials(folder) if (folder / "manifest.json").is_file() else {}
-    needs = forecast(plan.jobs(), workers or 1, known.values())
+    needs = forecast(plan.jobs(), choice.processes, known.values())
     if dry_run:
         lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
-        for line in (*forecast_in_words(needs, workers or 1), "nothing was run"):
+        for line in (*forecast_in_words(needs, choice.processes), "nothing was run"):
             console.print(line, soft_wrap=True)
         for lack in lacks:
             console.print(f"to fix before it can run: {lack}", soft_wrap=True, markup=False)
@@ -183,7 +121,7 @@ def evaluate(
     left = [job for job in plan.jobs() if job.id not in known or known[job.id].error is not None]
     if unfit := tuple(misfits(left)):
         raise UserError("; ".join(unfit))
-    for line in forecast_in_words(needs, workers or 1) if left else ():
+    for line in forecast_in_words(needs, choice.processes) if left else ():
         console.print(line, soft_wrap=True)
     with where, ProgressView(console, f"{unit}s", _said, needs.wall_s) as view:
         try:
@@ -191,8 +129,8 @@ def evaluate(
                 plan,
                 folder,
                 executor=where,
-                retries=retries,
-                pictures=kept,
+                retries=running.retries,
+                pictures=running.kept(len(plan.jobs())),
                 budget=budget,
                 tell=view.tell,
             )
@@ -227,7 +165,7 @@ def evaluate(
             f"{len(errors)} of {counted(end.planned, unit)} ended in an infrastructure error, which no rate "
             "counts as a success; rerun the command to retry them"
         )
-    if at_least and (short := _short(found, at_least)):
+    if running.at_least and (short := _short(found, running.at_least)):
         typer.echo("; ".join(short), err=True)
         raise typer.Exit(1)
 
@@ -255,12 +193,12 @@ def _named(tasks: Sequence[str]) -> str:
     return few if len(tasks) <= 3 else f"{len(tasks)} tasks, such as {few}"
 
 
-def _limits(steps: int | None, tokens: int | None, seconds: int | None) -> Json:
+def _limits(told: LimitSettings) -> Json:
     """The limits of a plan that options set, of tasks and of drives."""
     named = {
-        ("steps", "hard_steps", "drive_steps"): steps,
-        ("tokens", "drive_tokens"): tokens,
-        ("model_s", "drive_model_s"): seconds,
+        ("steps", "hard_steps", "drive_steps"): told.most_steps,
+        ("tokens", "drive_tokens"): told.most_tokens,
+        ("model_s", "drive_model_s"): told.most_seconds,
     }
     return {name: value for names, value in named.items() if value is not None for name in names}
 

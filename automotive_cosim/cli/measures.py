@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.options import number
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS, Thresholds
-
-Above = number(0.001, 10_000)
+from automotive_cosim.measures.thresholds import Thresholds
 
 
+@takes(Thresholds, only=["ttc_s", "drac_mps2", "pet_s", "range_m"])
 def measures(
     record: Annotated[
         Path,
@@ -28,18 +27,6 @@ def measures(
     readings: Annotated[
         bool, typer.Option("--readings", help="A line for each pair and second, and not for each encounter.")
     ] = False,
-    ttc: Annotated[
-        float, typer.Option(help="Time to collision from which on it is critical.", metavar="S", parser=Above)
-    ] = DEFAULT_THRESHOLDS.ttc_s,
-    drac: Annotated[
-        float, typer.Option(help="The same for the needed deceleration.", metavar="MPS2", parser=Above)
-    ] = DEFAULT_THRESHOLDS.drac_mps2,
-    pet: Annotated[
-        float, typer.Option(help="The same for the post-encroachment time.", metavar="S", parser=Above)
-    ] = DEFAULT_THRESHOLDS.pet_s,
-    reach: Annotated[
-        float, typer.Option("--range", help="How far other vehicles are looked at.", metavar="M", parser=Above)
-    ] = DEFAULT_THRESHOLDS.range_m,
     out: Annotated[
         Path | None,
         typer.Option(
@@ -47,6 +34,7 @@ def measures(
             show_default="standard output",
         ),
     ] = None,
+    **settings: Any,
 ) -> None:
     """Print the encounters of a recorded trial with their surrogate measures of safety, as CSV or Parquet."""
     from automotive_cosim.exchange.needs import check_formats
@@ -59,13 +47,16 @@ def measures(
     path = record if record.is_file() else road_in(record)
     check_formats(parquet=out is not None and out.suffix == ".parquet")
     scenes = [(second.at_s, second.vehicles) for second in read_record(path).seconds]
-    thresholds = Thresholds(ttc, drac, DEFAULT_THRESHOLDS.mdrac_mps2, pet, reach)
+    thresholds = filled(Thresholds, settings)
     ego = None if everyone else "ego"
     kind = PairReading if readings else Encounter
     rows = list(pair_readings(scenes, ego, thresholds)) if readings else encounters(scenes, ego, thresholds)
     if not rows:
         whose = "any two vehicles" if everyone else "the ego and another vehicle (--everyone looks at all pairs)"
-        typer.echo(f"no encounters within {reach:g} m in {counted(len(scenes), 'second')}, of {whose}", err=True)
+        typer.echo(
+            f"no encounters within {thresholds.range_m:g} m in {counted(len(scenes), 'second')}, of {whose}",
+            err=True,
+        )
     if out is None:
         typer.echo(as_csv(rows, kind), nl=False)
         return

@@ -13,9 +13,11 @@ from pathlib import Path
 from typing import Annotated, ParamSpec
 
 import typer
+from annotated_types import Ge, Le
 
 from automotive_cosim.cli.terminal import escaped
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.annotations import Option
 
 P = ParamSpec("P")
 
@@ -134,57 +136,37 @@ ModelName = Annotated[
         "PROVIDER/NAME.",
     ),
 ]
-MinutesMost = Annotated[
-    float | None,
-    typer.Option(
-        "--minutes",
-        help="End drives after this many simulated minutes.",
-        metavar="X",
-        parser=number(0.1, 60),
-        show_default=False,
-    ),
-]
-WithErrands = Annotated[
-    bool,
-    typer.Option("--errands", help="On drives, people aboard also ask for things, near what safety asks for."),
-]
-MostSteps = Annotated[
-    int | None,
-    typer.Option(
-        help="Actions, waits among them, after which an episode is judged as it is; a drive goes on unwatched.",
-        metavar="N",
-        parser=whole_number(1, 100_000),
-        show_default=False,
-    ),
-]
-MostTokens = Annotated[
-    int | None,
-    typer.Option(
-        help="The same for tokens to and from the model.",
-        metavar="N",
-        parser=whole_number(1, 10**9),
-        show_default="2 million; 20 million for a drive",
-    ),
-]
-MostSeconds = Annotated[
-    int | None,
-    typer.Option(
-        help="The same for the time to wait for the model in all, in seconds.",
-        metavar="N",
-        parser=whole_number(1, 10**6),
-        show_default="1800; 14400 for a drive",
-    ),
-]
-MostWallSeconds = Annotated[
-    int | None,
-    typer.Option(
-        help="The same for real time since the hand-over or the departure, in seconds.",
-        metavar="N",
-        parser=whole_number(1, 10**6),
-        show_default=False,
-    ),
-]
-"""For every command that runs an agent."""
+
+
+@dataclass(frozen=True, slots=True)
+class LimitSettings:
+    """Limits of a trial that are set otherwise; None leaves them as they are."""
+
+    most_steps: Annotated[int | None, Ge(1), Le(100_000)] = None
+    """Actions, waits among them, after which an episode is judged as it is; a drive goes on unwatched."""
+    most_tokens: Annotated[int | None, Ge(1), Le(10**9), Option(default="2 million; 20 million for a drive")] = None
+    """The same for tokens to and from the model."""
+    most_seconds: Annotated[int | None, Ge(1), Le(10**6), Option(default="1800; 14400 for a drive")] = None
+    """The same for the time to wait for the model in all, in seconds."""
+    most_wall_seconds: Annotated[int | None, Ge(1), Le(10**6)] = None
+    """The same for real time since the hand-over or the departure, in seconds."""
+
+    @property
+    def wall_s(self) -> float:
+        """Most real time in seconds."""
+        return math.inf if self.most_wall_seconds is None else float(self.most_wall_seconds)
+
+
+@dataclass(frozen=True, slots=True)
+class DriveChanges:
+    """What can be set about a drive on the command line, by the names of ``DriveSettings``."""
+
+    minutes: Annotated[float | None, Ge(0.1), Le(60)] = None
+    """End drives after this many simulated minutes."""
+    errands: bool = False
+    """On drives, people aboard also ask for things, near what safety asks for."""
+
+
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.")]
 
 
@@ -207,19 +189,6 @@ class PartOf:
     def taken(self, all_of_them: tuple[str, ...]) -> tuple[str, ...]:
         """Every Nth item, so that all parts together have every item."""
         return all_of_them[self.number - 1 :: self.of]
-
-
-def lon_lat(text: str) -> tuple[float, float]:
-    """Reads ``LON,LAT`` in degrees, without checking that it is a place on earth."""
-    try:
-        lon_deg, lat_deg = (float(part) for part in text.split(","))
-    except ValueError:
-        lon_deg = lat_deg = math.nan
-    if not (math.isfinite(lon_deg) and math.isfinite(lat_deg)):
-        raise typer.BadParameter(
-            f"--origin {text!r} is not a longitude and latitude; give degrees such as 9.19,45.46"
-        )
-    return lon_deg, lat_deg
 
 
 def tell_opening(*names: str) -> None:

@@ -5,11 +5,12 @@ from __future__ import annotations
 import secrets
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import Workers
+from automotive_cosim.cli.batches import ExecutorSettings
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results, whole_number
 from automotive_cosim.contracts.plain import counted
 
@@ -40,6 +41,7 @@ def bundle(
 
 
 @app.command()
+@takes(ExecutorSettings, only=["workers"])
 def verify(
     path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
     replays: Annotated[
@@ -61,15 +63,15 @@ def verify(
             show_default="a new one each time",
         ),
     ] = None,
-    workers: Workers = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
+    **settings: Any,
 ) -> None:
     """Check an evaluation or a bundle; exit code 1 if something does not match."""
     from automotive_cosim.publish.verify import verify as verified
 
     drawn_with = secrets.randbelow(2**31) if seed is None else seed
-    found = verified(path, replays=replays, seed=drawn_with, workers=workers or 1)
+    found = verified(path, replays=replays, seed=drawn_with, workers=filled(ExecutorSettings, settings).processes)
     if as_json:
         problems = [asdict(problem) for problem in found.problems]
         print_json({"ok": not problems, "facts": found.facts, "problems": problems, "unknown": found.unknown})
@@ -132,6 +134,7 @@ def regrade(
 
 
 @app.command()
+@takes(ExecutorSettings, only=["workers"])
 def leaderboard(
     folder: Annotated[Path, typer.Argument(help="Folder of bundles.", show_default=False)],
     out: Annotated[Path, typer.Option(help="Page to write.", show_default=False)],
@@ -139,13 +142,13 @@ def leaderboard(
         bool,
         typer.Option("--mixed-versions", help="Put all minor versions of automotive-cosim into the same tables."),
     ] = False,
-    workers: Workers = None,
     tasks_from: TasksFrom = None,
+    **settings: Any,
 ) -> None:
     """Check every bundle in a folder and write a page that compares them."""
     from automotive_cosim.publish.leaderboard import write_leaderboard
 
-    left_out = write_leaderboard(folder, out, workers=workers or 1, mixed=mixed)
+    left_out = write_leaderboard(folder, out, workers=filled(ExecutorSettings, settings).processes, mixed=mixed)
     for line in left_out:
         typer.echo(f"left out: {line}")
     typer.echo(f"{out} written")

@@ -3,33 +3,30 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
-from math import inf
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from automotive_cosim.cli.conditions import given, takes_conditions
+from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.options import (
     AgentName,
     AsJson,
     Force,
+    LimitSettings,
     ModelName,
-    MostSeconds,
-    MostSteps,
-    MostTokens,
-    MostWallSeconds,
     Seed,
     TasksFrom,
-    lon_lat,
     tell_opening,
 )
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import PLACE, GeoInput
 from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.settings import ANYWHERE, DEFAULT_TASK, EpisodeSettings
 from automotive_cosim.errors import InfrastructureError, UserError
 
 if TYPE_CHECKING:
@@ -60,21 +57,11 @@ HEADLINE = (
 PAIR_TITLES = ("Knows where it is", "The same agent, place withheld")
 PAIR_FOLDERS = ("with_place", "without_place")
 
-DEFAULT_TASK = "road_speed_80_in_50"
-ANYWHERE = "hvac_fan_max"
-"""The default task in other places than its own: it comes about wherever a car drives, the other one only where the
-right limit is posted."""
-
 
 @takes_conditions()
+@takes(LimitSettings)
+@takes(EpisodeSettings, but=["seed"])
 def run(
-    task: Annotated[
-        str | None,
-        typer.Option(
-            help="Id of the task; `tasks list` lists them.", show_default=f"{DEFAULT_TASK}, elsewhere {ANYWHERE}"
-        ),
-    ] = None,
-    half: Annotated[str, typer.Option(help="Half of a pair: first or second.")] = "first",
     agent: AgentName = "asurada",
     model: ModelName = "rules",
     tasks_from: TasksFrom = None,
@@ -89,35 +76,6 @@ def run(
         Path | None,
         typer.Option(help="File in which ASURADA remembers what worked, for later runs.", show_default=False),
     ] = None,
-    most_steps: MostSteps = None,
-    most_tokens: MostTokens = None,
-    most_seconds: MostSeconds = None,
-    most_wall_seconds: MostWallSeconds = None,
-    scenario: Annotated[
-        str | None,
-        typer.Option(
-            help="A scenario's name or folder, or any .sumocfg or .net.xml(.gz), instead of the task's own.",
-            show_default=False,
-        ),
-    ] = None,
-    from_place: Annotated[
-        str,
-        typer.Option("--from", help="Where the car's route begins: a street, an edge or LON,LAT.", metavar="PLACE"),
-    ] = "",
-    to_place: Annotated[
-        str, typer.Option("--to", help="Where the car's route ends: a street, an edge or LON,LAT.", metavar="PLACE")
-    ] = "",
-    origin: Annotated[
-        str,
-        typer.Option(
-            help="Move the centre of the network to this place, with its law, clock and climate.",
-            metavar="LON,LAT",
-            show_default=False,
-        ),
-    ] = "",
-    no_gps: Annotated[
-        bool, typer.Option("--no-gps", help="No GPS: the place is unknown, and the network needs no projection.")
-    ] = False,
     seed: Seed = 0,
     out: Annotated[
         Path | None,
@@ -137,12 +95,14 @@ def run(
             help="Play a file of actions, one JSON object per line, instead of an agent.", show_default=False
         ),
     ] = None,
-    **conditions: str | None,
+    **settings: Any,
 ) -> None:
     """Run one episode: a task, an agent, a seed.
 
     Without options, a car in Paris drives at 80 km/h where 50 is posted, and the agent is to warn the driver.
     """
+    chosen, limited = settings_in(EpisodeSettings, settings), filled(LimitSettings, settings)
+    scenario = chosen.get("scenario")
     tell_opening(*filter(None, [scenario]))
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import parts
@@ -155,9 +115,9 @@ def run(
 
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
-    limits = Limits().within(most_tokens, most_seconds)
+    limits = Limits().within(limited.most_tokens, limited.most_seconds)
     off = parts(name.strip() for name in without.split(",") if name.strip())
-    under = Conditions.named(given(conditions))
+    under = Conditions.named(given(settings))
 
     def player_under(each: Conditions) -> Agent:
         settings = AgentSettings(
@@ -169,15 +129,9 @@ def run(
     if pair:
         _check_pair(player, under)
     setup = EpisodeSetup(
-        task or _default_task(half, scenario, bool(from_place or to_place)),
-        half,
-        scenario,
-        origin=lon_lat(origin) if origin else None,
-        gps=not no_gps,
-        from_place=from_place,
-        to_place=to_place,
+        **{"task": _default_task(chosen), **chosen},
         seed=seed,
-        max_steps=most_steps,
+        max_steps=limited.most_steps,
         conditions=under,
         agent=player.name,
         model=player.model,
@@ -187,17 +141,18 @@ def run(
     folder = out or default_folder(setup, "-pair" if pair else "")
     check_folder(folder, force=force)
     arguments = {"actions": str(actions) if actions else None}
-    wall_s = inf if most_wall_seconds is None else float(most_wall_seconds)
     with closing(Simulations()) as simulations:
         if pair:
             blind = replace(under, geo=GeoInput.NONE)
             both = ((setup, player), (replace(setup, conditions=blind), player_under(blind)))
-            results, page = _recorded_pair(folder, both, simulations, wall_s=wall_s, as_json=as_json)
+            results, page = _recorded_pair(folder, both, simulations, wall_s=limited.wall_s, as_json=as_json)
         else:
-            results = [_recorded(folder, setup, player, arguments, simulations, wall_s=wall_s, as_json=as_json)]
+            results = [
+                _recorded(folder, setup, player, arguments, simulations, wall_s=limited.wall_s, as_json=as_json)
+            ]
             page = folder / "summary.html"
     has_begun = results[0].trace_sha256 is not None
-    if has_begun and task is None and setup.task == ANYWHERE:
+    if has_begun and "task" not in chosen and setup.task == ANYWHERE:
         typer.echo(f"no --task was given: this was {ANYWHERE}, which comes about on any road", err=True)
     if as_json:
         told = [{**_headline(result), "out": str(folder)} for result in results]
@@ -288,11 +243,10 @@ def _headline(result: EpisodeResult) -> Json:
     return {name: whole[name] for name in HEADLINE} | result.conditions.as_json()
 
 
-def _default_task(half: str, scenario: str | None, on_another_way: bool) -> str:
+def _default_task(chosen: Mapping[str, Any]) -> str:
     """The task without ``--task``."""
     from automotive_cosim.tasks import CATALOGUE
 
-    own = CATALOGUE[DEFAULT_TASK].half(half).start.scenario
-    if half != "first" or (scenario in (None, own) and not on_another_way):
-        return DEFAULT_TASK
-    return ANYWHERE
+    own = CATALOGUE[DEFAULT_TASK].half("first").start.scenario
+    is_there = chosen.get("scenario", own) == own and not {"from_place", "to_place"} & {*chosen}
+    return DEFAULT_TASK if is_there or chosen.get("half", "first") != "first" else ANYWHERE

@@ -7,22 +7,26 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from automotive_cosim import scenarios
 from automotive_cosim.cli.batches import tell_notes, whole_numbers_in
 from automotive_cosim.cli.calibrate import calibrate_scenario
-from automotive_cosim.cli.options import AsJson, number, print_json, tell_opening, whole_number
+from automotive_cosim.cli.derived import filled, takes
+from automotive_cosim.cli.options import AsJson, print_json, tell_opening
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
+from automotive_cosim.osm.area import Area
+from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
+from automotive_cosim.scenery.settings import EquilibriumSettings
 
 if TYPE_CHECKING:
     from rich.text import Text
 
     from automotive_cosim.contracts import Json, Tell
-    from automotive_cosim.osm import ImportReport
+    from automotive_cosim.osm.report import ImportReport
     from automotive_cosim.scenarios import Scenario
     from automotive_cosim.scenery.check import ScenarioProof
     from automotive_cosim.scenery.optimum import SystemOptimum
@@ -243,6 +247,7 @@ def render(
 
 
 @app.command("import")
+@takes(ImportOptions)
 def import_scenario(
     file: Annotated[
         Path,
@@ -251,31 +256,6 @@ def import_scenario(
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="Folder to create; by default, the scenario's name.")] = None,
-    name: Annotated[str, typer.Option(help="The scenario's name; by default, the file's.")] = "",
-    country: Annotated[
-        str, typer.Option(help="ISO 3166-1 code such as FR; by default, from the map's position.")
-    ] = "",
-    bbox: Annotated[
-        str,
-        typer.Option(metavar="W,S,E,N", help="Use only what is within this box, in degrees.", show_default="all"),
-    ] = "",
-    density: Annotated[
-        float, typer.Option(help="Vehicles per km of lane at a time if all drove freely, before scaling down.")
-    ] = 1.0,
-    seed: Annotated[
-        int,
-        typer.Option(parser=whole_number(0, 2**31 - 2), metavar="N", help="Seed of the traffic and the ego trips."),
-    ] = 0,
-    minutes: Annotated[
-        float,
-        typer.Option(
-            parser=number(1, 110), metavar="M", help="Minutes for which the traffic must flow after its warm-up."
-        ),
-    ] = 30.0,
-    quick: Annotated[
-        bool, typer.Option("--quick", help="Use light traffic, and test it for only ten minutes.")
-    ] = False,
-    force: Annotated[bool, typer.Option("--force", help="Replace the scenario in --out.")] = False,
     network: Annotated[
         Path | None,
         typer.Option(
@@ -283,6 +263,7 @@ def import_scenario(
         ),
     ] = None,
     ego: Annotated[str, typer.Option(help="For a .xosc file: the entity that is the cockpit's car.")] = "ego",
+    **settings: Any,
 ) -> None:
     """Turn an OpenStreetMap extract, or a scenario in OpenSCENARIO XML, into a scenario.
 
@@ -290,57 +271,34 @@ def import_scenario(
     for ten minutes in the scenario's own. Reading the map, building the
     network and testing the traffic take one to three minutes for a city district.
     """
-    from automotive_cosim.osm import Area, ImportOptions, import_map
-    from automotive_cosim.osm.importer import scenario_name
+    from automotive_cosim.osm.importer import import_map, scenario_name
 
+    options = filled(ImportOptions, settings)
     if file.suffix == ".xosc":
         from automotive_cosim.exchange.incoming import import_openscenario
 
         made = import_openscenario(
-            file, out or Path(name or file.stem), network, ego, country=country, replaces=force
+            file,
+            out or Path(options.name or file.stem),
+            network,
+            ego,
+            country=options.country,
+            replaces=options.replaces,
         )
         typer.echo(f"{made} written; run it with `automotive-cosim run --scenario {made}`")
         return
-    options = ImportOptions(
-        name=name,
-        country=country,
-        area=Area.parse(bbox) if bbox else None,
-        density_per_km=density,
-        seed=seed,
-        stable_for_s=60 * minutes,
-        quick=quick,
-        replace=force,
-    )
-    folder = out or Path(name or scenario_name(file))
+    name = options.name or scenario_name(file)
+    folder = out or Path(name)
     started_s = time.monotonic()
     with _progress() as tell:
         report = import_map(file, folder, options, tell)
-    _print_report(report, name or scenario_name(file), folder, time.monotonic() - started_s)
+    _print_report(report, name, folder, time.monotonic() - started_s)
 
 
 @app.command("equilibrate")
+@takes(EquilibriumSettings)
 def equilibrate_scenario(
     folder: Annotated[Path, typer.Argument(help="Folder of a scenario, or any .sumocfg.", show_default=False)],
-    gap: Annotated[
-        float, typer.Option(parser=number(0.0, 1.0), metavar="GAP", help="Relative gap at which to stop.")
-    ] = 0.02,
-    steps: Annotated[
-        int, typer.Option(parser=whole_number(1, 100), metavar="N", help="Maximum number of steps.")
-    ] = 12,
-    minutes: Annotated[
-        int,
-        typer.Option(parser=whole_number(5, 1440), metavar="M", help="Minutes of departures after the warm-up."),
-    ] = 60,
-    seed: Annotated[int, typer.Option(help="Seed of the traffic and of the drivers who change routes.")] = 0,
-    warm_up: Annotated[
-        float | None,
-        typer.Option(
-            parser=number(0.0, 86_400.0),
-            metavar="SECONDS",
-            help="Traffic before the departures that count.",
-            show_default="scenario's",
-        ),
-    ] = None,
     out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_equilibrium")] = None,
     force: Annotated[bool, typer.Option("--force", help="Replace an earlier equilibrium.")] = False,
     system_optimum: Annotated[
@@ -358,12 +316,13 @@ def equilibrate_scenario(
         ),
     ] = None,
     as_json: AsJson = False,
+    **settings: Any,
 ) -> None:
     """Give a scenario's drivers their user-equilibrium routes, found by repeated simulation.
 
     Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
     """
-    from automotive_cosim.scenery.equilibrium import AssignmentStep, Options, equilibrate
+    from automotive_cosim.scenery.equilibrium import AssignmentStep, equilibrate
     from automotive_cosim.scenery.optimum import RECORD as OPTIMUM
     from automotive_cosim.scenery.optimum import OptimumStep, compare
     from automotive_cosim.scenery.variant import check_target
@@ -381,11 +340,13 @@ def equilibrate_scenario(
             err=as_json,
         )
 
-    options = Options(steps, gap, minutes * 60.0, seed, warm_up)
+    options = filled(EquilibriumSettings, settings)
     optimum = target.with_name(f"{target.name}_optimum")
-    driven = [*range(seed + 1, seed + 11)] if seeds is None else whole_numbers_in("seeds", seeds)
-    if seed in driven or len(set(driven)) < 2:
-        raise UserError(f"--seeds is {seeds}; give two or more seeds, but not {seed}, with which the search runs")
+    driven = [*range(options.seed + 1, options.seed + 11)] if seeds is None else whole_numbers_in("seeds", seeds)
+    if options.seed in driven or len(set(driven)) < 2:
+        raise UserError(
+            f"--seeds is {seeds}; give two or more seeds, but not {options.seed}, with which the search runs"
+        )
     if system_optimum:
         check_target(optimum, OPTIMUM, force=force)  # before the equilibrium, which takes minutes
     found = equilibrate(folder, target, options, tell, force=force)
@@ -401,7 +362,7 @@ def equilibrate_scenario(
             | ({} if compared is None else compared.as_json() | {"optimum": str(optimum)})
         )
         return
-    reached = "" if best.gap.relative <= gap else f"; {gap:.1%} was not reached"
+    reached = "" if best.gap.relative <= options.gap else f"; {options.gap:.1%} was not reached"
     typer.echo(f"{target}: the demand of step {best.number}, {best.gap}{reached}")
     if compared is not None:
         typer.echo(f"{optimum}: the demand of step {compared.kept}\n")
@@ -444,8 +405,17 @@ def _print_states(found: SystemOptimum) -> None:
 
 
 @app.command("download")
+@takes(DownloadLimits)
 def download_map(
-    bbox: Annotated[str, typer.Option(metavar="W,S,E,N", help="West, south, east and north, in degrees.")],
+    bbox: Annotated[
+        Area,
+        typer.Option(
+            metavar="W,S,E,N",
+            help="West, south, east and north, in degrees.",
+            parser=Area.parse,
+            show_default=False,
+        ),
+    ],
     endpoint: Annotated[
         str,
         typer.Option(
@@ -455,25 +425,14 @@ def download_map(
         ),
     ],
     out: Annotated[Path, typer.Option(help="File to create, for `scenarios import`.")] = Path("map.osm"),
-    timeout: Annotated[
-        float, typer.Option(parser=number(1, 3600), metavar="S", help="Seconds without an answer before giving up.")
-    ] = 180.0,
-    tries: Annotated[
-        int,
-        typer.Option(parser=whole_number(1, 20), metavar="N", help="Maximum number of requests to a busy server."),
-    ] = 4,
-    max_mb: Annotated[
-        float, typer.Option(parser=number(0.001, 10_000), metavar="MB", help="Size limit of the map.")
-    ] = 500.0,
+    **settings: Any,
 ) -> None:
     """Fetch the roads of an area from an Overpass server of your choice."""
-    from automotive_cosim.osm import Area
     from automotive_cosim.osm.folder import ATTRIBUTION
-    from automotive_cosim.osm.overpass import DownloadLimits, download
+    from automotive_cosim.osm.overpass import download
 
     with _progress() as tell:
-        limits = DownloadLimits(timeout_s=timeout, tries=tries, size_mb=max_mb)
-        found = download(endpoint, Area.parse(bbox), out, limits, tell=tell)
+        found = download(endpoint, bbox, out, filled(DownloadLimits, settings), tell=tell)
     dated = f", as of {found.map_date}" if found.map_date else ""
     typer.echo(f"{out}: {megabytes_in_words(found.size_mb)}{dated}\n{ATTRIBUTION}")
     if found.note:

@@ -5,25 +5,25 @@ from __future__ import annotations
 import json
 import time
 from collections.abc import Iterator
+from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from automotive_cosim.cli.batches import (
-    ExecutorName,
-    RayAddress,
-    RaySend,
-    Workers,
+    EXECUTORS,
+    ExecutorSettings,
     check_prices,
     clock,
-    executor_of,
     forecast_in_words,
     minutes_in_words,
 )
-from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom, whole_number
+from automotive_cosim.cli.derived import filled, takes
+from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
+from automotive_cosim.safety.settings import SearchSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console as Output
@@ -44,6 +44,8 @@ SETTINGS = "search.json"
 """File of a search's folder with what it was started with."""
 
 
+@takes(SearchSettings)
+@takes(ExecutorSettings)
 def search(
     space_name: Annotated[
         str,
@@ -65,22 +67,6 @@ def search(
         ),
     ],
     model: ModelName = "rules",
-    sampler: Annotated[
-        str, typer.Option(help="How points are chosen: climb, random, sobol, lhs, grid, cma or bayes.")
-    ] = "climb",
-    seed: Annotated[
-        int, typer.Option(help="Seed of the sampler.", metavar="N", parser=whole_number(0, 2**31 - 1))
-    ] = 0,
-    failures: Annotated[
-        int,
-        typer.Option(
-            help="How many failures are reduced to what they need.", metavar="N", parser=whole_number(0, 1000)
-        ),
-    ] = 5,
-    workers: Workers = None,
-    executor: ExecutorName = "processes",
-    ray_address: RayAddress = None,
-    ray_send: RaySend = None,
     out: Annotated[
         Path | None,
         typer.Option(help="Folder; an existing one is resumed.", show_default="runs/search-<space>-<agent>"),
@@ -97,6 +83,7 @@ def search(
     ] = False,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
+    **settings: Any,
 ) -> None:
     """Search a space of situations and conditions for failures of an agent. Rerun the command to resume.
 
@@ -104,9 +91,9 @@ def search(
     After Ctrl-C the page has what was found by then.
     """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.run.meter import Budget
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.record import write_whole
+    from automotive_cosim.run.settings import Budget
     from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
     from automotive_cosim.safety.findings import as_json as findings_json
     from automotive_cosim.safety.hunt import hunt, try_carefully
@@ -115,9 +102,12 @@ def search(
     from automotive_cosim.safety.space import read_space, space_file
     from automotive_cosim.safety.trying import check_space, trial_of, trying
 
+    how, choice = filled(SearchSettings, settings), filled(ExecutorSettings, settings)
     file, may_use = space_file(space_name), SearchBudget.read(budget)
-    if sampler in ("lhs", "grid") and may_use.points is None:
-        raise UserError(f"the sampler {sampler} is laid out for a number of points; give one, as in --budget 64,2h")
+    if how.sampler in ("lhs", "grid") and may_use.points is None:
+        raise UserError(
+            f"the sampler {how.sampler} is laid out for a number of points; give one, as in --budget 64,2h"
+        )
     check_prices((model,), Budget(usd=may_use.usd))
     if may_use.points is may_use.hours is None and model.startswith(("rules", "replay/")):
         raise UserError(
@@ -133,15 +123,13 @@ def search(
         "space": file.read_text(encoding="utf-8"),
         "agent": agent,
         "model": model,
-        "sampler": sampler,
-        "seed": seed,
-        "failures": failures,
+        **asdict(how),
     }
     laid, used_s = _before(folder, about, may_use.points or LAID)
-    chooses = make_sampler(sampler, space, laid, seed)
-    where = executor_of(executor, workers, ray_address, ray_send)
-    is_parallel = executor != "processes" or (workers or 1) > 1
-    for line in _told_before(space, plan, may_use, failures, (workers or 1) if is_parallel else 1, folder):
+    chooses = make_sampler(how.sampler, space, laid, how.seed)
+    where = choice.opened()
+    is_parallel = choice.executor != EXECUTORS[0] or choice.processes > 1
+    for line in _told_before(space, plan, may_use, how.failures, choice.processes if is_parallel else 1, folder):
         console.print(line, soft_wrap=True)
     if dry_run:
         console.print("nothing was run")
@@ -178,7 +166,9 @@ def search(
         run.tell = note
         if is_parallel and run(space.nominal, 0).held:
             try:
-                run.ahead(even_points(make_sampler(sampler, space, laid, seed), min(laid, may_use.most_points)))
+                run.ahead(
+                    even_points(make_sampler(how.sampler, space, laid, how.seed), min(laid, may_use.most_points))
+                )
             except KeyboardInterrupt:
                 run.stop = "interrupted"
         try:
@@ -187,7 +177,7 @@ def search(
                 run,
                 chooses,
                 may_use.most_points,
-                most_failures=failures,
+                most_failures=how.failures,
                 tell=tell,
             )
         except UserError as error:

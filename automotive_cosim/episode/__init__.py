@@ -2,6 +2,7 @@
 
     EpisodeSpec -> SituationFinder -> HandOver -> Episode -> play(episode, actor) -> verdict
 
+settings       what to run and where, as words
 specification  what to run, and under which conditions; seeds
 observer       watches the progress of an episode
 situation      drives until a task's trigger holds, and hands over

@@ -10,8 +10,8 @@ import numpy as np
 from annotated_types import Ge, Gt, Le
 
 from automotive_cosim.episode.conditions import Conditions
+from automotive_cosim.episode.settings import EpisodeSettings
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.annotations import Latitude, Longitude
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.observe import ALL, Channel, See
@@ -64,25 +64,9 @@ class SessionSetup:
 
 
 @dataclass(frozen=True, slots=True)
-class EpisodeSpec:
+class EpisodeSpec(EpisodeSettings):
     """What to run, by name: the same specification and the same actions give the same trace."""
 
-    task: str = "road_speed_80_in_50"
-    half: str = "first"
-    """``first`` or, for a pair, ``second``."""
-    scenario: str | None = None
-    """A name, a folder, a ``.sumocfg`` or a network; None takes the task's own."""
-    origin: tuple[Longitude, Latitude] | None = None
-    """Longitude and latitude that the middle of its network is moved to, with that place's law, clock and climate;
-    the task's own date, time and weather stay. None leaves it where it is."""
-    gps: bool = True
-    """False for no GPS, so the place is unknown; a network without projection then runs too."""
-    from_place: str = ""
-    """Where the ego's route begins, instead of the task's trip: an edge, a street, ``LON,LAT``."""
-    to_place: str = ""
-    """Where it ends. If only one of the two is given, the other is drawn."""
-    seed: Annotated[int, Ge(0)] = 0
-    """Seed of the traffic, and of everything that is drawn."""
     held_out: bool = False
     """Whether the driver says the task's held-out phrasing (``tasking.instance.Instance.held_out``); otherwise any
     phrasing is drawn."""

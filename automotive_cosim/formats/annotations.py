@@ -130,6 +130,12 @@ class Option:
     """Without the dashes; empty: the field's name, without its unit."""
     default: str = ""
     """What the help shows as the default; empty: the field's default."""
+    form: str = ""
+    """What the help shows for its value; empty: what the type says."""
+    read: Callable[[str], Any] | None = None
+    """Turns what was given into the value; None: as the type says."""
+    panel: str | None = None
+    """Heading of the help below which it stands."""
     repeats: bool = False
     """Whether the option is given once for each item of a list, which may contain commas."""
 

@@ -1,5 +1,6 @@
 """OSM extract -> scenario: a map, its country's conventions and traffic that keeps flowing.
 
+    settings    what can be set about an import and a download
     overpass    fetches a map from a server, if asked to
     extract     reads any format (overpass_json: a server's), keeps the roads that cars use
     access      who may drive a road, by its access keys
@@ -26,9 +27,3 @@
 The network's edges keep the OSM tags that geo and tasks use as parameters. An edge without a ``maxspeed`` parameter
 has a limit that was assumed, not posted.
 """
-
-from automotive_cosim.osm.area import Area
-from automotive_cosim.osm.importer import ImportOptions, import_map
-from automotive_cosim.osm.report import ImportReport
-
-__all__ = ["Area", "ImportOptions", "ImportReport", "import_map"]

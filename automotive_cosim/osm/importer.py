@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -16,11 +16,11 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, ground, network, trips
-from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.demand import Demand, Journey
 from automotive_cosim.osm.report import ImportReport, make_report
 from automotive_cosim.osm.roads import describe
+from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.scenarios import Scenario, Sumo, Trip, load
 from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, Stability, Stuck, measure
 
@@ -56,28 +56,6 @@ FULL_PER_KM = 1000 / 7.5
 """Cars that fit on a kilometre of lane: SUMO's default length of 5 m and gap of 2.5 m."""
 
 
-@dataclass(frozen=True, slots=True)
-class ImportOptions:
-    """The user's options."""
-
-    name: str = ""
-    """Name of the scenario; empty takes the file's."""
-    country: str = ""
-    """ISO 3166-1 code; empty takes it from the map's position."""
-    area: Area | None = None
-    """The part of the map to use; None for all of it."""
-    density_per_km: float = 1.0
-    """Vehicles per kilometre of lane at a time if all drove freely, before scaling down."""
-    seed: int = 0
-    """Seed of the traffic and the ego trips."""
-    stable_for_s: float = 1800.0
-    """Traffic must flow this long after the warm-up."""
-    quick: bool = False
-    """Whether to take modest traffic, and try it with long steps only."""
-    replace: bool = False
-    """Whether to replace an existing scenario folder."""
-
-
 def scenario_name(source: Path) -> str:
     """A scenario's name from its extract's file name: lower case, without suffixes."""
     return trips.slug(re.sub(r"(\.(osm|pbf|xml|json|gz|bz2))+$", "", source.name)).replace("-", "_") or "map"
@@ -104,7 +82,7 @@ def import_map(
     options = replace(options, name=options.name or scenario_name(source), country=options.country.upper())
     _check(options)
     tell = on_progress or (lambda _stage, _share: None)
-    with folder.appearing(out, replaces=options.replace) as building:
+    with folder.appearing(out, replaces=options.replaces) as building:
         tell("reading the map", None)
         mapped = extract.read(source)
         if options.area is not None:
@@ -158,7 +136,7 @@ def _check(options: ImportOptions) -> None:
         raise ImportMapError(f"{options.name!r} is not a valid scenario name; use letters, digits, - and _")
     if options.country and options.country not in country_codes():
         raise ImportMapError(f"country {options.country!r} is not an ISO 3166-1 code; give two letters such as FR")
-    for what, value in (("density", options.density_per_km), ("duration", options.stable_for_s)):
+    for what, value in (("density", options.density_per_km), ("duration", options.stable_for_min)):
         if not 0 < value < math.inf:
             raise ImportMapError(f"a {what} of {value:g} is impossible; give a number above zero")
     if options.density_per_km > FULL_PER_KM:
@@ -241,7 +219,7 @@ class _Search:
         """
         self._write_demand()
         scale = QUICK_DENSITY if self._options.quick else 1.0
-        whole_s = self._options.stable_for_s
+        whole_s = 60 * self._options.stable_for_min
         short_s = min(SHORT_TRIAL_S, whole_s)
         flow = self._until_it_flows(scale, TRIAL_STEP_S, short_s if self._options.quick else whole_s)
         if not self._options.quick:

@@ -27,6 +27,7 @@ from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.ground import TAGS
+from automotive_cosim.osm.settings import DownloadLimits
 
 LARGEST_KM2 = 2500.0
 """A large city. Larger areas are available as PBF extracts."""
@@ -42,17 +43,6 @@ LONGEST_PAUSE_S = 120.0
 """Pause before the second attempt; doubled each time, unless the server says how long."""
 
 PIECE_BYTES = 1 << 16
-
-
-@dataclass(frozen=True, slots=True)
-class DownloadLimits:
-    """How patient the download is."""
-
-    timeout_s: float = 180.0
-    """Limit of the server's work, and of wall time without a byte from it."""
-    tries: int = 4
-    size_mb: float = 500.0
-    """A larger answer is refused."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from automotive_cosim.calibration import Calibration, read_calibration
 from automotive_cosim.calibration.counts import GOOD_GEH
-from automotive_cosim.calibration.result import Met
+from automotive_cosim.calibration.result import Calibration, Met, read_calibration
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render

@@ -17,10 +17,9 @@ from typing import Generic
 
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
 from automotive_cosim.run import worker
-from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
 from automotive_cosim.run.jobs import failed
-from automotive_cosim.run.meter import Budget, MeterHandle, Spent
+from automotive_cosim.run.meter import MeterHandle, Spent
 from automotive_cosim.run.pace import JobTurn, Pace
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
@@ -28,6 +27,7 @@ from automotive_cosim.run.queue import JobQueue, SimulationKey
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.row import JobRow, from_json
 from automotive_cosim.run.rows import kind_of
+from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.store import Store, cannot_write, opened
 from automotive_cosim.run.trial_row import TrialRow
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -23,20 +22,13 @@ from automotive_cosim.run.harm import overspeed
 from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.observer import Shot
+from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.tasking.dialogue import Question
 
 OVERSPEED_SCALE_MPS = 2.23
 """Mean overspeed at which compliance is zero, 5 mph: nuPlan's speed-limit metric (``max_overspeed_value``)."""
 PICTURE_QUALITY = 85
-
-
-class Pictures(StrEnum):
-    """The episodes whose screenshots are kept."""
-
-    NONE = "none"
-    FAILURES = "failures"
-    ALL = "all"
 
 
 class Collector(EpisodeObserver):

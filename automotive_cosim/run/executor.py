@@ -8,8 +8,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Protocol, TypeVar
 
-from automotive_cosim.run.meter import Budget, MeterHandle, Spent
+from automotive_cosim.run.meter import MeterHandle, Spent
 from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.settings import Budget
 
 
 class Job(Protocol):

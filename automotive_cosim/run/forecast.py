@@ -16,7 +16,7 @@ from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN
 from automotive_cosim.models.remote import Settings
 from automotive_cosim.run.jobs import DriveJob, TrialJob
-from automotive_cosim.run.meter import Budget
+from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.trial_row import TrialRow
 
 KNOWN_FROM = 3

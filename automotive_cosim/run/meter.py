@@ -16,31 +16,14 @@ from multiprocessing import AuthenticationError, connection
 from multiprocessing.connection import Connection, Listener
 from typing import Any, Protocol
 
-from automotive_cosim.errors import BudgetSpentError, InfrastructureError, UserError
+from automotive_cosim.errors import BudgetSpentError, InfrastructureError
 from automotive_cosim.models import ChatMessage, ChatModel, ModelReply
 from automotive_cosim.models.turns import LocalTurns
+from automotive_cosim.run.settings import Budget
 
 KEY_BYTES = 32
 CLOSE_S = 5.0
 """Longest wall time to end the service of a meter."""
-
-
-@dataclass(frozen=True, slots=True)
-class Budget:
-    """What an evaluation may spend on its models in total; None means no limit."""
-
-    tokens: int | None = None
-    """To and from the models."""
-    usd: float | None = None
-
-    def __post_init__(self) -> None:
-        if (self.tokens is not None and self.tokens <= 0) or (self.usd is not None and not self.usd > 0):
-            raise UserError(f"the budget is {self.tokens} tokens and {self.usd} dollars; give either above 0")
-
-    @property
-    def is_limited(self) -> bool:
-        """Whether there is a limit."""
-        return self.tokens is not None or self.usd is not None
 
 
 @dataclass(frozen=True, slots=True)

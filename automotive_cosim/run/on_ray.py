@@ -18,7 +18,8 @@ from typing import Any, Generic
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import InfrastructureError, SetupError, UserError
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
-from automotive_cosim.run.meter import Budget, Meter, MeterHandle, Spent
+from automotive_cosim.run.meter import Meter, MeterHandle, Spent
+from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.store import keep_files, stamp
 from automotive_cosim.tasking.own_files import VARIABLE
 

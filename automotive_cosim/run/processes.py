@@ -17,7 +17,8 @@ from typing import TYPE_CHECKING, Any, Generic
 
 from automotive_cosim.agents.leftovers import children, end_all, strangers, take_orphans
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
-from automotive_cosim.run.meter import Budget, Meter, MeterHandle, Spent, served
+from automotive_cosim.run.meter import Meter, MeterHandle, Spent, served
+from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import telling
 
 if TYPE_CHECKING:

@@ -27,7 +27,7 @@ from automotive_cosim.errors import (
 from automotive_cosim.formats import files
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import HASHED, canonical
-from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -40,6 +40,7 @@ from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.script import ScriptedAgent
+from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import read_evaluation, read_trace
 from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations

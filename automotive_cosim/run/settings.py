@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import StrEnum
 from typing import Annotated
 
 from annotated_types import Ge, Le, MinLen
 
 from automotive_cosim.episode.conditions import ConditionLists
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import OneOf, Option
 from automotive_cosim.tasking.sets import Split, Suite
 
@@ -49,3 +51,55 @@ class EvaluationSettings(ConditionLists):
     """Use only each task's held-out phrasing, which `rules` is not built from; otherwise any phrasing is drawn."""
     split: Annotated[str, OneOf(SPLITS, "split")] = BOTH
     """Only the episodes of one public split, by seed and phrasing: `dev` or `test`; `both` for all."""
+
+
+class Pictures(StrEnum):
+    """The episodes whose screenshots are kept."""
+
+    NONE = "none"
+    FAILURES = "failures"
+    ALL = "all"
+
+
+PICTURED = 50
+"""Evaluations of up to this many runs keep all pictures by default: few enough to look at each."""
+
+
+@dataclass(frozen=True, slots=True)
+class RunSettings:
+    """How a plan is run; whatever it is, the same rows come out."""
+
+    retries: Annotated[int, Ge(0), Le(100)] = 2
+    """Further attempts after an infrastructure error."""
+    pictures: Annotated[
+        Pictures | None,
+        OneOf(Pictures, "choice of pictures"),
+        Option(default=f"all of up to {PICTURED} runs, none of more"),
+    ] = None
+    """Keep the screenshots, and the road with its vehicles, of: none, failures or all."""
+    at_least: Annotated[float, Ge(0), Le(1)] = 0.0
+    """End with 1 if a smaller share of the planned episodes succeeded, or drives score a smaller share of 100
+    points; 0 to 1, as in 0.8."""
+
+    def kept(self, runs: int) -> Pictures:
+        """The pictures that so many runs keep."""
+        return self.pictures or (Pictures.ALL if runs <= PICTURED else Pictures.NONE)
+
+
+@dataclass(frozen=True, slots=True)
+class Budget:
+    """What an evaluation may spend on its models in total; None means no limit."""
+
+    tokens: Annotated[int | None, Ge(1), Le(10**15), Option("budget-tokens")] = None
+    """Stop after this many tokens to and from the models in total; rerun with more to continue."""
+    usd: Annotated[float | None, Ge(0.000001), Le(10**9), Option("budget-usd")] = None
+    """Stop after this many US dollars, at the prices in the models' names."""
+
+    def __post_init__(self) -> None:
+        if (self.tokens is not None and self.tokens <= 0) or (self.usd is not None and not self.usd > 0):
+            raise UserError(f"the budget is {self.tokens} tokens and {self.usd} dollars; give either above 0")
+
+    @property
+    def is_limited(self) -> bool:
+        """Whether there is a limit."""
+        return self.tokens is not None or self.usd is not None

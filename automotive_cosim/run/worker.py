@@ -13,7 +13,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.errors import CosimError
-from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.drive import DriveRecord, JudgedDrive, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.episode import EpisodeResult, run_episode
@@ -25,6 +25,7 @@ from automotive_cosim.run.moments import Judged, judged_file, write_judged, writ
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.stage import StageObserver
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.run.trial_row import TrialRow

@@ -1,5 +1,6 @@
 """The search for failures of an agent in a space of situations and conditions.
 
+settings   how a space is searched
 space      factors and their values, from a TOML file
 samplers   what to try next
 objective  by how much a trial passed or failed

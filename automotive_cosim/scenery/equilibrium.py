@@ -21,6 +21,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenery import variant
 from automotive_cosim.scenery.gap import NOTICED_S, Driven, DrivenTrip, Gap, drive, vehicle_types
 from automotive_cosim.scenery.opening import open_scenario
+from automotive_cosim.scenery.settings import EquilibriumSettings
 from automotive_cosim.traffic.options import Configuration, copied, read_configuration
 
 ROUTES = "equilibrium.rou.xml"
@@ -28,21 +29,6 @@ RECORD = "equilibrium.json"
 
 PATIENCE = 5
 """Steps without a smaller gap after which it ends."""
-
-
-@dataclass(frozen=True, slots=True)
-class Options:
-    """How to look for an equilibrium."""
-
-    steps: int = 12
-    """Most steps after the first, which drives the demand as it is."""
-    gap: float = 0.02
-    """Relative gap at which it ends."""
-    observe_s: float = 3600.0
-    """How long after the warm-up departures count; later ones are left out of the new demand."""
-    seed: int = 0
-    warm_up_s: float | None = None
-    """Traffic before the departures that count; None takes the scenario's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +67,12 @@ class Assigned:
 
 
 def equilibrate(
-    folder: Path, target: Path, options: Options, tell: Callable[[AssignmentStep], None], *, force: bool = False
+    folder: Path,
+    target: Path,
+    options: EquilibriumSettings,
+    tell: Callable[[AssignmentStep], None],
+    *,
+    force: bool = False,
 ) -> tuple[AssignmentStep, ...]:
     """Writes a copy of a scenario whose demand is the best step's; returns all steps.
 
@@ -115,7 +106,7 @@ def equilibrate(
     return steps
 
 
-def opened(folder: Path, options: Options) -> Scenario:
+def opened(folder: Path, options: EquilibriumSettings) -> Scenario:
     """The scenario, with the warm-up of the options.
 
     Raises:
@@ -131,7 +122,7 @@ def _search(
     scenario: Scenario,
     configuration: Configuration,
     types: str,
-    options: Options,
+    options: EquilibriumSettings,
     tell: Callable[[AssignmentStep], None],
     scratch: Path,
 ) -> tuple[tuple[AssignmentStep, ...], Assigned]:

@@ -26,8 +26,9 @@ import numpy as np
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError
 from automotive_cosim.scenery import variant
-from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, Options, changes, is_stuck, opened, rerouted
+from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, changes, is_stuck, opened, rerouted
 from automotive_cosim.scenery.gap import TAIL_S, DrivenTrip, EdgeTimes, drive, run, vehicle_types
+from automotive_cosim.scenery.settings import EquilibriumSettings
 from automotive_cosim.traffic.options import copied, read_configuration
 
 RECORD = "optimum.json"
@@ -104,7 +105,7 @@ class SystemOptimum:
 def compare(
     folder: Path,
     target: Path,
-    options: Options,
+    options: EquilibriumSettings,
     seeds: Sequence[int],
     tell: Callable[[OptimumStep], None],
     *,
@@ -140,7 +141,7 @@ def compare(
     return found
 
 
-def _equilibrium(folder: Path, options: Options, scratch: Path) -> Assigned:
+def _equilibrium(folder: Path, options: EquilibriumSettings, scratch: Path) -> Assigned:
     """The routes of the folder's demand."""
     scenario = opened(folder, options)
     configuration = read_configuration(scenario.config)
@@ -158,7 +159,7 @@ def _equilibrium(folder: Path, options: Options, scratch: Path) -> Assigned:
 
 
 def _search(
-    begun: Assigned, options: Options, tell: Callable[[OptimumStep], None], path: Path
+    begun: Assigned, options: EquilibriumSettings, tell: Callable[[OptimumStep], None], path: Path
 ) -> tuple[tuple[OptimumStep, ...], Assigned]:
     """All steps, and the routes of the one with the least total."""
     rng = np.random.default_rng(options.seed)
@@ -187,14 +188,16 @@ def _search(
     return tuple(steps), best
 
 
-def _driven(assigned: Assigned, path: Path, options: Options, seed: int) -> StateTotal:
+def _driven(assigned: Assigned, path: Path, options: EquilibriumSettings, seed: int) -> StateTotal:
     """What the trips take with a seed."""
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-optimum-") as scratch:
         ran = run(assigned.written(path), assigned.scenario, options.observe_s, seed, Path(scratch))
     return _total(assigned, ran.trips, ran.teleports, options)
 
 
-def _total(assigned: Assigned, trips: tuple[DrivenTrip, ...], teleports: int, options: Options) -> StateTotal:
+def _total(
+    assigned: Assigned, trips: tuple[DrivenTrip, ...], teleports: int, options: EquilibriumSettings
+) -> StateTotal:
     """The total of the trips that count: those planned after the warm-up."""
     first_s = assigned.configuration.begin_s + assigned.scenario.sumo.warm_up_s
     end_s = first_s + options.observe_s + TAIL_S

@@ -31,7 +31,6 @@ from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
-from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
@@ -39,6 +38,7 @@ from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, TrialJob
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.record import Recorder, default_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
+from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.worker import AnyTrialObserver, run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
 from automotive_cosim.serve.played import (

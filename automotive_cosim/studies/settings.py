@@ -86,7 +86,9 @@ class RerouteSettings(DrivenSettings):
         "together",
     )
 
-    departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0, 600.0, 900.0)
+    departures_s: Annotated[
+        tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1), Option(form="LIST", read=str)
+    ] = (0.0, 300.0, 600.0, 900.0)
     """When the ego departs, each time in its own copy of the traffic: seconds after the warm-up, or clock times."""
     trips: Annotated[tuple[str, ...], Option(default="all")] = ()
     """Ego trips of the scenario: names, the beginnings of names, or numbers as in `scenarios show`."""

@@ -13,10 +13,12 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim import scenarios
-from automotive_cosim.calibration import Calibration, CalibrationOptions, calibrate, read_calibration, result
+from automotive_cosim.calibration import result
+from automotive_cosim.calibration.calibrate import calibrate
 from automotive_cosim.calibration.candidates import Candidate, Candidates, Passing, passes
 from automotive_cosim.calibration.driving import HOUR_S, CountedTime, DrivenDemand, drive, passed
-from automotive_cosim.calibration.result import RECORD, Carried, Met
+from automotive_cosim.calibration.result import RECORD, Calibration, Carried, Met, read_calibration
+from automotive_cosim.calibration.settings import CalibrationOptions
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, UserError
 from automotive_cosim.report.calibration import by_hour, findings, write_page

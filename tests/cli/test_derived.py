@@ -3,28 +3,61 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields, make_dataclass
+from enum import StrEnum
 from typing import Annotated, Any, Literal
 
 import pytest
 import typer
-from annotated_types import Ge
+from annotated_types import Ge, Le
 from typer.testing import CliRunner
 
+from automotive_cosim.calibration.settings import CalibrationOptions
+from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.main import app
+from automotive_cosim.cli.options import DriveChanges, LimitSettings
+from automotive_cosim.episode.conditions import TABLE
+from automotive_cosim.episode.settings import EpisodeSettings
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.annotations import Option
+from automotive_cosim.formats.annotations import OneOf, Option
 from automotive_cosim.formats.docs import inherited_field_docs
 from automotive_cosim.formats.options import option
+from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
+from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
+from automotive_cosim.safety.settings import SearchSettings
+from automotive_cosim.scenery.settings import EquilibriumSettings
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings, SuiteSettings
 from tests.laws import over
 
-COMMANDS = {
-    "reroute": (RerouteSettings, ()),
-    "suite": (SuiteSettings, ("scenario", "warm_up_s")),
-    "congestion": (CongestionSettings, ()),
-    "days": (DaysSettings, ()),
-}
+COMMANDS = (
+    ("run", EpisodeSettings, {"seed"}),
+    ("run", LimitSettings, set()),
+    ("drive", LimitSettings, set()),
+    ("drive", DriveChanges, set()),
+    ("eval", EvaluationSettings, {each.name for each in TABLE}),
+    ("eval", RunSettings, set()),
+    ("eval", Budget, set()),
+    ("eval", ExecutorSettings, set()),
+    ("eval", LimitSettings, {"most_wall_seconds"}),
+    ("search", SearchSettings, set()),
+    ("search", ExecutorSettings, set()),
+    ("scenarios import", ImportOptions, set()),
+    ("scenarios download", DownloadLimits, set()),
+    ("scenarios equilibrate", EquilibriumSettings, set()),
+    ("scenarios calibrate", CalibrationOptions, set()),
+    ("study reroute", RerouteSettings, set()),
+    ("study suite", SuiteSettings, {"scenario", "warm_up_s"}),
+    ("study congestion", CongestionSettings, set()),
+    ("study days", DaysSettings, set()),
+)
+"""Commands, what they can be told, and the fields of it that are no options."""
+
+
+class Tone(StrEnum):
+    """How one may greet."""
+
+    KIND = "kind"
+    CURT = "curt"
 
 
 @dataclass(frozen=True)
@@ -45,6 +78,12 @@ class Settings:
     """A word; may be repeated."""
     loud: bool = False
     """Whether it is loud."""
+    waves: bool = True
+    """Without it, nobody waves."""
+    volume: Annotated[int, Ge(1), Le(11)] = 5
+    """How loud."""
+    tone: Annotated[Tone, OneOf(Tone, "tone of voice")] = Tone.KIND
+    """How it sounds."""
 
 
 def told(*arguments: str) -> tuple[dict[str, Any], str]:
@@ -66,7 +105,10 @@ def test_what_was_not_given_stays_the_types_own() -> None:
 
 
 def test_each_form_is_read_as_its_field_has_it() -> None:
-    line = "--whom Eva --wait 3 --often auto --seeds 0-2,7 --shares 0.5,1 --word a,b --word c --loud --name x"
+    line = (
+        "--whom Eva --wait 3 --often auto --seeds 0-2,7 --shares 0.5,1 --word a,b --word c --loud --no-waves "
+        "--volume 11 --tone curt --name x"
+    )
     assert told(*line.split())[0] == {
         "whom": "Eva",
         "wait_s": 3.0,
@@ -75,6 +117,9 @@ def test_each_form_is_read_as_its_field_has_it() -> None:
         "shares": (0.5, 1.0),
         "words": ("a,b", "c"),
         "loud": True,
+        "waves": False,
+        "volume": 11,
+        "tone": Tone.CURT,
         "name": "x",
     }
 
@@ -92,6 +137,29 @@ def test_lists_of_numbers_refuse_anything_else() -> None:
         told("--seeds", "x")
 
 
+def test_a_zero_that_was_given_is_kept() -> None:
+    assert told("--wait", "0", "--seeds", "0")[0] == {"wait_s": 0.0, "seeds": (0,), "name": "nobody"}
+
+
+@pytest.mark.parametrize(
+    ("option", "value", "why"),
+    [
+        ("--volume", "12", "'12' is not a whole number from 1 to 11"),
+        ("--volume", "loud", "'loud' is not a whole number from 1 to 11"),
+        ("--volume", "2.5", "'2.5' is not a whole number from 1 to 11"),
+        ("--wait", "nan", "'nan' is not a number from 0"),
+        ("--often", "never", "'never' is neither a whole number nor auto"),
+    ],
+)
+def test_a_value_beyond_the_bounds_is_refused(option: str, value: str, why: str) -> None:
+    assert why in " ".join(told(option, value)[1].replace("│", " ").split())
+
+
+def test_a_word_that_is_no_member_is_refused() -> None:
+    with pytest.raises(UserError, match="tone of voice"):
+        told("--tone", "cold")
+
+
 def test_a_new_field_is_an_option_by_itself() -> None:
     more = make_dataclass("More", [("new_thing_s", float, 1.0)], bases=(Settings,), frozen=True)
     more.__field_docs__ = {"new_thing_s": "A new thing."}  # type: ignore[attr-defined]
@@ -100,12 +168,11 @@ def test_a_new_field_is_an_option_by_itself() -> None:
     assert CliRunner().invoke(one, ["--new-thing", "4"]).output.strip() == "{'new_thing_s': 4.0}"
 
 
-@over(
-    (name, field.name) for name, (kind, but) in COMMANDS.items() for field in fields(kind) if field.name not in but
-)
-def test_every_setting_of_a_study_is_an_option(name: str, field: str) -> None:
-    command = typer.main.get_command(app).commands["study"].commands[name]  # type: ignore[attr-defined]
+@over((*case[:2], field.name) for case in COMMANDS for field in fields(case[1]) if field.name not in case[2])
+def test_every_setting_is_an_option(name: str, kind: type, field: str) -> None:
+    command: Any = typer.main.get_command(app)
+    for word in name.split():
+        command = command.commands[word]
     (found,) = [each for each in command.params if each.name == field]
-    kind = COMMANDS[name][0]
-    assert found.opts == [option(kind, field)]
+    assert found.opts[0].replace("--no-", "--") == option(kind, field)
     assert found.help == inherited_field_docs(kind)[field].replace("`", "")

@@ -30,11 +30,11 @@ from automotive_cosim.doors.assessment import CONFIG, read_assessment
 from automotive_cosim.doors.guard import MOST_BYTES
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan
-from automotive_cosim.run.collect import Pictures
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.meter import Budget, Spent
+from automotive_cosim.run.meter import Spent
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.settings import Budget, Pictures
 from automotive_cosim.run.worker import run_job
 from automotive_cosim.traffic.fork import Simulations
 from tests.laws import over

@@ -10,7 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.osm import ImportOptions, ImportReport, import_map
+from automotive_cosim.osm.importer import import_map
+from automotive_cosim.osm.report import ImportReport
+from automotive_cosim.osm.settings import ImportOptions
 from tests.osm.maps import ORIGIN, Map
 
 
@@ -92,7 +94,7 @@ def formats(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
 @pytest.fixture(scope="session")
 def quick() -> ImportOptions:
     """Options under which an import tries the traffic for two minutes only."""
-    return ImportOptions(stable_for_s=120.0, density_per_km=0.4)
+    return ImportOptions(stable_for_min=2.0, density_per_km=0.4)
 
 
 @pytest.fixture(scope="session")

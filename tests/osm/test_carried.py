@@ -10,7 +10,8 @@ import pytest
 
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import shipped
-from automotive_cosim.osm import Area, extract, network
+from automotive_cosim.osm import extract, network
+from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import describe
 from automotive_cosim.traffic.congestion import Route

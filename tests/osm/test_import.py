@@ -15,9 +15,12 @@ from shapely import Polygon
 from automotive_cosim.contracts import GroundKind, LimitSource
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.geo.place import shipped
-from automotive_cosim.osm import ImportOptions, ImportReport, demand, extract, import_map
+from automotive_cosim.osm import demand, extract
 from automotive_cosim.osm.agreement import of_edges
+from automotive_cosim.osm.importer import import_map
+from automotive_cosim.osm.report import ImportReport
 from automotive_cosim.osm.roads import describe
+from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.scenarios import load
 from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.traffic import sumo_programs
@@ -208,7 +211,7 @@ def test_a_folder_is_replaced_only_if_asked_and_only_a_scenarios(
     other = tmp_path / "letters"
     other.mkdir()
     (other / "love.txt").write_text("dear")
-    for options in (quick, replace(quick, replace=True)):
+    for options in (quick, replace(quick, replaces=True)):
         with pytest.raises(ImportMapError, match="--out"):
             import_map(formats[""], other, options)
     assert _contents(other) == {"love.txt": b"dear"}
@@ -217,7 +220,7 @@ def test_a_folder_is_replaced_only_if_asked_and_only_a_scenarios(
     (scenario / "note.txt").write_text("old")
     with pytest.raises(ImportMapError, match="--force"):
         import_map(formats[""], scenario, quick)
-    import_map(formats[""], scenario, replace(quick, replace=True))
+    import_map(formats[""], scenario, replace(quick, replaces=True))
     assert not (scenario / "note.txt").exists()
     assert sorted(path.name for path in tmp_path.iterdir()) == ["letters", "scenario"]
 
@@ -241,7 +244,7 @@ def test_a_failed_import_leaves_nothing_and_harms_nothing(
         raise failure
 
     monkeypatch.setattr(demand, "write", fail)
-    for options, target in ((replace(quick, replace=True), out), (quick, tmp_path / "new")):
+    for options, target in ((replace(quick, replaces=True), out), (quick, tmp_path / "new")):
         with pytest.raises((ImportMapError, KeyboardInterrupt)):
             import_map(formats[""], target, options)
     assert _contents(out) == before

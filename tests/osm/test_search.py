@@ -14,7 +14,8 @@ import pytest
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.geo.place import Place
 from automotive_cosim.osm import importer
-from automotive_cosim.osm.importer import HALTED_SHARE_AIM, SCALE_MIN, SHORT_TRIAL_S, TRIALS, ImportOptions
+from automotive_cosim.osm.importer import HALTED_SHARE_AIM, SCALE_MIN, SHORT_TRIAL_S, TRIALS
+from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.traffic.stability import Stability, Stuck
 
 OWN_STEP_S = 0.1
@@ -63,7 +64,7 @@ def test_the_search_is_bounded_and_ends_near_the_answer(scale_max: float, monkey
     assert flow.step_length_s == OWN_STEP_S
     assert len(searched.trials) <= TRIALS
     assert searched.trials[-1] == (flow.scale, OWN_STEP_S, SHORT_TRIAL_S)
-    assert (flow.scale, 1.0, ImportOptions().stable_for_s) in searched.trials, "half an hour, in long steps"
+    assert (flow.scale, 1.0, 60 * ImportOptions().stable_for_min) in searched.trials, "half an hour, in long steps"
     assert (len(journeys), stuck) == (1000, ())
 
 

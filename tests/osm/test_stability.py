@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import ScenarioError, TrafficError
-from automotive_cosim.osm import ImportReport
+from automotive_cosim.osm.report import ImportReport
 from automotive_cosim.scenarios import load
 from automotive_cosim.traffic import stability
 from automotive_cosim.traffic.stability import BACKLOG_SHARE_LIMIT, HALTED_SHARE_LIMIT, Stability, Stuck, measure

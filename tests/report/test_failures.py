@@ -14,10 +14,11 @@ from automotive_cosim.contracts import Action, ActionType, AlertKind, Direction,
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.failures import FailureClass, failure_class
-from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.episode_row import PartsHeld
 from automotive_cosim.run.jobs import EpisodeJob, Limits
+from automotive_cosim.run.settings import Pictures
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations

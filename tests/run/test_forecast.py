@@ -5,8 +5,8 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.run.forecast import asks, expected, forecast
-from automotive_cosim.run.meter import Budget
 from automotive_cosim.run.plan import make_plan
+from automotive_cosim.run.settings import Budget
 
 PRICED = "nowhere/m?usd_per_million_in=2&usd_per_million_out=8"
 GRID = {"tasks": ["hvac_fan_max", "hvac_driver_seat_heater"], "scenarios": ["grid"], "seeds": [0, 1]}

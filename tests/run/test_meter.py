@@ -18,10 +18,11 @@ from automotive_cosim.models import ChatMessage, ModelReply
 from automotive_cosim.models.turns import LocalTurns
 from automotive_cosim.run.batch import SPENT, run_plan
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.meter import Budget, Meter, MeterClient, Metered, Spent, served
+from automotive_cosim.run.meter import Meter, MeterClient, Metered, Spent, served
 from automotive_cosim.run.plan import Plan, make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady
+from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.store import read_rows
 
 ASK = [ChatMessage("user", "hi")]

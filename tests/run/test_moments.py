@@ -22,12 +22,13 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.run.batch import run_plan
-from automotive_cosim.run.collect import Collector, Pictures
+from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
 from automotive_cosim.run.moments import MOVED, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
+from automotive_cosim.run.settings import Pictures
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.tasks import CATALOGUE

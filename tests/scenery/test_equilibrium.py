@@ -11,8 +11,9 @@ import pytest
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UserError
 from automotive_cosim.scenery import optimum
-from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, Options, equilibrate, is_stuck
+from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, equilibrate, is_stuck
 from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes, Gap, measure
+from automotive_cosim.scenery.settings import EquilibriumSettings
 from automotive_cosim.scenery.variant import settings
 from automotive_cosim.traffic import sumo_programs
 
@@ -134,7 +135,7 @@ def two_ways(tmp_path: Path, drawn: Mapping[str, tuple[str, str, float, int]], r
 def test_drivers_find_the_other_way(jammed: Path, tmp_path: Path) -> None:
     told: list[AssignmentStep] = []
     target = tmp_path / "found"
-    steps = equilibrate(jammed, target, Options(steps=4, gap=0.01, observe_s=900.0), told.append)
+    steps = equilibrate(jammed, target, EquilibriumSettings(steps=4, gap=0.01, minutes=15), told.append)
     assert tuple(told) == steps
     assert steps[0].gap.relative > 0.05, "all are on one way"
     best = min(step.gap.relative for step in steps)
@@ -144,10 +145,10 @@ def test_drivers_find_the_other_way(jammed: Path, tmp_path: Path) -> None:
     routes = (target / "equilibrium.rou.xml").read_text()
     assert routes.count("access out back exit") > 50
     assert routes.count("<vehicle ") == steps[0].gap.trips + steps[0].gap.unfinished
-    again = measure(scenarios.load(target), observe_s=900.0)
+    again = measure(scenarios.load(target), minutes=15)
     assert again.relative == pytest.approx(best), "the folder is the step that was kept"
     with pytest.raises(UserError, match="exists"):
-        equilibrate(jammed, target, Options(), told.append)
+        equilibrate(jammed, target, EquilibriumSettings(), told.append)
 
 
 def test_others_lose_by_what_a_road_takes_longer_than_when_it_is_calm() -> None:
@@ -174,7 +175,7 @@ def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, t
     }
     folder = two_ways(tmp_path, longer, "access main neck exit", 2.0)
     found, target = tmp_path / "found", tmp_path / "optimum"
-    options = Options(steps=6, gap=0.01, observe_s=900.0)
+    options = EquilibriumSettings(steps=6, gap=0.01, minutes=15)
     equilibrate(folder, found, options, lambda step: None)
     told: list[optimum.OptimumStep] = []
     compared = optimum.compare(found, target, options, (1, 2, 3), told.append, force=False)
@@ -196,5 +197,5 @@ def test_demand_that_would_be_lost_is_refused(jammed: Path, tmp_path: Path) -> N
     demand = jammed / "two.rou.xml"
     demand.write_text(demand.read_text().replace("</routes>", '<person id="p" depart="0"></person></routes>'))
     with pytest.raises(UserError, match="<person>"):
-        equilibrate(jammed, tmp_path / "found", Options(), lambda step: None)
+        equilibrate(jammed, tmp_path / "found", EquilibriumSettings(), lambda step: None)
     assert not (tmp_path / "found").exists()

@@ -663,8 +663,6 @@ def test_the_command_says_when_nothing_counts(two_ways: Draw, tmp_path: Path) ->
         (["--seeds", "a"], "--seeds"),
         (["--shares", ""], "--shares is empty"),
         (["--policies", "delay:soon"], "delay:60"),
-        (["--replicates", "many"], "'auto'"),
-        (["--replicates", "0"], "'auto'"),
         (["--scenario", "atlantis"], "atlantis"),
     ],
 )
@@ -672,6 +670,12 @@ def test_bad_input_is_told(words: list[str], said: str) -> None:
     text, error = invoke("reroute", "--dry-run", *words)
     assert isinstance(error, UserError), text
     assert said in str(error)
+
+
+@pytest.mark.parametrize("given", ["many", "0"])
+def test_the_bounds_of_a_number_are_told_with_the_word_beside(given: str) -> None:
+    text, _ = invoke("reroute", "--dry-run", "--replicates", given)
+    assert f"'{given}' is neither a whole number from 1 to 100 nor auto" in " ".join(text.replace("│", " ").split())
 
 
 def test_a_folder_that_is_no_study_is_refused(tmp_path: Path) -> None:

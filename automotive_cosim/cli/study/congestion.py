@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-from automotive_cosim.cli.batches import ExecutorName, RayAddress, RaySend, Workers, executor_of, tell_notes
-from automotive_cosim.cli.derived import settings_in, takes
+from automotive_cosim.cli.batches import ExecutorSettings, tell_notes
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson
 from automotive_cosim.cli.study.shared import StudyFolder, driven, folder_of, tell_reading, tell_whole
 from automotive_cosim.contracts.plain import counted
@@ -13,11 +13,8 @@ from automotive_cosim.studies.settings import CongestionSettings
 
 
 @takes(CongestionSettings)
+@takes(ExecutorSettings)
 def congestion(
-    workers: Workers = None,
-    executor: ExecutorName = "processes",
-    ray_address: RayAddress = None,
-    ray_send: RaySend = None,
     out: StudyFolder = None,
     as_json: AsJson = False,
     **settings: Any,
@@ -33,12 +30,12 @@ def congestion(
     from automotive_cosim.studies.congestion.results import read_congestion
     from automotive_cosim.studies.congestion.tables import whole
 
-    plan = CongestionPlan(**settings_in(CongestionSettings, settings))
+    plan = filled(CongestionPlan, settings)
     tell_reading(plan.scenario)
     plan.check()
     tell_notes([plan.opened])
     folder = out or folder_of(plan)
-    where = executor_of(executor, workers, ray_address, ray_send)
+    where = filled(ExecutorSettings, settings).opened()
     console = Console(stderr=as_json, highlight=False)
     measures, over = counted(len(plan.measures), "measure"), counted(len(plan.seeds), "seed")
     console.print(

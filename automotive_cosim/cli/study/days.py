@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from automotive_cosim.cli.batches import ExecutorName, RayAddress, RaySend, Workers, executor_of
-from automotive_cosim.cli.derived import settings_in, takes
+from automotive_cosim.cli.batches import ExecutorSettings
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson
 from automotive_cosim.cli.study.shared import StudyFolder, driven, folder_of, tell_reading, tell_whole
 from automotive_cosim.studies.settings import DaysSettings
 
 
 @takes(DaysSettings)
+@takes(ExecutorSettings)
 def days(
-    workers: Workers = None,
-    executor: ExecutorName = "processes",
-    ray_address: RayAddress = None,
-    ray_send: RaySend = None,
     out: StudyFolder = None,
     as_json: AsJson = False,
     **settings: Any,
@@ -29,11 +26,11 @@ def days(
     from automotive_cosim.studies.days import DaysPlan, read_days, run_days
     from automotive_cosim.studies.days_page import answer, tables, warnings, write_days
 
-    plan = DaysPlan(**settings_in(DaysSettings, settings))
+    plan = filled(DaysPlan, settings)
     tell_reading(plan.scenario)
     plan.check()
     folder = out or folder_of(plan)
-    where = executor_of(executor, workers, ray_address, ray_send)
+    where = filled(ExecutorSettings, settings).opened()
     console = Console(stderr=as_json, highlight=False)
     with where, driven(console, "shares and seeds", folder) as tell:
         run_days(plan, folder, executor=where, tell=tell)

@@ -10,16 +10,12 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from automotive_cosim.cli.batches import (
-    ExecutorName,
-    RayAddress,
-    RaySend,
-    Workers,
-    executor_of,
+    ExecutorSettings,
     numbers_in,
     tell_notes,
     words,
 )
-from automotive_cosim.cli.derived import settings_in, takes
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson
 from automotive_cosim.cli.study.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
 from automotive_cosim.contracts import Json
@@ -36,14 +32,11 @@ if TYPE_CHECKING:
 
 
 @takes(RerouteSettings)
+@takes(ExecutorSettings)
 def reroute(
     measure_gap: Annotated[
         bool, typer.Option(help="Measure how far the demand's routes are from an equilibrium.")
     ] = True,
-    workers: Workers = None,
-    executor: ExecutorName = "processes",
-    ray_address: RayAddress = None,
-    ray_send: RaySend = None,
     out: StudyFolder = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     as_json: AsJson = False,
@@ -63,14 +56,14 @@ def reroute(
     from automotive_cosim.studies.rows import DriveRow
 
     departures = settings.pop("departures_s")
-    plan = StudyPlan(**settings_in(RerouteSettings, settings))
+    plan = filled(StudyPlan, settings)
     tell_reading(plan.scenario)
     if departures is not None:
         plan = replace(plan, departures_s=_departures(plan.scenario, departures))
     plan.check()
     tell_notes([plan.opened])
     folder = out or folder_of(plan)
-    where = executor_of(executor, workers, ray_address, ray_send)
+    where = filled(ExecutorSettings, settings).opened()
     console = Console(stderr=as_json, highlight=False)
     _announce(console, plan, folder)
     if dry_run:

@@ -9,8 +9,8 @@ from typing import Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.batches import Workers, executor_of
-from automotive_cosim.cli.derived import settings_in, takes
+from automotive_cosim.cli.batches import ExecutorSettings
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError
@@ -18,8 +18,8 @@ from automotive_cosim.studies.settings import SuiteSettings
 
 
 @takes(SuiteSettings, but=("scenario", "warm_up_s"))
+@takes(ExecutorSettings)
 def suite(
-    workers: Workers = None,
     out: Annotated[Path, typer.Option(help="Folder for all studies; existing ones are resumed.")] = Path(
         "runs/suite"
     ),
@@ -38,7 +38,7 @@ def suite(
     from automotive_cosim.studies.results import read_study
     from automotive_cosim.studies.suite import folder_name, networks, write_networks
 
-    told = SuiteSettings(**settings_in(SuiteSettings, settings))
+    told = filled(SuiteSettings, settings)
     plans = [
         StudyPlan(name, warm_up_s=warm_up_s, **told.of_each())
         for name in _all_of(told.scenarios)
@@ -46,7 +46,7 @@ def suite(
     ]
     for plan in plans:
         plan.check()
-    where = executor_of("processes", workers, None, None)
+    where = filled(ExecutorSettings, settings).opened()
     console = Console(stderr=as_json, highlight=False)
     found = []
     with where:
