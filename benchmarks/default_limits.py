@@ -19,12 +19,12 @@ from typing import Any, NamedTuple
 
 from automotive_cosim.geo.applied import AppliedRule, limits
 from automotive_cosim.geo.place import Atlas, Place, shipped
-from automotive_cosim.geo.situation import COUNTRY_ROAD, Situation
+from automotive_cosim.geo.rulefacts import COUNTRY_ROAD, RuleFacts
 from automotive_cosim.geo.text import KM_PER_MILE
 
 MOTORWAY = replace(COUNTRY_ROAD, road_class="motorway", motorway=True, dual_carriageway=True, lanes=2)
 DUAL = replace(COUNTRY_ROAD, road_class="trunk", dual_carriageway=True, lanes=2)
-ROADS: Mapping[str, Situation] = {
+ROADS: Mapping[str, RuleFacts] = {
     "living street": replace(COUNTRY_ROAD, road_class="living_street", built_up=True),
     "urban": replace(COUNTRY_ROAD, built_up=True),
     "rural": COUNTRY_ROAD,

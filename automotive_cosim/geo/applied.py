@@ -15,8 +15,8 @@ from automotive_cosim.contracts import (
     Weather,
 )
 from automotive_cosim.geo.place import Place
+from automotive_cosim.geo.rulefacts import RuleFacts, Test
 from automotive_cosim.geo.rules import TOPICS, Rule, Value
-from automotive_cosim.geo.situation import Situation, Test
 from automotive_cosim.geo.sun import Sun
 from automotive_cosim.geo.weather import phenomena
 
@@ -45,7 +45,7 @@ class AppliedRule:
     value: Value | None
     """Its answer now; None if it does not apply now."""
     certain: bool
-    """False if the situation does not determine the answer."""
+    """False if the facts do not determine the answer."""
 
 
 def built_up(road: RoadHere, place: Place) -> tuple[bool | None, str]:
@@ -67,17 +67,17 @@ def _dual_carriageway(road: RoadHere) -> bool | None:
     return False
 
 
-def situation_at(
+def facts_at(
     driving: DrivingState,
     gps: GpsFix | None,
     weather: Weather | None,
     local_time: datetime,
     sun: Sun | None,
     is_built_up: bool | None,
-) -> Situation:
+) -> RuleFacts:
     """The input of rules: everything known about an instant."""
     road, around = driving.road, driving.around
-    return Situation(
+    return RuleFacts(
         local_time=local_time,
         lon_deg=gps.lon_deg if gps else None,
         lat_deg=gps.lat_deg if gps else None,
@@ -101,33 +101,33 @@ def situation_at(
     )
 
 
-def _applied(rule: Rule, jurisdiction: str, situation: Situation) -> AppliedRule:
-    return AppliedRule(rule, jurisdiction, *rule.answer(situation))
+def _applied(rule: Rule, jurisdiction: str, facts: RuleFacts) -> AppliedRule:
+    return AppliedRule(rule, jurisdiction, *rule.answer(facts))
 
 
-def limits(place: Place, situation: Situation) -> Iterator[AppliedRule]:
+def limits(place: Place, facts: RuleFacts) -> Iterator[AppliedRule]:
     """The limits that this road may have, without those that an earlier one rules out.
 
     A limit that lowers signs is ruled out by its own layer only: fog also slows a street with a city's limit. On a
     road of ``OWN_LAW``, rules about its class come before all others, even those of a city; without one, no limit
     is certain.
     """
-    own = situation.road_class in OWN_LAW
+    own = facts.road_class in OWN_LAW
     named = own and any(
-        _names(rule, situation.road_class) and rule.may_apply(situation) is not False
+        _names(rule, facts.road_class) and rule.may_apply(facts) is not False
         for layer in place.layers
         for rule in layer.by_topic.get("limit", ())
     )
     doubts: list[frozenset[Test]] = []
     for layer in place.layers:
         for rule in layer.by_topic.get("limit", ()):
-            about_it = _names(rule, situation.road_class)
-            if rule.may_apply(situation) is False or (named and rule.fixed and not about_it):
+            about_it = _names(rule, facts.road_class)
+            if rule.may_apply(facts) is False or (named and rule.fixed and not about_it):
                 continue
-            doubt = frozenset(test for test in rule.tests if test.fixed and test.holds(situation) is None)
+            doubt = frozenset(test for test in rule.tests if test.fixed and test.holds(facts) is None)
             ruled_out = any(earlier <= doubt for earlier in doubts)
             if not ruled_out or rule.caps:
-                found = _applied(rule, layer.code, situation)
+                found = _applied(rule, layer.code, facts)
                 yield replace(found, certain=False) if own and rule.fixed and not about_it else found
             if rule.fixed:
                 doubts.append(doubt)
@@ -140,13 +140,13 @@ def _names(rule: Rule, road_class: str) -> bool:
     return any(test.word == "road_classes" and road_class in test.argument for test in rule.tests)
 
 
-def other_rules(place: Place, situation: Situation) -> Iterator[AppliedRule]:
+def other_rules(place: Place, facts: RuleFacts) -> Iterator[AppliedRule]:
     """By topic, the rules of the innermost layer that has one for this road."""
     for topic in TOPICS:
         if topic == "limit":
             continue
         for layer in place.layers:
-            applied = [rule for rule in layer.by_topic.get(topic, ()) if rule.may_apply(situation) is not False]
-            yield from (_applied(rule, layer.code, situation) for rule in applied)
+            applied = [rule for rule in layer.by_topic.get(topic, ()) if rule.may_apply(facts) is not False]
+            yield from (_applied(rule, layer.code, facts) for rule in applied)
             if applied:
                 break

@@ -13,8 +13,8 @@ from datetime import date
 from functools import cache
 from importlib.resources import files
 
+from automotive_cosim.geo.rulefacts import Test
 from automotive_cosim.geo.rules import Case, Jurisdiction, Rule, Status
-from automotive_cosim.geo.situation import Test
 
 WITHOUT_ROADS = frozenset(("AQ", "BV", "HM", "TF"))
 """Antarctica, Bouvet Island, Heard and McDonald Islands, French Southern Territories: they have no public roads."""

@@ -13,12 +13,12 @@ from datetime import datetime
 from functools import cached_property
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, GpsFix, RoadHere, Weather
-from automotive_cosim.geo.applied import AppliedRule, built_up, limits, other_rules, situation_at
+from automotive_cosim.geo.applied import AppliedRule, built_up, facts_at, limits, other_rules
 from automotive_cosim.geo.climate import ClimateNorm, climate_norm
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.geo.relevance import can_matter
+from automotive_cosim.geo.rulefacts import RuleFacts
 from automotive_cosim.geo.rules import TOPICS, Rule, Value
-from automotive_cosim.geo.situation import Situation
 from automotive_cosim.geo.sun import Sun, sun_at
 from automotive_cosim.geo.text import BUDGET_TOKENS, KM_PER_MILE, Line, amount_of_speed, position, within_budget
 from automotive_cosim.geo.weather import visibility_class
@@ -105,7 +105,7 @@ class GeoContext:
     @cached_property
     def rules(self) -> tuple[AppliedRule, ...]:
         """The other topics, in the order of ``rules.TOPICS``."""
-        return tuple(other_rules(self.place, self._situation))
+        return tuple(other_rules(self.place, self._facts))
 
     @property
     def country(self) -> str:
@@ -136,7 +136,7 @@ class GeoContext:
         """The lines that can matter here and now, and one that names the topics of the others."""
         air_c = None if self.weather is None else self.weather.temperature_2m
         told = [found.rule for found in self.rules if not found.rule.on_request]
-        left = [rule for rule in told if not can_matter(rule.topic, self._situation, air_c)]
+        left = [rule for rule in told if not can_matter(rule.topic, self._facts, air_c)]
         ids = {rule.id for rule in left} | {found.rule.id for found in self.rules if found.rule.on_request}
         kept = tuple(line for line in self.lines if line.source not in ids)
         if not left:
@@ -153,17 +153,17 @@ class GeoContext:
         return built_up(self.road, self.place)
 
     @cached_property
-    def _situation(self) -> Situation:
-        return situation_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
+    def _facts(self) -> RuleFacts:
+        return facts_at(self.driving, self.gps, self.weather, self.local_time, self.sun, self.built_up)
 
     @cached_property
     def _limits(self) -> tuple[AppliedRule, ...]:
-        return tuple(limits(self.place, self._situation))
+        return tuple(limits(self.place, self._facts))
 
 
 def answer(rule: Rule, context: GeoContext) -> Value | None:
-    """What a rule of any place says to the situation here and now; None if it does not apply."""
-    return rule.answer(context._situation)[0]
+    """What a rule of any place says to the facts here and now; None if it does not apply."""
+    return rule.answer(context._facts)[0]
 
 
 # --- in words ---------------------------------------------------------------------------------------------

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from automotive_cosim.geo.situation import Situation
+from automotive_cosim.geo.rulefacts import RuleFacts
 
 WINTER_BELOW_C = 7.0
 """Where winter tyres grip better than summer tyres, as tyre makers say."""
@@ -18,23 +18,23 @@ _HIDING = frozenset(("drizzle", "dust", "fog", "precipitation"))
 """Weather in which less is seen."""
 
 
-def _hidden(now: Situation) -> bool:
+def _hidden(now: RuleFacts) -> bool:
     return now.phenomena is None or not _HIDING.isdisjoint(now.phenomena)
 
 
-def _in_town(now: Situation) -> bool:
+def _in_town(now: RuleFacts) -> bool:
     return now.built_up is not False
 
 
-def _off_motorways(now: Situation) -> bool:
+def _off_motorways(now: RuleFacts) -> bool:
     return now.motorway is not True
 
 
-def _wide(now: Situation) -> bool:
+def _wide(now: RuleFacts) -> bool:
     return now.motorway is not False or now.dual_carriageway is not False or now.lanes >= 2
 
 
-_ONLY_IF: Mapping[str, Callable[[Situation], bool]] = {
+_ONLY_IF: Mapping[str, Callable[[RuleFacts], bool]] = {
     "front_fog": _hidden,
     "rear_fog": _hidden,
     "high_beam": lambda now: now.after_sunset is not False or now.tunnel or _hidden(now),
@@ -51,8 +51,8 @@ _ONLY_IF: Mapping[str, Callable[[Situation], bool]] = {
 """Topics that do not always matter; unknown conditions count as if they could hold."""
 
 
-def can_matter(topic: str, now: Situation, air_c: float | None) -> bool:
-    """Whether a topic of ``rules.TOPICS`` can matter in a situation, with that air temperature outside."""
+def can_matter(topic: str, now: RuleFacts, air_c: float | None) -> bool:
+    """Whether a topic of ``rules.TOPICS`` can matter by these facts, with that air temperature outside."""
     if topic in ("winter_tyres", "studs", "cold"):
         return air_c is None or air_c < WINTER_BELOW_C
     if topic == "heat":

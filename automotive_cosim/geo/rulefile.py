@@ -37,8 +37,8 @@ from automotive_cosim.errors import GeoDataError
 from automotive_cosim.formats.annotations import Called, Chosen, Form, Made, OneOf
 from automotive_cosim.formats.files import read_text
 from automotive_cosim.formats.toml import parse
+from automotive_cosim.geo.rulefacts import AreaPolygon, Test, When
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Case, Jurisdiction, Rule, Status, Value
-from automotive_cosim.geo.situation import AreaPolygon, Test, When
 
 if TYPE_CHECKING:
     from pydantic import GetJsonSchemaHandler

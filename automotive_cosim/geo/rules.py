@@ -10,7 +10,7 @@ from functools import cached_property
 
 import shapely
 
-from automotive_cosim.geo.situation import Situation, Test, all_hold
+from automotive_cosim.geo.rulefacts import RuleFacts, Test, all_hold
 
 Value = float | str
 
@@ -126,24 +126,24 @@ class Rule:
         """Of each case, the conditions on place, road and date."""
         return tuple(tuple(test for test in case.when if test.fixed) for case in self.cases)
 
-    def answer(self, situation: Situation) -> tuple[Value | None, bool]:
+    def answer(self, facts: RuleFacts) -> tuple[Value | None, bool]:
         """The rule's answer here and now.
 
         Returns:
-            (value, certain). (None, True): it does not apply. If not certain, the situation does not determine the
+            (value, certain). (None, True): it does not apply. If not certain, the facts do not determine the
             case, and the value is the first possible one.
         """
         for case in self.cases:
-            holds = all_hold(case.when, situation)
+            holds = all_hold(case.when, facts)
             if holds is not False:
                 return case.value, bool(holds)
         return None, True
 
-    def may_apply(self, situation: Situation) -> bool | None:
+    def may_apply(self, facts: RuleFacts) -> bool | None:
         """Whether place, road and date allow a case: True, False, or None if they do not determine it."""
         found: bool | None = False
         for tests in self._lasting:
-            holds = all_hold(tests, situation)
+            holds = all_hold(tests, facts)
             if holds:
                 return True
             found = None if holds is None else found

@@ -11,7 +11,7 @@ from datetime import UTC, datetime
 
 from automotive_cosim.geo.applied import limits
 from automotive_cosim.geo.place import Atlas, Place
-from automotive_cosim.geo.situation import Situation
+from automotive_cosim.geo.rulefacts import RuleFacts
 from automotive_cosim.osm.country import assumed_limit_kmh
 from automotive_cosim.osm.limits import CYCLE_ZONES, WALKING_ZONES, Zone, zones_of
 from automotive_cosim.traffic.network import class_of
@@ -41,15 +41,15 @@ def assumed_sign(tags: Mapping[str, str], atlas: Atlas, place: Place, *, built_u
     if zone and zone.name in WALKING_ZONES:
         return f"{PEDESTRIAN_ZONE_KMH.get(country, WALK_KMH):g}"
     there = place if zone is None else _named(zone, atlas, place)
-    situation = _situation(tags, zone.name if zone else "", built_up=built_up)
-    found = [applied for applied in limits(there, situation) if applied.rule.fixed]
+    facts = _facts(tags, zone.name if zone else "", built_up=built_up)
+    found = [applied for applied in limits(there, facts) if applied.rule.fixed]
     if len(found) == 1 and found[0].certain:
         value, unit = found[0].value, found[0].rule.unit
         if value == "none":
             return "none"
         return f"{value:g} mph" if unit == "mph" else f"{value:g}"
     dual = tags.get("oneway") == "yes" or "motorroad" in tags
-    road_class = "motorway" if situation.motorway else situation.road_class
+    road_class = "motorway" if facts.motorway else facts.road_class
     return f"{assumed_limit_kmh(country, road_class, built_up=built_up, dual=dual):g}"
 
 
@@ -65,14 +65,14 @@ def _named(zone: Zone, atlas: Atlas, place: Place) -> Place:
     return Place(country=zone.country, layers=layers)
 
 
-def _situation(tags: Mapping[str, str], zone: str, *, built_up: bool) -> Situation:
+def _facts(tags: Mapping[str, str], zone: str, *, built_up: bool) -> RuleFacts:
     road_class = class_of(tags["highway"], tags)
     if zone in CYCLE_ZONES:
         road_class = "cycle_street"
     elif zone == "living_street":
         road_class = zone
     motorway = road_class == "motorway" or zone == "motorway" or (None if road_class == "motorway_link" else False)
-    return Situation(
+    return RuleFacts(
         local_time=AS_OF,
         lon_deg=None,
         lat_deg=None,

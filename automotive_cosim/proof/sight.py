@@ -139,7 +139,7 @@ _LAW: Mapping[str, frozenset[Facet]] = {
     "season": frozenset({Facet.CLOCK}),
     "since": frozenset({Facet.CLOCK}),
 }
-"""What the words of a rule follow from (``geo.situation.CONDITIONS``) by which it is stated or not; all others of
+"""What the words of a rule follow from (``geo.rulefacts.CONDITIONS``) by which it is stated or not; all others of
 them follow from the kind of road."""
 _MATTERS: Mapping[str, frozenset[Facet]] = {
     "front_fog": frozenset({Facet.WEATHER}),

@@ -1,4 +1,4 @@
-"""A car on a road, and a situation, each with whatever a test changes."""
+"""A car on a road, and a facts, each with whatever a test changes."""
 
 from collections.abc import Callable
 from dataclasses import fields, replace
@@ -19,7 +19,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.geo.situation import COUNTRY_ROAD, Situation
+from automotive_cosim.geo.rulefacts import COUNTRY_ROAD, RuleFacts
 
 ROAD = RoadHere("e", "e_0", 0, 1, 10.0, "Avenue Foch", "primary", NO_LIMIT, False, None, None, None, 1.0)
 CAR = DrivingState(
@@ -65,7 +65,7 @@ def drive() -> Callable[..., DrivingState]:
 
 
 @pytest.fixture(scope="session")
-def situation() -> Callable[..., Situation]:
+def facts() -> Callable[..., RuleFacts]:
     return lambda **changes: replace(DAY, **changes)
 
 

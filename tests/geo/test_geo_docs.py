@@ -20,9 +20,9 @@ from automotive_cosim.errors import GeoDataError
 from automotive_cosim.geo.basics import basics_of, rows
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
+from automotive_cosim.geo.rulefacts import CONDITIONS
 from automotive_cosim.geo.rulefile import read_jurisdiction
 from automotive_cosim.geo.rules import ANSWERS, TOPICS, UNITS, USERS, Status
-from automotive_cosim.geo.situation import CONDITIONS
 
 DOCS = Path(__file__).parents[2] / "docs"
 DOC = "".join((DOCS / page).read_text(encoding="utf-8") for page in ("geo.md", "reference/geo.md"))

@@ -12,8 +12,8 @@ from automotive_cosim.geo.applied import OWN_LAW, limits
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import LAW_OF, Place
+from automotive_cosim.geo.rulefacts import RuleFacts
 from automotive_cosim.geo.rules import Rule, Status
-from automotive_cosim.geo.situation import Situation
 from tests.laws import over
 
 UTC = ZoneInfo("UTC")
@@ -303,12 +303,12 @@ def test_verified_statement(
     changes: Mapping[str, object],
     value: object,
     rules: dict[str, Rule],
-    situation: Callable[..., Situation],
+    facts: Callable[..., RuleFacts],
 ) -> None:
     rule = rules[rule_id]
     assert rule.status is Status.VERIFIED
     assert article in rule.law
-    assert rule.answer(situation(**changes)) == (value, True)
+    assert rule.answer(facts(**changes)) == (value, True)
 
 
 def test_every_verified_rule_has_a_statement_here(rules: dict[str, Rule]) -> None:
@@ -412,11 +412,11 @@ def test_a_living_street_has_the_limit_of_its_own_sign(
 def test_no_general_rule_is_certain_of_a_street_with_a_law_of_its_own(
     code: str,
     geo: Geo,
-    situation: Callable[..., Situation],
+    facts: Callable[..., RuleFacts],
 ) -> None:
     place = Place(country=code, layers=tuple(e for e in geo.atlas.country(code) if e.kind == "country"))
     for road_class in OWN_LAW:
-        for found in limits(place, situation(road_class=road_class, built_up=True)):
+        for found in limits(place, facts(road_class=road_class, built_up=True)):
             classes = [test.argument for test in found.rule.tests if test.word == "road_classes"]
             assert found.certain is any(road_class in named for named in classes) or not found.rule.fixed
 
@@ -425,24 +425,24 @@ def test_no_general_rule_is_certain_of_a_street_with_a_law_of_its_own(
 def test_a_region_sets_no_limit_on_motorways_by_a_rule_about_country_roads(
     code: str,
     geo: Geo,
-    situation: Callable[..., Situation],
+    facts: Callable[..., RuleFacts],
 ) -> None:
     """Where the country has a limit of motorways, it stands unless the region or city names motorways."""
     layers = tuple(entry for entry in geo.atlas.country(code[:2]) if entry.code in (code, code[:2]))
-    of_country = [rule for rule in layers[-1].by_topic.get("limit", ()) if rule.may_apply(situation(**MOTORWAY))]
+    of_country = [rule for rule in layers[-1].by_topic.get("limit", ()) if rule.may_apply(facts(**MOTORWAY))]
     fixed = [rule for rule in of_country if rule.fixed]
     if any(test.word == "motorway" for rule in fixed for test in rule.tests) and code[:2] not in ("AU", "US"):
-        found = [one for one in limits(Place(code[:2], layers=layers), situation(**MOTORWAY)) if one.rule.fixed]
+        found = [one for one in limits(Place(code[:2], layers=layers), facts(**MOTORWAY)) if one.rule.fixed]
         assert any(test.word in ("motorway", "road_classes") for test in found[0].rule.tests)
 
 
 def test_rain_slows_an_italian_dual_carriageway_and_a_town_a_spanish_motorway(
-    rules: dict[str, Rule], situation: Callable[..., Situation]
+    rules: dict[str, Rule], facts: Callable[..., RuleFacts]
 ) -> None:
-    wet = situation(dual_carriageway=True, **RAIN)
+    wet = facts(dual_carriageway=True, **RAIN)
     assert rules["IT.limit.dual.rain"].answer(wet) == (90, True)
-    assert rules["IT.limit.dual.rain"].answer(situation(dual_carriageway=True))[0] is None
-    urban = situation(**(MOTORWAY | TOWN))
+    assert rules["IT.limit.dual.rain"].answer(facts(dual_carriageway=True))[0] is None
+    urban = facts(**(MOTORWAY | TOWN))
     assert rules["ES.limit.motorway.built_up"].answer(urban) == (80, True)
 
 

@@ -17,9 +17,9 @@ from automotive_cosim.formats.checked import checked
 from automotive_cosim.geo.basics import basics_of, rows
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.place import Atlas
+from automotive_cosim.geo.rulefacts import CONDITIONS, RuleFacts, When, all_hold
 from automotive_cosim.geo.rulefile import CaseEntry, read_jurisdiction
 from automotive_cosim.geo.rules import TOPICS
-from automotive_cosim.geo.situation import CONDITIONS, Situation, When, all_hold
 from tests.laws import over
 
 SHIPPED = sorted(Path(str(files("automotive_cosim.geo.data"))).glob("*.toml"))
@@ -250,13 +250,13 @@ def test_every_condition_and_topic_is_used_by_a_shipped_rule() -> None:
     assert used == set(CONDITIONS)
 
 
-def test_conditions_are_three_valued(situation: Callable[..., Situation]) -> None:
+def test_conditions_are_three_valued(facts: Callable[..., RuleFacts]) -> None:
     tests = _conditions({"built_up": True, "weather": ["rain"]})
     rain = {"phenomena": frozenset({"rain"})}
-    assert all_hold(tests, situation(built_up=True, **rain)) is True
-    assert all_hold(tests, situation(built_up=None, **rain)) is None
-    assert all_hold(tests, situation(built_up=None, phenomena=frozenset())) is False
-    assert all_hold((), situation()) is True
+    assert all_hold(tests, facts(built_up=True, **rain)) is True
+    assert all_hold(tests, facts(built_up=None, **rain)) is None
+    assert all_hold(tests, facts(built_up=None, phenomena=frozenset())) is False
+    assert all_hold((), facts()) is True
 
 
 @pytest.mark.parametrize(
@@ -270,9 +270,9 @@ def test_conditions_are_three_valued(situation: Callable[..., Situation]) -> Non
     ],
 )
 def test_times_wrap_and_ends_belong_where_the_words_say(
-    situation: Callable[..., Situation], when: dict[str, object], holds: dict[str, int], fails: dict[str, int]
+    facts: Callable[..., RuleFacts], when: dict[str, object], holds: dict[str, int], fails: dict[str, int]
 ) -> None:
     (test,) = _conditions(when)
-    now = situation().local_time
-    assert test.holds(replace(situation(), local_time=now.replace(**holds))) is True  # type: ignore[arg-type]
-    assert test.holds(replace(situation(), local_time=now.replace(**fails))) is False  # type: ignore[arg-type]
+    now = facts().local_time
+    assert test.holds(replace(facts(), local_time=now.replace(**holds))) is True  # type: ignore[arg-type]
+    assert test.holds(replace(facts(), local_time=now.replace(**fails))) is False  # type: ignore[arg-type]

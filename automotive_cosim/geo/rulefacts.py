@@ -1,7 +1,7 @@
-"""The conditions that a rule may have, and the situation on which they are evaluated.
+"""The conditions that a rule may have, and the facts on which they are evaluated.
 
-A condition is one entry of a rule's ``when`` table. It holds, does not hold, or is unknown because the situation
-does not say; several in one table must all hold. Those marked *fixed* depend only on place, road and date; the
+A condition is one entry of a rule's ``when`` table. It holds, does not hold, or is unknown because the facts
+do not say; several in one table must all hold. Those marked *fixed* depend only on place, road and date; the
 others change even while the car is stationary (weather, light, traffic, the clock).
 """
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Situation:
+class RuleFacts:
     """Place, road, sky, traffic and motion at one instant; None if unknown."""
 
     local_time: datetime
@@ -55,7 +55,7 @@ class Situation:
     after_sunset: bool | None
 
 
-COUNTRY_ROAD = Situation(
+COUNTRY_ROAD = RuleFacts(
     local_time=datetime(2026, 11, 1, 12, tzinfo=UTC),
     lon_deg=None,
     lat_deg=None,
@@ -77,7 +77,7 @@ COUNTRY_ROAD = Situation(
     visibility_m=20_000.0,
     after_sunset=False,
 )
-"""The plainest situation: alone on a rural road without a name, at noon in clear weather; others differ from it."""
+"""The plainest facts: alone on a rural road without a name, at noon in clear weather; others differ from it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -89,7 +89,7 @@ class RuleCondition:
 
     expects: str
     takes: Any
-    holds: Callable[[Situation, Any], bool | None]
+    holds: Callable[[RuleFacts, Any], bool | None]
     fixed: bool = False
 
 
@@ -105,16 +105,16 @@ class Test:
         """Whether it depends only on place, road and date."""
         return CONDITIONS[self.word].fixed
 
-    def holds(self, situation: Situation) -> bool | None:
-        """True, False, or None if the situation does not determine it."""
-        return CONDITIONS[self.word].holds(situation, self.argument)
+    def holds(self, facts: RuleFacts) -> bool | None:
+        """True, False, or None if the facts do not determine it."""
+        return CONDITIONS[self.word].holds(facts, self.argument)
 
 
-def all_hold(tests: tuple[Test, ...], situation: Situation) -> bool | None:
+def all_hold(tests: tuple[Test, ...], facts: RuleFacts) -> bool | None:
     """False if one fails, else None if one is unknown, else True."""
     unknown = False
     for test in tests:
-        holds = test.holds(situation)
+        holds = test.holds(facts)
         if holds is False:
             return False
         unknown = unknown or holds is None
@@ -188,47 +188,47 @@ _WEEKDAYS = Annotated[Any, Made(_some(Annotated[int, Ge(1), Le(7)]), frozenset)]
 # --- when they hold -----------------------------------------------------------------------------------------
 
 
-def _same(name: str) -> Callable[[Situation, Any], bool | None]:
-    def holds(situation: Situation, wanted: bool) -> bool | None:
-        actual = getattr(situation, name)
+def _same(name: str) -> Callable[[RuleFacts, Any], bool | None]:
+    def holds(facts: RuleFacts, wanted: bool) -> bool | None:
+        actual = getattr(facts, name)
         return None if actual is None else bool(actual == wanted)
 
     return holds
 
 
-def _inside(situation: Situation, area: shapely.Polygon) -> bool | None:
-    if situation.lon_deg is None or situation.lat_deg is None:
+def _inside(facts: RuleFacts, area: shapely.Polygon) -> bool | None:
+    if facts.lon_deg is None or facts.lat_deg is None:
         return None
-    return bool(shapely.contains_xy(area, situation.lon_deg, situation.lat_deg))
+    return bool(shapely.contains_xy(area, facts.lon_deg, facts.lat_deg))
 
 
-def _on_street(situation: Situation, patterns: tuple[str, ...]) -> bool:
-    street = folded(situation.street)
+def _on_street(facts: RuleFacts, patterns: tuple[str, ...]) -> bool:
+    street = folded(facts.street)
     return any(fnmatchcase(street, pattern) for pattern in patterns)
 
 
-def _on_class(situation: Situation, classes: tuple[str, ...]) -> bool | None:
-    return situation.road_class in classes if situation.road_class else None
+def _on_class(facts: RuleFacts, classes: tuple[str, ...]) -> bool | None:
+    return facts.road_class in classes if facts.road_class else None
 
 
-def _in_season(situation: Situation, season: tuple[tuple[int, int], tuple[int, int]]) -> bool:
+def _in_season(facts: RuleFacts, season: tuple[tuple[int, int], tuple[int, int]]) -> bool:
     first, last = season
-    today = (situation.local_time.month, situation.local_time.day)
+    today = (facts.local_time.month, facts.local_time.day)
     return first <= today <= last if first <= last else today >= first or today <= last
 
 
-def _in_hours(situation: Situation, hours: tuple[time, time]) -> bool:
+def _in_hours(facts: RuleFacts, hours: tuple[time, time]) -> bool:
     first, last = hours
-    now = situation.local_time.time()
+    now = facts.local_time.time()
     return first <= now < last if first <= last else now >= first or now < last
 
 
-def _in_weather(situation: Situation, wanted: frozenset[str]) -> bool | None:
-    return None if situation.phenomena is None else not wanted.isdisjoint(situation.phenomena)
+def _in_weather(facts: RuleFacts, wanted: frozenset[str]) -> bool | None:
+    return None if facts.phenomena is None else not wanted.isdisjoint(facts.phenomena)
 
 
-def _sees_less(situation: Situation, metres: float) -> bool | None:
-    return None if situation.visibility_m is None else situation.visibility_m < metres
+def _sees_less(facts: RuleFacts, metres: float) -> bool | None:
+    return None if facts.visibility_m is None else facts.visibility_m < metres
 
 
 def _within(distance_m: float | None, metres: float) -> bool:
