@@ -8,7 +8,7 @@
     from_s = 20.0
 
 Times are seconds after the ego's departure, which is the scenario's ``start``; negative ones lie in the warm-up,
-for incidents without ``trip``. Each kind's own fields are in its class. ``traffic.situations`` stages them
+for incidents without ``trip``. Each kind's own fields are in its class. ``traffic.incidents`` stages them
 in SUMO.
 """
 

@@ -1,4 +1,4 @@
-"""Decides when a scenario's incidents begin and end, and which limits apply; ``scenes`` and ``signs`` stage them.
+"""Decides when a scenario's incidents begin and end, and which limits apply; ``staging`` and ``signs`` stage them.
 
 Nothing here is random: everything depends only on the simulation's time and the ego's route. All times are
 evaluated at whole seconds of the simulation.
@@ -15,21 +15,21 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.scenarios.incidents import EgoIncident, Incident
 from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.detours import Detours
-from automotive_cosim.traffic.scene import Scene
-from automotive_cosim.traffic.scenes import scene_of
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.stage import IncidentStage
+from automotive_cosim.traffic.staged import StagedIncident
+from automotive_cosim.traffic.staging import staged
 
 
 @dataclass(slots=True)
 class _Entry:
     incident: Incident
-    scene: Scene
+    staged: StagedIncident
     has_begun: bool = False
     is_over: bool = False
 
 
-class Situations:
+class Incidents:
     """The incidents of one simulation."""
 
     def __init__(self, stage: IncidentStage, scenario: Scenario) -> None:
@@ -39,7 +39,7 @@ class Situations:
             ScenarioError: one of them does not fit the network.
         """
         self._stage = stage
-        self._entries = [_Entry(incident, scene_of(stage, incident)) for incident in scenario.incidents]
+        self._entries = [_Entry(incident, staged(stage, incident)) for incident in scenario.incidents]
         self._zero_s = scenario.sumo.warm_up_s
         self._start = scenario.start
         self._trip = ""
@@ -81,7 +81,7 @@ class Situations:
         Raises:
             ScenarioError: it does not fit the network.
         """
-        self._entries.append(_Entry(incident, scene_of(self._stage, incident)))
+        self._entries.append(_Entry(incident, staged(self._stage, incident)))
 
     def tick(self, now_s: float) -> tuple[Event, ...]:
         """Begins and ends the incidents that are due; called once per second of the simulation."""
@@ -102,8 +102,8 @@ class Situations:
         Args:
             slow: edges that it knows to be slow, and their relative speed.
         """
-        going_on = (entry.scene for entry in self._entries if entry.has_begun and not entry.is_over)
-        return tuple(seen for scene in going_on if (seen := scene.reported(slow)) is not None)
+        going_on = (entry.staged for entry in self._entries if entry.has_begun and not entry.is_over)
+        return tuple(seen for one in going_on if (seen := one.reported(slow)) is not None)
 
     def _ego_has_left(self) -> bool:
         """Whether the ego has arrived or was removed, while others drive on: nothing happens around it any more."""
@@ -125,13 +125,13 @@ class Situations:
         told: list[str] = []
         if not entry.has_begun and self._is_due(entry.incident, since_s):
             entry.has_begun = True
-            told.append(entry.scene.begin())
+            told.append(entry.staged.begin())
         if entry.has_begun and since_s < entry.incident.to_s:
-            told.append(entry.scene.tick(local_time))
+            told.append(entry.staged.tick(local_time))
         elif since_s >= entry.incident.to_s:
             entry.is_over = True
             if entry.has_begun:
-                told.append(entry.scene.end())
+                told.append(entry.staged.end())
         return told
 
     def _is_due(self, incident: Incident, since_s: float) -> bool:

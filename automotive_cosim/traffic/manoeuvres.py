@@ -12,8 +12,8 @@ from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import incidents
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.scene import CAR_SPACE_M, QuietScene
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
+from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident
 from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
 
 GENTLE_MPS2 = 3.0
@@ -50,7 +50,7 @@ CUT_OUT_S = 10.0
 """How long a vehicle that has cut out keeps its new lane."""
 
 
-class ScriptedVehicleScene(QuietScene):
+class StagedVehicle(StagedIncident):
     """A vehicle that does at given times what it is told."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.ScriptedVehicle) -> None:
@@ -64,7 +64,7 @@ class ScriptedVehicleScene(QuietScene):
         self._since_s = incident.from_s
 
     def begin(self) -> str:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         incident = self._incident
         speed = f"{incident.speed_kmh / KMH_PER_MPS:.2f}"
         self._car = self._stage.car("scripted", incident.route, self._lane, incident.position_m, speed)
@@ -74,7 +74,7 @@ class ScriptedVehicleScene(QuietScene):
         return ""
 
     def tick(self, local_time: datetime) -> str:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         sumo = self._stage.sumo
         if self._car in sumo.vehicle_ids():
             while self._left and self._left[0].at_s <= self._since_s:
@@ -96,7 +96,7 @@ class ScriptedVehicleScene(QuietScene):
             sumo.vehicle.changeLane(car, int(lanes[place].rpartition("_")[2]), CUT_OUT_S)
 
 
-class EmergencyScene(QuietScene):
+class StagedEmergency(StagedIncident):
     """An ambulance, or a van, on the route behind the ego."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
@@ -127,7 +127,7 @@ class EmergencyScene(QuietScene):
         return ""
 
 
-class BrakingLeaderScene(QuietScene):
+class StagedBraking(StagedIncident):
     """The vehicle ahead brakes."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.BrakingLeader) -> None:
@@ -137,7 +137,7 @@ class BrakingLeaderScene(QuietScene):
         self._left_s = 0.0
 
     def tick(self, local_time: datetime) -> str:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         if self._left_s < 0:
             return ""
         if self._braking:
@@ -172,7 +172,7 @@ class BrakingLeaderScene(QuietScene):
         return "the vehicle ahead brakes"
 
     def end(self) -> str:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         if self._braking:
             self._release()
         return ""
@@ -264,7 +264,7 @@ class _KeptInLane:
                 self._stage.sumo.vehicle.setLaneChangeMode(self._stage.ego_id, self._mode)
 
 
-class CutInScene(QuietScene):
+class StagedCutIn(StagedIncident):
     """A vehicle beside the ego, which keeps its distance until it moves over."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.CutIn) -> None:
@@ -274,7 +274,7 @@ class CutInScene(QuietScene):
         self._kept: _KeptInLane | None = None
 
     def tick(self, local_time: datetime) -> str:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         stage, incident = self._stage, self._incident
         if self._left_s is not None:
             if self._left_s > 1.0:
@@ -308,7 +308,7 @@ class CutInScene(QuietScene):
         return "a vehicle cuts in ahead"
 
     def end(self) -> str:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         if self._car and (self._left_s is None or self._left_s > 0):
             self._release()
         if self._kept is not None:
@@ -322,7 +322,7 @@ class CutInScene(QuietScene):
         self._left_s = 0.0
 
 
-class CutOutScene(QuietScene):
+class StagedCutOut(StagedIncident):
     """The vehicle ahead drives at one that stands, and moves over at last."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.CutOut) -> None:
@@ -333,7 +333,7 @@ class CutOutScene(QuietScene):
         self._kept: _KeptInLane | None = None
 
     def tick(self, local_time: datetime) -> str:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         if self._is_over:
             if self._kept is not None:
                 self._kept.tick()
@@ -395,7 +395,7 @@ class CutOutScene(QuietScene):
         return "the vehicle ahead cuts out before a standing car"
 
     def end(self) -> str:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         if self._standing and not self._is_over:
             with suppress(*self._stage.sumo.refusals):  # it may have left
                 self._release()
@@ -410,5 +410,5 @@ class CutOutScene(QuietScene):
         self._stage.sumo.vehicle.setSpeed(self._leader, -1.0)
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
-        """See ``Scene``."""
+        """See ``StagedIncident``."""
         return self._standing if self._is_over else None

@@ -22,7 +22,7 @@ CAR_TYPE = "automotive_cosim.car"
 
 
 class IncidentStage:
-    """The stage on which scenes act."""
+    """The stage on which incidents are staged."""
 
     def __init__(self, sumo: LibSumo, network: Network, surface: Surface, ego_id: str) -> None:
         self.sumo = sumo

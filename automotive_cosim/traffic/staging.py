@@ -1,4 +1,4 @@
-"""Stages each kind of incident in SUMO. ``situations`` decides when."""
+"""Stages each kind of incident in SUMO. ``incidents`` decides when."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import incidents
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.manoeuvres import (
-    BrakingLeaderScene,
-    CutInScene,
-    CutOutScene,
-    EmergencyScene,
-    ScriptedVehicleScene,
+    StagedBraking,
+    StagedCutIn,
+    StagedCutOut,
+    StagedEmergency,
+    StagedVehicle,
 )
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import Hours, TimedLimit
-from automotive_cosim.traffic.scene import CAR_SPACE_M, QuietScene, Scene
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
+from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident
 from automotive_cosim.traffic.steering import PARKING
 from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
 
@@ -47,7 +47,7 @@ _CROSSING = re.compile(r":.+_c\d+")
 """Netconvert's ids of pedestrian crossings."""
 
 
-class _Breakdown(QuietScene):
+class _Breakdown(StagedIncident):
     """A stopped car."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Breakdown) -> None:
@@ -74,7 +74,7 @@ class _Breakdown(QuietScene):
         return RoadIncident(IncidentKind.BREAKDOWN, self._incident.edge, self._incident.position_m)
 
 
-class _Roadworks(QuietScene):
+class _Roadworks(StagedIncident):
     """A lower limit and closed lanes, or the sign that is left of them."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Roadworks) -> None:
@@ -111,7 +111,7 @@ class _Roadworks(QuietScene):
         return None if self._incident.over else RoadIncident(IncidentKind.ROADWORKS, self._incident.edge, 0.0)
 
 
-class _Jam(QuietScene):
+class _Jam(StagedIncident):
     """A queue, and a bottleneck that lets one vehicle per lane pass at a time."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Jam) -> None:
@@ -161,7 +161,7 @@ class _Jam(QuietScene):
         return next((RoadIncident(IncidentKind.JAM, edge, 0.0) for edge in jammed), None)
 
 
-class _Closure(QuietScene):
+class _Closure(StagedIncident):
     """A road that all except the authorities go round."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Closure) -> None:
@@ -212,7 +212,7 @@ class _Closure(QuietScene):
         return RoadIncident(IncidentKind.CLOSURE, self._edge.edge_id, 0.0)
 
 
-class _SchoolZone(QuietScene):
+class _SchoolZone(StagedIncident):
     """A limit by the clock."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.SchoolZone) -> None:
@@ -242,7 +242,7 @@ class _SchoolZone(QuietScene):
         return RoadIncident(IncidentKind.SCHOOL_ZONE, self._edges[0], 0.0)
 
 
-class _RushHour(QuietScene):
+class _RushHour(StagedIncident):
     """More demand."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.RushHour) -> None:
@@ -259,7 +259,7 @@ class _RushHour(QuietScene):
         return ""
 
 
-class _Tractor(QuietScene):
+class _Tractor(StagedIncident):
     """A slow vehicle."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Tractor) -> None:
@@ -285,7 +285,7 @@ class _Tractor(QuietScene):
         return f"a tractor{_on(stage.edge(incident.from_edge))}"
 
 
-class _Pedestrians(QuietScene):
+class _Pedestrians(StagedIncident):
     """Groups that cross."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.Pedestrians) -> None:
@@ -321,29 +321,29 @@ class _Pedestrians(QuietScene):
         person.appendWalkingStage(name, self._walk[0].edges, 5.0)
 
 
-class _Ahead(QuietScene):
-    """Another scene, on a road that is chosen when the time has come."""
+class _Ahead(StagedIncident):
+    """Another incident, on a road that is chosen when the time has come."""
 
     def __init__(self, stage: IncidentStage, incident: incidents.AheadIncident) -> None:
         self._stage, self._incident = stage, incident
-        self._scene: Scene | None = None
+        self._staged: StagedIncident | None = None
         self._tail: RoadIncident | None = None
 
     def tick(self, local_time: datetime) -> str:
-        if self._scene is not None:
-            return self._scene.tick(local_time)
+        if self._staged is not None:
+            return self._staged.tick(local_time)
         chosen = self._chosen()
         if chosen is None:
             return ""
-        self._scene = scene_of(self._stage, chosen)
-        return self._scene.begin()
+        self._staged = staged(self._stage, chosen)
+        return self._staged.begin()
 
     def end(self) -> str:
-        return "" if self._scene is None else self._scene.end()
+        return "" if self._staged is None else self._staged.end()
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
         """A queue is reported where its tail was at first, however slow the whole road is."""
-        return self._tail or (None if self._scene is None else self._scene.reported(slow))
+        return self._tail or (None if self._staged is None else self._staged.reported(slow))
 
     def _chosen(self) -> incidents.Incident | None:
         """The incident on its road; None as long as there is no room for it."""
@@ -400,7 +400,7 @@ def _covering(edges: Sequence[Edge], length_m: float) -> int:
     return 0
 
 
-SCENES: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], Scene]] = {
+STAGED: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], StagedIncident]] = {
     incidents.Breakdown: _Breakdown,
     incidents.Roadworks: _Roadworks,
     incidents.Jam: _Jam,
@@ -409,23 +409,23 @@ SCENES: Mapping[type[incidents.Incident], Callable[[IncidentStage, Any], Scene]]
     incidents.RushHour: _RushHour,
     incidents.Tractor: _Tractor,
     incidents.Pedestrians: _Pedestrians,
-    incidents.ScriptedVehicle: ScriptedVehicleScene,
-    incidents.EmergencyVehicle: EmergencyScene,
-    incidents.BrakingLeader: BrakingLeaderScene,
-    incidents.CutIn: CutInScene,
-    incidents.CutOut: CutOutScene,
+    incidents.ScriptedVehicle: StagedVehicle,
+    incidents.EmergencyVehicle: StagedEmergency,
+    incidents.BrakingLeader: StagedBraking,
+    incidents.CutIn: StagedCutIn,
+    incidents.CutOut: StagedCutOut,
     incidents.AheadIncident: _Ahead,
 }
-"""The scene of each kind of incident."""
+"""What stages each kind of incident."""
 
 
-def scene_of(stage: IncidentStage, incident: incidents.Incident) -> Scene:
-    """The scene of an incident.
+def staged(stage: IncidentStage, incident: incidents.Incident) -> StagedIncident:
+    """What stages an incident.
 
     Raises:
         ScenarioError: it does not fit the network.
     """
-    return SCENES[type(incident)](stage, incident)
+    return STAGED[type(incident)](stage, incident)
 
 
 def _on(edge: Edge) -> str:

@@ -21,6 +21,7 @@ from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
 from automotive_cosim.traffic.flow import Advice, Advisor
 from automotive_cosim.traffic.ground import placed, read_mapped
+from automotive_cosim.traffic.incidents import Incidents
 from automotive_cosim.traffic.instant import Instant, KnownInstant
 from automotive_cosim.traffic.lookout import Lookout, read_shapes
 from automotive_cosim.traffic.network import Network, NetworkReader
@@ -37,7 +38,6 @@ from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
 from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
-from automotive_cosim.traffic.situations import Situations
 from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, LibSumo, load_library, start
@@ -91,8 +91,8 @@ class World:
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
         self.congestion = Congestion(self.network, self._sumo.on_lanes)
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
-        self._situations = Situations(IncidentStage(self._sumo, self.network, self._surface, EGO), scenario)
-        self._has_incidents = self._situations.are_left
+        self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO), scenario)
+        self._has_incidents = self._incidents.are_left
         self._takes_any_route = takes_any_route(self._configuration, self.network)
         self._second_steps = max(1, round(1.0 / self.step_s))
         self.happened: tuple[Event, ...] = ()
@@ -158,7 +158,7 @@ class World:
         """
         driver_profile = profile(plan.driver)
         plan = replace(plan, weather=plan.weather or self._scenario.weather)
-        self._situations.expect(plan, self._sumo.time())
+        self._incidents.expect(plan, self._sumo.time())
         for _ in range(round(plan.wait_s / self.step_s)):
             self.step()
             if beat is not None:
@@ -188,9 +188,9 @@ class World:
             self._sumo, EGO, self.network, self.congestion, self._reported, self._emergency, self.step_s
         )
         self._sensor = sensor
-        self._situations.set_off(plan, sensor, self._sumo.time())
+        self._incidents.set_off(plan, sensor, self._sumo.time())
         self._has_incidents = self._has_incidents or bool(plan.incidents)
-        if self._situations.take_changes():
+        if self._incidents.take_changes():
             sensor.refresh()
         stops = plan.trip.via if plan.keeps_stops else ()
         if stops:
@@ -202,7 +202,7 @@ class World:
     @property
     def detours(self) -> Detours:
         """The other vehicles' ways round what is closed."""
-        return self._situations.detours
+        return self._incidents.detours
 
     def step(self) -> bool:
         """One step of the traffic; true if the road ahead of the ego has to be read again.
@@ -233,7 +233,7 @@ class World:
         Raises:
             ScenarioError: it does not fit the network, such as an edge that is not for cars.
         """
-        self._situations.add(incident)
+        self._incidents.add(incident)
         self._has_incidents = True
 
     def slowed(self) -> dict[str, float]:
@@ -254,7 +254,7 @@ class World:
         self._sumo.close()
 
     def _reported(self) -> tuple[RoadIncident, ...]:
-        return self._situations.reported(dict(self.congestion.slow_edges())) if self._has_incidents else ()
+        return self._incidents.reported(dict(self.congestion.slow_edges())) if self._has_incidents else ()
 
     def _notice(self, *, sampling: bool) -> bool:
         sumo = self._sumo
@@ -282,8 +282,8 @@ class World:
         if is_due and self._is_watched:
             self.congestion.sample()
         if self._has_incidents and self._steps % self._second_steps == 0:
-            self.happened = self._situations.tick(now_s)
-            return self._situations.take_changes() or is_due or has_changed
+            self.happened = self._incidents.tick(now_s)
+            return self._incidents.take_changes() or is_due or has_changed
         self.happened = ()
         return is_due or has_changed
 

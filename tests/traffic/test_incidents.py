@@ -18,7 +18,7 @@ from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess, InProcessTraffic
-from automotive_cosim.traffic.scenes import SCENES
+from automotive_cosim.traffic.staging import STAGED
 
 Edit = Callable[[Path], None]
 Variant = Callable[[Edit], Scenario]
@@ -471,4 +471,4 @@ def test_people_cross_and_the_ego_lets_them(
 
 
 def test_every_kind_of_incident_is_staged() -> None:
-    assert set(SCENES) == set(get_args(get_args(AnyIncident)[0]))
+    assert set(STAGED) == set(get_args(get_args(AnyIncident)[0]))
