@@ -34,7 +34,7 @@ from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
 from automotive_cosim.drives.score import Score, score, together
 from automotive_cosim.drives.script import APART_S, Staged
-from automotive_cosim.drives.watch import Watch
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.watchers import AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import SessionSetup
@@ -106,21 +106,21 @@ def played(who: str, family: str, seed: int, simulations: Simulations, *, errand
     drawn, agent = FAMILIES[family].draw(seed), WATCHERS[who]()
     script = with_errands(drawn) if errands else drawn
     setup = SessionSetup(max_steps=STEPS, max_sim_s=script.duration_s, channels=agent.channels)
-    with closing(Watch.depart_with(depart(script, simulations), setup)) as watch:
-        agent.reset(watch.goal)
-        play(watch, agent)
-        assert watch.judgement is not None
-        mine, nobodys = watch.harms
+    with closing(DriveSession.depart_with(depart(script, simulations), setup)) as session:
+        agent.reset(session.goal)
+        play(session, agent)
+        assert session.judgement is not None
+        mine, nobodys = session.harms
         return Kept(
             family,
             seed,
             who,
-            watch.seconds,
-            watch.moments[-1].driving.distance_m,
+            session.seconds,
+            session.moments[-1].driving.distance_m,
             script.staged,
-            tuple(found(watch.baseline_moments)),
-            watch.judgement.events,
-            watch.judgement.acts,
+            tuple(found(session.baseline_moments)),
+            session.judgement.events,
+            session.judgement.acts,
             mine.short_ttc_s,
             nobodys.short_ttc_s,
         )

@@ -34,12 +34,12 @@ from typing import TypeVar
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
 from automotive_cosim.drives.alarm import Alarm
 from automotive_cosim.drives.departure import depart
-from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, Tracker, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, EventKind, Tracker
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import facts_of, judge
 from automotive_cosim.drives.score import Score, score, together
+from automotive_cosim.drives.session import CHANGED, DriveSession
 from automotive_cosim.drives.wakes import WAKES
-from automotive_cosim.drives.watch import CHANGED, Watch
 from automotive_cosim.episode.loop import play
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.interface.observe import Channel
@@ -89,7 +89,7 @@ class Untouched:
     facts: Mapping[str, tuple[str | None, ...]]
     """By kind, what spoke against a warning of it at each of these times."""
 
-    def scored(self, acts: Sequence[WatchAct]) -> Score:
+    def scored(self, acts: Sequence[DriveAct]) -> Score:
         """The score of acts at some of these times."""
         number = {at_s: index for index, (at_s, _) in enumerate(self.changes)}
 
@@ -117,28 +117,28 @@ def untouched(family: str, seed: int, simulations: Simulations) -> Untouched:
     return Untouched(family, seed, begun_s, driven_s, tuple(tracker.events), tuple(changes), facts)
 
 
-def of_results(drive: Untouched, alerts: Sequence[AlertKind], quiet_s: float) -> list[WatchAct]:
+def of_results(drive: Untouched, alerts: Sequence[AlertKind], quiet_s: float) -> list[DriveAct]:
     """These alerts in turn, whenever something changed and nothing was said for so long."""
-    acts: list[WatchAct] = []
+    acts: list[DriveAct] = []
     for at_s, _ in drive.changes:
         if not acts or at_s - acts[-1].time_s >= quiet_s:
-            acts.append(WatchAct(at_s, alerts[len(acts) % len(alerts)]))
+            acts.append(DriveAct(at_s, alerts[len(acts) % len(alerts)]))
     return acts
 
 
-def of_names(drive: Untouched, table: Table, quiet_s: float) -> list[WatchAct]:
+def of_names(drive: Untouched, table: Table, quiet_s: float) -> list[DriveAct]:
     """The alert of the first reading that changed and is in the table, if it was not given for so long."""
-    acts: list[WatchAct] = []
+    acts: list[DriveAct] = []
     told_s: dict[AlertKind, float] = {}
     for at_s, names in drive.changes:
         alert = next((table[name] for name in names if name in table), None)
         if alert is not None and at_s - told_s.get(alert, -quiet_s) >= quiet_s:
             told_s[alert] = at_s
-            acts.append(WatchAct(at_s, alert))
+            acts.append(DriveAct(at_s, alert))
     return acts
 
 
-def acts_of(drive: Untouched, table: Table | Sequence[AlertKind], quiet_s: float) -> list[WatchAct]:
+def acts_of(drive: Untouched, table: Table | Sequence[AlertKind], quiet_s: float) -> list[DriveAct]:
     """What either kind of table does on a drive."""
     if isinstance(table, Mapping):
         return of_names(drive, table, quiet_s)
@@ -295,10 +295,10 @@ def played(strategy: Strategy, family: str, seed: int, simulations: Simulations)
     """One drive."""
     script = FAMILIES[family].draw(seed)
     setup = SessionSetup(max_steps=10**6, max_sim_s=script.duration_s, channels=strategy.channels)
-    with closing(Watch.depart_with(depart(script, simulations), setup)) as watch:
-        play(watch, strategy)
-        assert watch.judgement is not None
-        return score(watch.judgement, watch.seconds)
+    with closing(DriveSession.depart_with(depart(script, simulations), setup)) as session:
+        play(session, strategy)
+        assert session.judgement is not None
+        return score(session.judgement, session.seconds)
 
 
 # --- the command -----------------------------------------------------------------------------------------------

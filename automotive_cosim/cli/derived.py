@@ -161,10 +161,10 @@ def _reader(name: str, hint: Any) -> Callable[[str], Any] | None:
     return None
 
 
-def _member(kind: type[T], names: OneOf, text: str) -> T:
+def _member(kind: Callable[[str], Any], names: OneOf, text: str) -> Any:
     if text not in set(names.names):
         raise UnknownNameError(names.what, text, names.names)
-    return kind(text)  # type: ignore[call-arg]
+    return kind(text)
 
 
 def _beside(hint: Any) -> Iterator[str]:

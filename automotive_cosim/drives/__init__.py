@@ -7,7 +7,7 @@ families/  the families over all scenarios
 departure  a script -> a running co-simulation
 events/    kinds of events, found on the drive itself
 wakes      what wakes an agent that waits
-watch      an agent's session on a drive
+session    an agent on a drive
 timeline   the drive second by second, as data
 judge      what became of each event, and what each act was
 score      what that comes to

@@ -9,14 +9,14 @@ from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
 from automotive_cosim.cockpit.commands import Set, SetAll
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, ActionType, Alert, DrivingState, SlowDown
-from automotive_cosim.drives.events.base import WatchAct
+from automotive_cosim.drives.events.base import DriveAct
 from automotive_cosim.traffic.ego import takes_back
 
 BOOKKEEPING = frozenset({"alerts", "requests"})
 """Commands that only say that something was asked for."""
 
 
-def acts_of(given: Sequence[CommandRecord], driving: DrivingState) -> Iterator[WatchAct]:
+def acts_of(given: Sequence[CommandRecord], driving: DrivingState) -> Iterator[DriveAct]:
     """The acts in what was commanded, in order; preparations such as a typed text are none, nor is what the road
     refused.
 
@@ -33,10 +33,10 @@ def acts_of(given: Sequence[CommandRecord], driving: DrivingState) -> Iterator[W
         if isinstance(message, WarnDriver):
             alert = alert or message.alert
         if alert is not None:
-            yield WatchAct(record.time_s, alert.kind, alert.severity, alert.speed_kmh, text=alert.text)
+            yield DriveAct(record.time_s, alert.kind, alert.severity, alert.speed_kmh, text=alert.text)
             continue
         releases = any(isinstance(each, SlowDown) and takes_back(each.speed_kmh, driving) for each in asked)
-        yield WatchAct(record.time_s, requests=asked, writes=tuple(_writes(record)), releases=releases)
+        yield DriveAct(record.time_s, requests=asked, writes=tuple(_writes(record)), releases=releases)
 
 
 def refusal(record: CommandRecord) -> str:
@@ -54,7 +54,7 @@ def _writes(record: CommandRecord) -> Iterator[tuple[str, Any]]:
         yield from ((path, None) for path in sorted(record.aims - BOOKKEEPING))
 
 
-def spoken(action: Action, time_s: float) -> WatchAct | None:
+def spoken(action: Action, time_s: float) -> DriveAct | None:
     """What an action says to the driver besides alerts: an answer, or a question."""
     speaks = action.action_type in (ActionType.ANSWER, ActionType.ASK_DRIVER)
-    return WatchAct(time_s, said=action.text or "") if speaks else None
+    return DriveAct(time_s, said=action.text or "") if speaks else None

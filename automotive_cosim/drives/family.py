@@ -194,7 +194,7 @@ def _occupant(seat: Seat, kinds: Sequence[Kind], rng: np.random.Generator) -> Oc
 
 
 def _arrivals(rng: np.random.Generator, end_s: float) -> tuple[Arrival, ...]:
-    """Calls and messages that ask nothing of a watch."""
+    """Calls and messages that ask nothing of an agent."""
     times_s = sorted(
         float(round(rng.uniform(FIRST_S, end_s - LAST_S))) for _ in range(int(rng.integers(1, DISTRACTORS + 1)))
     )

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import WatchAct
+from automotive_cosim.drives.events.base import DriveAct
 from automotive_cosim.geo.breaches import binding_limit
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 
@@ -64,7 +64,7 @@ def harm(drive: Sequence[Moment]) -> Harm:
     )
 
 
-def distraction_s(acts: Iterable[WatchAct], texts: Iterable[str] = ()) -> float:
+def distraction_s(acts: Iterable[DriveAct], texts: Iterable[str] = ()) -> float:
     """Seconds for which what an agent told the driver took the eyes off the road.
 
     Args:

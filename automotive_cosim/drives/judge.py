@@ -15,7 +15,7 @@ from typing import Any
 
 from automotive_cosim.contracts import AlertKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, WatchAct
+from automotive_cosim.drives.events.base import DriveAct, EventKind
 from automotive_cosim.drives.events.tracker import DriveEvent
 
 REPEAT_S = 60.0
@@ -204,7 +204,7 @@ class _Case:
     caused: bool = False
     taken: bool = False
 
-    def is_too_early(self, act: WatchAct) -> bool:
+    def is_too_early(self, act: DriveAct) -> bool:
         """Whether an act comes so long before the obligation that it does not prepare for it.
 
         A driver who heeds a warning meets the obligation later, or never: what counts is when it would have come.
@@ -226,7 +226,7 @@ class _Case:
 def judge(
     kinds: Mapping[str, EventKind],
     events: Sequence[DriveEvent],
-    acts: Sequence[WatchAct],
+    acts: Sequence[DriveAct],
     due_anyway: Mapping[int, float | None],
     against: Against,
     at_start: Mapping[str, Any] | None = None,
@@ -269,7 +269,7 @@ def _has_passed(event: DriveEvent, kind: EventKind) -> bool:
     return event.ended_early or (kind.eases and event.eased_s is not None)
 
 
-def _heeds(act: WatchAct, event: DriveEvent, kind: EventKind) -> bool:
+def _heeds(act: DriveAct, event: DriveEvent, kind: EventKind) -> bool:
     """Whether an act told of an event of the do-nothing run, or settled it, in time."""
     if event.obliged_s is None or event.deadline_s is None:
         return False
@@ -324,7 +324,7 @@ BACK = 100
 """Moments that a kind looks back on at most."""
 
 
-def _contrary(case: _Case, act: WatchAct) -> bool:
+def _contrary(case: _Case, act: DriveAct) -> bool:
     """Whether an act brought an event about: it wrote what the kind watches, the wrong way, just before."""
     before_s = case.event.observable_s - act.time_s
     return 0.0 <= before_s <= CAUSED_S and case.kind.concerns(act) and not case.kind.settles(act, case.event.value)
@@ -347,7 +347,7 @@ class _Bench:
     alerted_kmh: dict[AlertKind, float | None] = field(default_factory=dict)
     """The speed that it advised."""
 
-    def act(self, act: WatchAct) -> JudgedAct:
+    def act(self, act: DriveAct) -> JudgedAct:
         """What an act was."""
         judged = self._judged(act)
         if judged.worth.is_nuisance:
@@ -360,7 +360,7 @@ class _Bench:
             self.alerted_kmh[act.alert] = act.speed_kmh
         return judged
 
-    def _judged(self, act: WatchAct) -> JudgedAct:
+    def _judged(self, act: DriveAct) -> JudgedAct:
         if act.releases:
             return JudgedAct(act.time_s, act.words, Worth.NEUTRAL)
         there = [case for case in self.cases if case.is_open(act.time_s)]
@@ -397,7 +397,7 @@ class _Bench:
         wrong = any((case.event.obliged_s or 0.0) <= act.time_s for case in due)
         return JudgedAct(act.time_s, act.words, Worth.WRONG if wrong else Worth.FALSE, "", reason)
 
-    def _supported(self, act: WatchAct, meant: Sequence[EventKind], supported: Sequence[EventKind]) -> JudgedAct:
+    def _supported(self, act: DriveAct, meant: Sequence[EventKind], supported: Sequence[EventKind]) -> JudgedAct:
         """An act that is true for all that is known, although nothing is due: neutral, unless it was just told, and
         something has supported it ever since."""
         about = min(supported, key=lambda kind: len(kind.alerts)).name if supported else ""
@@ -408,7 +408,7 @@ class _Bench:
             return JudgedAct(act.time_s, act.words, Worth.REPEAT, about, reason)
         return JudgedAct(act.time_s, act.words, Worth.NEUTRAL, about)
 
-    def _told(self, act: WatchAct, cases: Sequence[_Case]) -> tuple[Worth, float]:
+    def _told(self, act: DriveAct, cases: Sequence[_Case]) -> tuple[Worth, float]:
         """Notes an act that is right for some open events; the best that it is for any of them, and when one of
         them was told of last."""
         worths = []
@@ -438,7 +438,7 @@ class _Bench:
             min(unnamed, key=_most_likely).is_named = True
         return min(worths, key=(Worth.RIGHT, Worth.LATE, Worth.NEUTRAL, Worth.REPEAT).index), before_s
 
-    def _is_slower(self, act: WatchAct) -> bool:
+    def _is_slower(self, act: DriveAct) -> bool:
         """Whether an alert advises a clearly lower speed than the last one of its kind."""
         before_kmh = self.alerted_kmh.get(act.alert) if act.alert is not None else None
         return act.speed_kmh is not None and before_kmh is not None and act.speed_kmh * WORSE <= before_kmh
@@ -449,7 +449,7 @@ class _Bench:
         return all(any(self.against(kind, at_s) is None for kind in meant) for at_s in seconds)
 
 
-def _step(act: WatchAct, cases: Sequence[_Case]) -> JudgedAct:
+def _step(act: DriveAct, cases: Sequence[_Case]) -> JudgedAct:
     """A step towards what was asked for: right if the state is reached by it."""
     for case in cases:
         done_s, deadline_s = case.event.done_s, case.event.deadline_s
@@ -466,7 +466,7 @@ def _most_likely(case: _Case) -> tuple[int, float]:
     return len(case.kind.alerts), float("inf") if obliged_s is None else obliged_s
 
 
-def _sets_back(act: WatchAct, written: set[str], at_start: Mapping[str, Any]) -> bool:
+def _sets_back(act: DriveAct, written: set[str], at_start: Mapping[str, Any]) -> bool:
     """Whether an act only sets back what the agent itself had changed."""
     return bool(act.writes) and all(
         path in written and path in at_start and at_start[path] == value for path, value in act.writes

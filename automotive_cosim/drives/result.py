@@ -9,7 +9,7 @@ from automotive_cosim.cosim.exposed import states_of, stretches
 from automotive_cosim.drives.harm import Harm, distraction_s
 from automotive_cosim.drives.judge import JudgedAct, JudgedEvent, Judgement
 from automotive_cosim.drives.score import Score, score
-from automotive_cosim.drives.watch import Watch
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.episode.specification import End
 from automotive_cosim.measures import ExposureCell, FollowingFigures, exposure, following_figures
 from automotive_cosim.tasking.policy import Breach
@@ -72,32 +72,32 @@ class DriveOutcome:
         return asdict(self) | {"trace_sha256": self.trace_sha256}
 
 
-def result_of(watch: Watch) -> DriveResult:
-    """The figures of a watch that is over."""
-    judgement = watch.judgement
+def result_of(session: DriveSession) -> DriveResult:
+    """The figures of a session that is over."""
+    judgement = session.judgement
     assert judgement is not None
-    events, acts, found = judged_since(judgement, watch.moments[0].time_s, watch.seconds)
-    mine, nobodys = watch.harms
-    texts = [str(step.action.text) for step in watch.steps if step.action is not None and step.action.text]
+    events, acts, found = judged_since(judgement, session.moments[0].time_s, session.seconds)
+    mine, nobodys = session.harms
+    texts = [str(step.action.text) for step in session.steps if step.action is not None and step.action.text]
     return DriveResult(
-        agent_error=watch.failure,
+        agent_error=session.failure,
         score=found,
         value=found.value,
         harm=mine,
         baseline_harm=nobodys,
-        distraction_s=distraction_s(watch.acts, texts),
+        distraction_s=distraction_s(session.acts, texts),
         events=events,
         acts=acts,
-        breaches=watch.breaches,
-        unwatched_from_s=watch.unwatched_from_s,
-        steps=len(watch.steps) - 1,
-        malformed=len(watch.malformed),
-        malformed_why=next(iter(watch.malformed), ""),
-        waits=watch.waits,
-        wakes=watch.wakes,
-        trace_sha256=watch.trace_sha256,
-        measures=following_figures(states_of(watch.moments)),
-        exposure=exposure(stretches(watch.moments)),
+        breaches=session.breaches,
+        unwatched_from_s=session.unwatched_from_s,
+        steps=len(session.steps) - 1,
+        malformed=len(session.malformed),
+        malformed_why=next(iter(session.malformed), ""),
+        waits=session.waits,
+        wakes=session.wakes,
+        trace_sha256=session.trace_sha256,
+        measures=following_figures(states_of(session.moments)),
+        exposure=exposure(stretches(session.moments)),
     )
 
 

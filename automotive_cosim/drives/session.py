@@ -1,9 +1,9 @@
-"""A watch: an agent's session on a drive of many minutes.
+"""An agent at the cockpit on a drive of many minutes.
 
     wait  ->  the road goes on, second by second, until something wakes or a minute has passed
     act   ->  as in any session
 
-The driver has given one standing order. Nothing ends the watch but the end of the drive, and nothing says which
+The driver has given one standing order. Nothing ends the session but the end of the drive, and nothing says which
 change is an event.
 """
 
@@ -20,7 +20,7 @@ from automotive_cosim.drives.acts import acts_of, refusal, spoken
 from automotive_cosim.drives.alarm import Alarm, Noticed, noticed
 from automotive_cosim.drives.driver import IN_FORCE_S, driver_line
 from automotive_cosim.drives.errands import said
-from automotive_cosim.drives.events import KINDS, DriveEvent, Tracker, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, Tracker
 from automotive_cosim.drives.harm import Harm, harm
 from automotive_cosim.drives.judge import BACK, Against, Judgement, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, ORDERS_WITH_ERRANDS, STANDING_ORDERS
@@ -75,12 +75,12 @@ class Twin:
 
 
 @dataclass(kw_only=True)
-class Watch(JudgedSession):
+class DriveSession(JudgedSession):
     """A session on a drive. Make one with ``depart_with``."""
 
     tracker: Tracker
     alarm: Alarm
-    acts: list[WatchAct] = field(default_factory=list)
+    acts: list[DriveAct] = field(default_factory=list)
     """What the agent did so far that reaches driver, car or road."""
     twins: list[Twin] = field(default_factory=list)
     due_anyway: dict[int, float | None] = field(default_factory=dict)
@@ -109,7 +109,7 @@ class Watch(JudgedSession):
         setup: SessionSetup,
         observer: Observer | None = None,
     ) -> Self:
-        """The watch that begins at the present moment of a drive, and takes it over.
+        """The session that begins at the present moment of a drive, and takes it over.
 
         Args:
             world: the running drive.
@@ -121,10 +121,10 @@ class Watch(JudgedSession):
         """
         orders = ORDERS_WITH_ERRANDS if world.car.errands else STANDING_ORDERS
         begun: dict[str, Any] = beginning(world, orders[setup.conditions.language], setup, (), observer)
-        watch = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm())
-        watch._note(world.moment)
-        watch._read()
-        return watch
+        session = cls(**begun, baseline=Baseline(world), tracker=Tracker(KINDS), alarm=Alarm())
+        session._note(world.moment)
+        session._read()
+        return session
 
     @property
     def events(self) -> Sequence[DriveEvent]:
@@ -207,7 +207,7 @@ class Watch(JudgedSession):
         self._read()
 
     def _read(self) -> None:
-        """Adds to the observation what the car reads, with a mark at what has changed, and that this is a watch."""
+        """Adds to the observation what the car reads, with a mark at what has changed, and that this is a drive."""
         self.marked = tuple(change.name for change in self.changes)
         self.changes.clear()
         vehicle = self.observation.vehicle

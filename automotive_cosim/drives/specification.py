@@ -11,8 +11,8 @@ from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.result import DriveOutcome, result_of
 from automotive_cosim.drives.script import DriveScript
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
-from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import SessionSetup
@@ -56,8 +56,8 @@ class DriveSpec:
         channels: frozenset[Channel] = ALL,
         observer: Observer | None = None,
         script: DriveScript | None = None,
-    ) -> Watch:
-        """Departs; the caller closes the watch.
+    ) -> DriveSession:
+        """Departs; the caller closes the session.
 
         Args:
             simulations: warm traffic, shared with others.
@@ -75,12 +75,12 @@ class DriveSpec:
         setup = SessionSetup(channels, self.conditions, self.max_steps, drive.duration_s)
         world = depart(drive, simulations, observer)
         try:
-            return Watch.depart_with(world, setup, observer)
+            return DriveSession.depart_with(world, setup, observer)
         except BaseException:
             world.close()
             raise
 
-    def outcome(self, episode_id: str, session: Watch) -> DriveOutcome:
+    def outcome(self, episode_id: str, session: DriveSession) -> DriveOutcome:
         """The result, once the drive is over."""
         assert session.end is not None
         seconds = round(session.seconds, 3)

@@ -9,7 +9,7 @@ from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import KMH_PER_MPS, Json
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.driver import DRIVES_ON, HEEDS, RELEASED, driver_events
-from automotive_cosim.drives.watch import Watch
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.geo.breaches import limit_at
 
 LAMPS = {
@@ -21,8 +21,8 @@ LAMPS = {
 }
 
 
-def timeline(watch: Watch) -> Json:
-    """The timeline of a watch that is over; times in seconds since departure.
+def timeline(session: DriveSession) -> Json:
+    """The timeline of a session that is over; times in seconds since departure.
 
     | key | one value a second, or one entry each |
     |---|---|
@@ -36,7 +36,7 @@ def timeline(watch: Watch) -> Json:
     | ``advice`` | from when to when the driver kept to what was advised |
     | ``watched_until_s`` | from then on nobody watched; None if somebody did to the end |
     """
-    moments, begun_s = watch.moments, watch.moments[0].time_s
+    moments, begun_s = session.moments, session.moments[0].time_s
 
     def since(time_s: float) -> float:
         return round(time_s - begun_s, 1)
@@ -45,18 +45,18 @@ def timeline(watch: Watch) -> Json:
         return [of(moment) for moment in moments]
 
     limits = [limit_at(moment.context).kmh for moment in moments]
-    unwatched_s = watch.unwatched_from_s
+    unwatched_s = session.unwatched_from_s
     return {
         "time_s": each(lambda now: since(now.time_s)),
         "speed_kmh": each(_kmh),
         "limit_kmh": [None if limit is None else round(limit, 1) for limit in limits],
-        "baseline_kmh": [_kmh(moment) for moment in watch.baseline_moments],
+        "baseline_kmh": [_kmh(moment) for moment in session.baseline_moments],
         "gap_s": each(_gap_s),
         "ttc_s": each(_ttc_s),
         "visibility_m": each(lambda now: round(now.weather.visibility)),
         "grip": each(lambda now: round(now.driving.road.friction, 2)),
         "lamps": each(lambda now: [name for name, lamp in LAMPS.items() if now.signals[lamp.path]]),
-        "wakes": [[since(time_s), list(names)] for time_s, names in watch.woken],
+        "wakes": [[since(time_s), list(names)] for time_s, names in session.woken],
         "driver": [[since(event.time_s), event.text] for event in driver_events(moments)],
         "advice": [[since(from_s), since(to_s)] for from_s, to_s in _advice(moments)],
         "watched_until_s": unwatched_s,

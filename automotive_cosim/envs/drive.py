@@ -9,9 +9,9 @@ from typing import Any
 from automotive_cosim.contracts import Action
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.result import result_of
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.specification import MOST_STEPS, DriveSpec
-from automotive_cosim.drives.watch import Watch
 from automotive_cosim.envs.base import SessionEnv, StepResult, action_of, ended, info_of, spaces_of
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.observer import Observer
@@ -24,14 +24,14 @@ from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.traffic.fork import Simulations
 
 
-class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
+class DriveEnv(SessionEnv[dict[str, Any], Any, DriveSession]):
     """A drive of ten to thirty minutes, on which something may require an act.
 
     Spaces are those of ``CockpitEnv``; the readings that the car notes are in ``vehicle`` (``noticed``). A ``wait``
     lasts until something changes, at most a minute. The reward is 0 until the drive is over, then its score in
     hundredths: 0 for doing nothing, 1 for the rule-perfect watcher, and negative for who disturbs more than he
     helps. ``info`` holds ``step``, ``action_result`` and ``events`` of the road; at the end also ``score``,
-    ``result`` and ``trace_sha256``. ``env.unwrapped.episode`` is the typed watch behind it.
+    ``result`` and ``trace_sha256``. ``env.unwrapped.episode`` is the typed session behind it.
 
     Seeds: ``reset(seed=s)`` draws drive ``s`` of the family, with the traffic of that seed; ``reset()`` draws
     another one. ``options`` are not used.
@@ -107,14 +107,14 @@ class DriveEnv(SessionEnv[dict[str, Any], Any, Watch]):
             ResetNeeded: the drive is over, or there has been none.
             TrafficError: the traffic simulation failed.
         """
-        watch = self._running()
-        watch.step(action_of(action))
-        info, reward = info_of(watch), 0.0
-        if watch.end is not None:
-            result = result_of(watch)
-            info |= {"score": result.value, "result": result, "trace_sha256": watch.trace_sha256}
+        session = self._running()
+        session.step(action_of(action))
+        info, reward = info_of(session), 0.0
+        if session.end is not None:
+            result = result_of(session)
+            info |= {"score": result.value, "result": result, "trace_sha256": session.trace_sha256}
             reward = result.value / 100.0
-        return self._encoded(), reward, *ended(watch), info
+        return self._encoded(), reward, *ended(session), info
 
     def _encoded(self) -> dict[str, Any]:
         seen, given = self.episode.observation, self._setup.given

@@ -33,9 +33,9 @@ from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.reading import Gathered, Reader
 from automotive_cosim.drives.result import result_of
 from automotive_cosim.drives.score import LEAST_WORTH, score
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.wakes import DUE_S, LONGEST_S, WAKES
-from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS
 from automotive_cosim.envs.base import SessionEnv, ended
 from automotive_cosim.envs.drive import settings_of
@@ -158,7 +158,7 @@ FEATURES: Mapping[str, Feature] = {
 """Numbers by what they tell, each clipped to [-1, 1]."""
 
 
-class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Watch]):
+class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
     """Drives of one or several families, one drawn at each reset.
 
     The reward of a step is what it changed in the utility of the drive (``drives.score``), as a share of what the
@@ -233,17 +233,17 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Watch]):
             ResetNeeded: the drive is over, or there has been none.
             TrafficError: the traffic simulation failed.
         """
-        watch = self._running()
+        session = self._running()
         chosen = ACTIONS[number_of(action, len(ACTIONS))]
         if chosen.kind is not None:
-            self._shown_s[chosen.kind] = watch.observation.time_s
-        watch.step(chosen)
-        found = score(watch.judged_so_far(), watch.seconds)
+            self._shown_s[chosen.kind] = session.observation.time_s
+        session.step(chosen)
+        found = score(session.judged_so_far(), session.seconds)
         before, self._utility = self._utility, found.utility / (2 * LEAST_WORTH)
         info: dict[str, Any] = {}
-        if watch.end is not None:
-            info = {"score": result_of(watch).value, "trace_sha256": watch.trace_sha256}
-        return self._numbers(), self._utility - before, *ended(watch), info
+        if session.end is not None:
+            info = {"score": result_of(session).value, "trace_sha256": session.trace_sha256}
+        return self._numbers(), self._utility - before, *ended(session), info
 
     def _numbers(self) -> npt.NDArray[np.float32]:
         seen = self.episode.observation

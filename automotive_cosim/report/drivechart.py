@@ -66,7 +66,7 @@ def timeline_chart(row: DriveTrialRow, timeline: Json) -> tuple[str, str]:
 
     Args:
         row: the drive.
-        timeline: its file, see ``run.watch``.
+        timeline: its file, see ``drives.timeline``.
 
     Raises:
         SetupError: matplotlib is not installed.

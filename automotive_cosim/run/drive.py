@@ -12,15 +12,15 @@ from typing import Any
 from automotive_cosim.agents import Agent
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Json
-from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, EventKind
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.judge import ORDER, JudgedAct, JudgedEvent, facts_of, judge
 from automotive_cosim.drives.result import DriveResult, judged_since, result_of
 from automotive_cosim.drives.score import Score
 from automotive_cosim.drives.script import DriveScript
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
-from automotive_cosim.drives.watch import Watch
 from automotive_cosim.episode.observer import Observers
 from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.observe import Channel
@@ -54,7 +54,7 @@ class JudgedDrive:
     """The input of a drive's judgement; times are simulation times."""
 
     events: tuple[DriveEvent, ...]
-    acts: tuple[WatchAct, ...]
+    acts: tuple[DriveAct, ...]
     due_anyway: Mapping[int, float | None]
     """By number of an event, when its obligation arose in its do-nothing copy."""
     commands: Mapping[str, Any]
@@ -82,10 +82,10 @@ class JudgedDrive:
         return judged_since(judged, self.begun_s, self.seconds)
 
     @classmethod
-    def of(cls, watch: Watch) -> JudgedDrive:
+    def of(cls, session: DriveSession) -> JudgedDrive:
         """The input of a drive's judgement that is over."""
-        against = facts_of(watch.moments)
-        times_s = sorted({act.time_s for act in watch.acts})
+        against = facts_of(session.moments)
+        times_s = sorted({act.time_s for act in session.acts})
         facts = {(kind.name, time_s): against(kind, time_s) for kind in KINDS.values() for time_s in times_s}
 
         def noted(kind: EventKind, time_s: float) -> str | None:
@@ -93,8 +93,8 @@ class JudgedDrive:
                 facts[kind.name, time_s] = against(kind, time_s)
             return facts[kind.name, time_s]
 
-        events, acts, due_anyway = tuple(watch.events), tuple(watch.acts), dict(watch.due_anyway)
-        commands, untouched = watch.moments[0].commands, watch.untouched
+        events, acts, due_anyway = tuple(session.events), tuple(session.acts), dict(session.due_anyway)
+        commands, untouched = session.moments[0].commands, session.untouched
         judge(KINDS, events, acts, due_anyway, noted, commands, untouched)  # which also asks between two alerts
         return cls(
             events,
@@ -103,8 +103,8 @@ class JudgedDrive:
             commands,
             tuple((name, time_s, fact) for (name, time_s), fact in facts.items()),
             untouched,
-            watch.moments[0].time_s,
-            watch.seconds,
+            session.moments[0].time_s,
+            session.seconds,
         )
 
 
@@ -126,7 +126,7 @@ class DriveRecord:
         return [*self.steps, {"result": {"timeline": self.timeline}}]
 
 
-DriveObserver = TrialObserver[Watch, DriveRecord]
+DriveObserver = TrialObserver[DriveSession, DriveRecord]
 """Observes a drive."""
 
 
@@ -173,25 +173,25 @@ def run_drive(
     """
     with ExitStack() as ends:
         own = simulations or ends.enter_context(closing(Simulations()))
-        watch = setup.begin(own, agent.channels, Observers(observers), plan)
-        ends.callback(watch.close)
+        session = setup.begin(own, agent.channels, Observers(observers), plan)
+        ends.callback(session.close)
         answers, channels = Answers(agent, setup.conditions), tuple(sorted(agent.channels))
-        agent.reset(watch.goal)
-        end = play_observed(watch, agent, answers, observers, wall_s)
-        result = result_of(watch)
+        agent.reset(session.goal)
+        end = play_observed(session, agent, answers, observers, wall_s)
+        result = result_of(session)
         record = DriveRecord(
             row=judged_row(planned, end, channels, result, **asdict(answers.usage)),
-            timeline=timeline(watch),
-            steps=tuple(_steps(watch)),
-            judged=JudgedDrive.of(watch),
+            timeline=timeline(session),
+            steps=tuple(_steps(session)),
+            judged=JudgedDrive.of(session),
         )
         for observer in observers:
             observer.finished(record)
         return record
 
 
-def _steps(watch: Watch) -> list[Json]:
-    begun_s = watch.moments[0].time_s
+def _steps(session: DriveSession) -> list[Json]:
+    begun_s = session.moments[0].time_s
     return [
         {
             "step": step.number,
@@ -201,7 +201,7 @@ def _steps(watch: Watch) -> list[Json]:
             "feedback": plain(step.feedback),
             "sha256": _digests(step),
         }
-        for step in watch.steps
+        for step in session.steps
     ]
 
 

@@ -23,7 +23,7 @@ from PIL import Image
 
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import KMH_PER_MPS, Element
-from automotive_cosim.drives.watch import Watch
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.interface.trace import plain
 from automotive_cosim.run.collect import PICTURE_QUALITY
 from automotive_cosim.run.drive import DriveObserver, DriveRecord
@@ -52,7 +52,7 @@ class DriveRecorder(DriveObserver):
         self._pictured: tuple[int, npt.NDArray[np.uint8]] | None = None
         """The last picture, and the number of its step."""
 
-    def begun(self, session: Watch, shot: Shot) -> None:
+    def begun(self, session: DriveSession, shot: Shot) -> None:
         """Creates the folder and begins its files."""
         for name in OURS:
             remove(self.folder / name)
@@ -63,7 +63,7 @@ class DriveRecorder(DriveObserver):
     def stepped(self, shot: Shot) -> None:
         """Writes a step."""
         assert self._lines is not None
-        step, watch, picture = shot.step, shot.session, shot.screenshot
+        step, session, picture = shot.step, shot.session, shot.screenshot
         if self._pictured is None or picture is not self._pictured[1]:
             path = self.folder / "screenshots" / f"step_{step.number:03d}.jpg"
             Image.fromarray(picture).save(path, quality=PICTURE_QUALITY, subsampling=0)
@@ -71,7 +71,7 @@ class DriveRecorder(DriveObserver):
         line = {
             "number": step.number,
             "picture": self._pictured[0],
-            "at_s": round(step.moment.time_s - watch.moments[0].time_s, 2),
+            "at_s": round(step.moment.time_s - session.moments[0].time_s, 2),
             "local_time": step.moment.local_time.isoformat(timespec="seconds"),
             "words": action_in_words(step.action, shot.seen) if step.number else "departure",
             "action": None if step.action is None else to_json(step.action),
@@ -79,7 +79,7 @@ class DriveRecorder(DriveObserver):
             "feedback": plain(step.feedback),
             "thought": "",
             "stages": [stage.as_json() for stage in shot.stages],
-            "context": watch.observation.context or "",
+            "context": session.observation.context or "",
             "speed_kmh": round(step.moment.driving.speed_mps * KMH_PER_MPS, 1),
         }
         self._lines.write(json.dumps(line, ensure_ascii=False) + "\n")

@@ -19,7 +19,7 @@ from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.contracts.given import Language
 from automotive_cosim.cosim.car import with_cause
 from automotive_cosim.drives.errands import AFTER_S, ASKED_APART_S, SPARE_S, said, understood, with_errands
-from automotive_cosim.drives.events import KINDS, Tracker, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct, Tracker
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.hands import Hands
 from automotive_cosim.drives.judge import EventOutcome, Judgement, Worth, facts_of, judge
@@ -70,7 +70,7 @@ def test_without_errands_a_script_is_what_it_was() -> None:
     assert DriveSettings(errands=False).applied(script) == script
 
 
-def judged(errand: Errand, states: dict[float, dict[str, Any]], acts: tuple[WatchAct, ...]) -> Judgement:
+def judged(errand: Errand, states: dict[float, dict[str, Any]], acts: tuple[DriveAct, ...]) -> Judgement:
     """Two minutes in which somebody asks for something, and from when on something is as it is."""
     drive, tracker, now = [], Tracker(KINDS), dict[str, Any]()
     for second in range(120):
@@ -81,8 +81,8 @@ def judged(errand: Errand, states: dict[float, dict[str, Any]], acts: tuple[Watc
     return judge(KINDS, tracker.events, acts, {}, facts_of(drive), drive[0].commands)
 
 
-def sets(at_s: float, degrees: float) -> WatchAct:
-    return WatchAct(at_s, writes=((DRIVER, degrees),))
+def sets(at_s: float, degrees: float) -> DriveAct:
+    return DriveAct(at_s, writes=((DRIVER, degrees),))
 
 
 def warm(degrees: float) -> dict[str, Any]:
@@ -117,7 +117,7 @@ def test_a_temperature_counts_by_the_state(
 
 
 def test_the_right_reply_alone_counts() -> None:
-    answered = WatchAct(9.0, writes=(("messages.sent", None),))
+    answered = DriveAct(9.0, writes=(("messages.sent", None),))
     outcomes = [
         judged(MESSAGE, {10.0: state}, (answered,)).events[0].outcome
         for state in (sent("On my way"), sent("No"), sent("No", "On my way"))
@@ -184,13 +184,13 @@ def test_an_agent_hears_what_is_asked_and_a_wait_ends(simulations: Simulations) 
     script: DriveScript = replace(FAMILIES["grid_june"].draw(0), errands=(replace(WARMTH, at_s=8.0),))
     for language in (Language.ENGLISH, Language.GERMAN):
         spec = DriveSpec("grid_june", conditions=replace(DriveSpec("grid_june").conditions, language=language))
-        watch = spec.begin(simulations, script=script)
-        while not watch.observation.said:
-            assert watch.seconds < 20.0
-            watch.step(Action(ActionType.WAIT))
-        heard[language] = watch.observation
-        assert len(watch.goal.encode()) <= 512
-        watch.close()
+        session = spec.begin(simulations, script=script)
+        while not session.observation.said:
+            assert session.seconds < 20.0
+            session.step(Action(ActionType.WAIT))
+        heard[language] = session.observation
+        assert len(session.goal.encode()) <= 512
+        session.close()
     for language, seen in heard.items():
         assert seen.said == (said(WARMTH, language),)
         assert seen.vehicle is not None

@@ -33,7 +33,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events import KINDS, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct
 from automotive_cosim.drives.events.tracker import CLOSE_S, REOPEN_S
 from automotive_cosim.drives.margins import BORDER_S
 from automotive_cosim.traffic.base import Event
@@ -254,7 +254,7 @@ def test_an_open_flap_can_be_seen_before_the_car_drives_off_with_it() -> None:
     assert (event.observable_s, event.obliged_s) == (0.0, 12.0)
     assert not found(stream(10, kmh=0, signals=opened | {MOTION.GEAR.path: "P"}), "door")
     door = KINDS["door"]
-    assert [door.settles(WatchAct(0.0, writes=((CABIN.TRUNK.path, is_open),)), None) for is_open in (0, False)] == [
+    assert [door.settles(DriveAct(0.0, writes=((CABIN.TRUNK.path, is_open),)), None) for is_open in (0, False)] == [
         False,
         True,
     ]
@@ -281,7 +281,7 @@ def test_an_ordinary_moment_is_neither(name: str) -> None:
 @pytest.mark.parametrize("name", KINDS)
 def test_only_its_own_alerts_settle_a_kind(name: str) -> None:
     kind = KINDS[name]
-    settled = {alert for alert in AlertKind if kind.settles(WatchAct(0.0, alert), 30.0)}
+    settled = {alert for alert in AlertKind if kind.settles(DriveAct(0.0, alert), 30.0)}
     if not kind.alerts:
         assert kind.says or kind.by_state or not kind.is_due_ever
         assert not settled
@@ -292,16 +292,16 @@ def test_only_its_own_alerts_settle_a_kind(name: str) -> None:
 
 def test_what_is_said_settles_only_what_it_is_about() -> None:
     units, law = KINDS["limit_units"], KINDS["rule_change"]
-    said = WatchAct(0.0, said="Signs are in mph here")
+    said = DriveAct(0.0, said="Signs are in mph here")
     assert units.settles(said, 1.0)
     assert not law.settles(said, None)
-    assert law.settles(WatchAct(0.0, said="No horn at night here"), None)
+    assert law.settles(DriveAct(0.0, said="No horn at night here"), None)
     assert not KINDS["over_limit"].settles(said, 50.0)
 
 
 def test_only_the_unit_of_the_signs_is_right() -> None:
     miles, kilometres = (
-        WatchAct(0.0, writes=((HMI.DISTANCE_UNIT.path, unit),)) for unit in ("MILES", "KILOMETERS")
+        DriveAct(0.0, writes=((HMI.DISTANCE_UNIT.path, unit),)) for unit in ("MILES", "KILOMETERS")
     )
     assert [KINDS["limit_units"].settles(act, 1.0) for act in (miles, kilometres)] == [True, False]
     assert [KINDS["limit_units"].settles(act, 0.0) for act in (miles, kilometres)] == [False, True]
@@ -417,14 +417,14 @@ def test_a_little_above_the_sign_of_a_school_zone_is_a_look_alike() -> None:
 
 def test_an_advised_speed_above_the_limit_settles_nothing() -> None:
     kind = KINDS["over_limit"]
-    assert kind.settles(WatchAct(0.0, AlertKind.SPEED, speed_kmh=50.0), 50.0)
-    assert not kind.settles(WatchAct(0.0, AlertKind.SPEED, speed_kmh=70.0), 50.0)
-    assert kind.settles(WatchAct(0.0, requests=(SlowDown(48.0),)), 50.0)
-    assert not kind.settles(WatchAct(0.0, requests=(SlowDown(90.0),)), 50.0)
+    assert kind.settles(DriveAct(0.0, AlertKind.SPEED, speed_kmh=50.0), 50.0)
+    assert not kind.settles(DriveAct(0.0, AlertKind.SPEED, speed_kmh=70.0), 50.0)
+    assert kind.settles(DriveAct(0.0, requests=(SlowDown(48.0),)), 50.0)
+    assert not kind.settles(DriveAct(0.0, requests=(SlowDown(90.0),)), 50.0)
 
 
 def test_an_automatic_switch_lights_nothing_by_day() -> None:
-    kind, act = KINDS["lamps"], WatchAct(0.0, writes=((LIGHTS.SWITCH.path, "AUTO"),))
+    kind, act = KINDS["lamps"], DriveAct(0.0, writes=((LIGHTS.SWITCH.path, "AUTO"),))
     assert kind.settles(act, 1.0)
     assert not kind.settles(act, 0.0)
 

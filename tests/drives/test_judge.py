@@ -9,7 +9,7 @@ from automotive_cosim.cockpit.signals import CABIN, LIGHTS
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import AlertKind, Answer, PullOver, Severity, SlowDown
 from automotive_cosim.drives.acts import acts_of, refusal
-from automotive_cosim.drives.events import KINDS, DriveEvent, EventKind, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent, EventKind
 from automotive_cosim.drives.judge import NOT_DUE, NUISANCE, ORDER, EventOutcome, Judgement, Worth, judge
 from automotive_cosim.drives.score import score, together
 from tests.drives.scenes import moment
@@ -35,7 +35,7 @@ APPROACH = replace(
 
 
 def judged(
-    *acts: WatchAct,
+    *acts: DriveAct,
     events: tuple[DriveEvent, ...] = (SPEEDING,),
     due: dict[int, float | None] | None = None,
     true: tuple[str, ...] = (),
@@ -48,8 +48,8 @@ def judged(
     return judge(KINDS, events, acts, due or {}, against, {LIGHTS.HIGH_BEAM.path: False})
 
 
-def warn(time_s: float, kind: AlertKind = AlertKind.SPEED) -> WatchAct:
-    return WatchAct(time_s, kind)
+def warn(time_s: float, kind: AlertKind = AlertKind.SPEED) -> DriveAct:
+    return DriveAct(time_s, kind)
 
 
 @pytest.mark.parametrize(
@@ -102,15 +102,15 @@ def test_an_act_that_puts_the_obligation_off_prepares_for_when_it_would_have_com
 def test_a_switch_or_a_request_prepares_however_early_it_comes() -> None:
     """Words are forgotten; lamps that are on, and a driver who was asked to go slower, are not."""
     far = replace(SPEEDING, obliged_s=130.0, deadline_s=140.0)
-    slower = judged(WatchAct(101.0, requests=(SlowDown(50.0),)), events=(far,))
+    slower = judged(DriveAct(101.0, requests=(SlowDown(50.0),)), events=(far,))
     assert slower.events[0].outcome is EventOutcome.PREPARED
     lamps = replace(far, kind="lamps", subject="", value=1.0)
-    lit = judged(WatchAct(101.0, writes=((LIGHTS.LOW_BEAM.path, True),)), events=(lamps,))
+    lit = judged(DriveAct(101.0, writes=((LIGHTS.LOW_BEAM.path, True),)), events=(lamps,))
     assert lit.events[0].outcome is EventOutcome.PREPARED
 
 
 def test_a_request_to_the_driver_settles_it_too() -> None:
-    assert judged(WatchAct(105.0, requests=(SlowDown(50.0),))).events[0].outcome is EventOutcome.HIT
+    assert judged(DriveAct(105.0, requests=(SlowDown(50.0),))).events[0].outcome is EventOutcome.HIT
 
 
 def test_another_alert_is_wrong_while_something_is_due() -> None:
@@ -180,7 +180,7 @@ def test_what_nobody_could_have_met_is_void() -> None:
 
 
 def test_an_obligation_that_comes_only_without_the_agent_is_prevented() -> None:
-    act = WatchAct(101.0, AlertKind.TUNNEL)
+    act = DriveAct(101.0, AlertKind.TUNNEL)
     assert judged(act, events=(APPROACH,), due={0: 110.0}).events[0].outcome is EventOutcome.PREVENTED
     assert judged(act, events=(APPROACH,), due={0: None}).events[0].outcome is EventOutcome.VOID
     assert judged(events=(APPROACH,), due={0: 110.0}).events[0].outcome is EventOutcome.VOID
@@ -192,7 +192,7 @@ def test_an_event_of_the_agents_own_making_earns_nothing() -> None:
     """The cheat of switching lamps off in order to switch them on."""
     dark = replace(SPEEDING, kind="lamps", subject="", value=1.0)
     off, on = (
-        WatchAct(at_s, writes=((LIGHTS.LOW_BEAM.path, lit),)) for at_s, lit in ((99.0, False), (105.0, True))
+        DriveAct(at_s, writes=((LIGHTS.LOW_BEAM.path, lit),)) for at_s, lit in ((99.0, False), (105.0, True))
     )
     found = judged(off, on, events=(dark,))
     assert found.events[0].outcome is EventOutcome.CAUSED
@@ -202,20 +202,20 @@ def test_an_event_of_the_agents_own_making_earns_nothing() -> None:
 
 def test_a_switch_set_back_is_no_nuisance_but_one_turned_for_nothing_is() -> None:
     lit, unlit = (
-        WatchAct(at_s, writes=((LIGHTS.HIGH_BEAM.path, on),)) for at_s, on in ((10.0, True), (20.0, False))
+        DriveAct(at_s, writes=((LIGHTS.HIGH_BEAM.path, on),)) for at_s, on in ((10.0, True), (20.0, False))
     )
     assert [act.worth for act in judged(lit, unlit).acts] == [Worth.FALSE, Worth.NEUTRAL]
 
 
 def test_words_and_stops_against_which_a_fact_speaks_are_nuisances() -> None:
-    said, stopped = WatchAct(10.0, said="Signs are in mph here"), WatchAct(12.0, requests=(PullOver(),))
+    said, stopped = DriveAct(10.0, said="Signs are in mph here"), DriveAct(12.0, requests=(PullOver(),))
     assert [act.worth for act in judged(said, stopped).acts] == [Worth.FALSE, Worth.FALSE]
     assert judged(said).acts[0].reason == "no limit_units"
     assert judged(said, true=("limit_units",)).acts[0].worth is Worth.NEUTRAL
 
 
 def test_words_that_no_kind_of_event_is_about_are_neither_right_nor_false() -> None:
-    assert judged(WatchAct(105.0, said="Slow down a little")).acts[0].worth is Worth.NEUTRAL
+    assert judged(DriveAct(105.0, said="Slow down a little")).acts[0].worth is Worth.NEUTRAL
 
 
 def test_a_warning_is_false_only_if_a_fact_speaks_against_each_thing_that_it_can_mean() -> None:
@@ -234,7 +234,7 @@ def test_what_is_true_is_not_a_look_alike_either() -> None:
 
 
 def test_a_stop_must_be_due_and_not_only_true() -> None:
-    stop = WatchAct(300.0, requests=(PullOver(),))
+    stop = DriveAct(300.0, requests=(PullOver(),))
     meant = tuple(kind.name for kind in KINDS.values() if PullOver in kind.requests)
     found = judged(stop, true=meant).acts[0]
     assert (found.worth, found.reason) == (Worth.FALSE, NOT_DUE)
@@ -243,7 +243,7 @@ def test_a_stop_must_be_due_and_not_only_true() -> None:
 
 
 def test_to_crawl_is_not_to_keep_a_limit() -> None:
-    speeds = {kmh: judged(WatchAct(105.0, requests=(SlowDown(kmh),))).events[0].outcome for kmh in (20.0, 45.0)}
+    speeds = {kmh: judged(DriveAct(105.0, requests=(SlowDown(kmh),))).events[0].outcome for kmh in (20.0, 45.0)}
     assert speeds == {20.0: EventOutcome.MISSED, 45.0: EventOutcome.HIT}
 
 
@@ -284,7 +284,7 @@ def test_what_comes_back_within_a_minute_may_be_told_again() -> None:
 
 
 def test_hazard_lights_for_who_comes_fast_from_behind_are_neutral() -> None:
-    lit = WatchAct(300.0, writes=((LIGHTS.HAZARD.path, True),))
+    lit = DriveAct(300.0, writes=((LIGHTS.HAZARD.path, True),))
     assert judged(lit, true=("rear_end",)).acts[0].worth is Worth.NEUTRAL
     assert judged(lit).acts[0].worth is Worth.FALSE
 
@@ -307,7 +307,7 @@ def test_to_take_advice_back_is_no_act_and_what_the_road_refuses_is_none() -> No
 def test_a_repeat_holds_nobody_back() -> None:
     """A red warning of a tyre that the driver was told of just now costs a nuisance, and no minutes."""
     soft = replace(SPEEDING, kind="tyre", subject="", value=None)
-    red = WatchAct(120.0, AlertKind.VEHICLE, Severity.CRITICAL)
+    red = DriveAct(120.0, AlertKind.VEHICLE, Severity.CRITICAL)
     found = judged(warn(105.0, AlertKind.VEHICLE), red, events=(soft,), true=("tyre",)).acts[1]
     assert (found.worth, found.holds_s) == (Worth.REPEAT, 0.0)
     assert judged(replace(red, time_s=300.0)).acts[0].holds_s > 0.0
@@ -325,7 +325,7 @@ def test_a_limit_that_the_car_keeps_at_its_sign_is_void() -> None:
 
 def test_a_command_that_no_kind_concerns_is_against_the_order() -> None:
     assert (
-        judged(WatchAct(10.0, writes=(("Vehicle.Cabin.Infotainment.Media.Volume", 50.0),))).acts[0].reason == ORDER
+        judged(DriveAct(10.0, writes=(("Vehicle.Cabin.Infotainment.Media.Volume", 50.0),))).acts[0].reason == ORDER
     )
 
 
@@ -386,10 +386,10 @@ def test_a_drive_without_events_changes_no_score_of_several() -> None:
     assert one == four < 0.0
 
 
-STOP = WatchAct(90.0, requests=(PullOver(),))
+STOP = DriveAct(90.0, requests=(PullOver(),))
 
 
-def stopped(*acts: WatchAct) -> Judgement:
+def stopped(*acts: DriveAct) -> Judgement:
     """A drive on which nothing arises, while the do-nothing run speeds."""
     against = {"over_limit": "the car keeps the limit"}
     return judge(KINDS, (), acts, {}, lambda kind, at_s: against.get(kind.name, "nothing"), {}, (SPEEDING,))
@@ -405,9 +405,9 @@ def test_what_was_avoided_by_stopping_for_no_reason_is_missed() -> None:
 def test_what_was_told_or_settled_in_time_was_not_avoided() -> None:
     """The tailgate would have been open on the road; the car was stopped for nothing, and the tailgate closed."""
     door = replace(SPEEDING, kind="door", subject=CABIN.TRUNK.path, value=None)
-    closed = WatchAct(100.0, writes=((CABIN.TRUNK.path, False),))
+    closed = DriveAct(100.0, writes=((CABIN.TRUNK.path, False),))
 
-    def outcomes(*acts: WatchAct) -> list[EventOutcome]:
+    def outcomes(*acts: DriveAct) -> list[EventOutcome]:
         against = {"door": None} if closed in acts else {}
         found = judge(KINDS, (), acts, {}, lambda kind, at_s: against.get(kind.name, "nothing"), {}, (door,))
         return [event.outcome for event in found.events]

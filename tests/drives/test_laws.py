@@ -12,7 +12,7 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.contracts import AlertKind, Cruise, PullOver, Reroute, RoadRequest, Severity, SlowDown
-from automotive_cosim.drives.events import KINDS, DriveEvent, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import NOT_DUE, ORDER, Judgement, Worth, judge, most_frequent
 from automotive_cosim.drives.score import Score, score
@@ -29,19 +29,19 @@ def drive(family: str) -> Recorded:
     return recorded()[family]
 
 
-def judged(drive: Recorded, acts: Iterable[WatchAct], events: Sequence[DriveEvent] | None = None) -> Judgement:
+def judged(drive: Recorded, acts: Iterable[DriveAct], events: Sequence[DriveEvent] | None = None) -> Judgement:
     return judge(KINDS, drive.events if events is None else events, list(acts), {}, drive.against)
 
 
-def scored(drive: Recorded, acts: Iterable[WatchAct], events: Sequence[DriveEvent] | None = None) -> Score:
+def scored(drive: Recorded, acts: Iterable[DriveAct], events: Sequence[DriveEvent] | None = None) -> Score:
     return score(judged(drive, acts, events), drive.driven_s)
 
 
-def right(event: DriveEvent, delay_s: float = 0.0) -> WatchAct:
+def right(event: DriveEvent, delay_s: float = 0.0) -> DriveAct:
     """An act that settles an event, so long after its obligation."""
     assert event.obliged_s is not None
     kind, at_s = KINDS[event.kind], event.obliged_s + delay_s
-    return WatchAct(at_s, min(kind.alerts)) if kind.alerts else WatchAct(at_s, said=f"{kind.says[0]}, mph and km/h")
+    return DriveAct(at_s, min(kind.alerts)) if kind.alerts else DriveAct(at_s, said=f"{kind.says[0]}, mph and km/h")
 
 
 def every(drive: Recorded, seconds: float) -> list[float]:
@@ -93,12 +93,12 @@ def test_a_right_act_at_each_obligation_wins(drive: Recorded) -> None:
 @pytest.mark.parametrize("family", EVERY)
 def test_who_alerts_by_rote_does_worse_than_nobody(drive: Recorded) -> None:
     kinds = tuple(AlertKind)
-    in_turn = [WatchAct(at_s, kinds[turn % len(kinds)]) for turn, at_s in enumerate(every(drive, 10.0))]
+    in_turn = [DriveAct(at_s, kinds[turn % len(kinds)]) for turn, at_s in enumerate(every(drive, 10.0))]
     assert scored(drive, in_turn).value < 0.0
-    assert scored(drive, (WatchAct(at_s, AlertKind.SPEED) for at_s in drive.wakes_s)).value < 0.0
-    assert scored(drive, (WatchAct(at_s, AlertKind.SPEED) for at_s in every(drive, 30.0))).value < 0.0
+    assert scored(drive, (DriveAct(at_s, AlertKind.SPEED) for at_s in drive.wakes_s)).value < 0.0
+    assert scored(drive, (DriveAct(at_s, AlertKind.SPEED) for at_s in every(drive, 30.0))).value < 0.0
     likeliest = most_frequent(judged(drive, ()), KINDS)
-    assert scored(drive, (WatchAct(at_s, likeliest) for at_s in every(drive, 30.0))).value < 0.0
+    assert scored(drive, (DriveAct(at_s, likeliest) for at_s in every(drive, 30.0))).value < 0.0
 
 
 REQUESTS: tuple[RoadRequest, ...] = (PullOver(), SlowDown(20.0), SlowDown(45.0), Cruise(45.0), Reroute())
@@ -106,15 +106,15 @@ VALUES = (True, False, "OFF", "UP", "AUTO", "SNOW", "MILES", 20.0, 60.0)
 WORDS = ("a child is alone in the car", "signs are in mph here", "another law on lamps and horn", "look out")
 
 
-def acts_at(time_s: float) -> Iterator[WatchAct]:
+def acts_at(time_s: float) -> Iterator[DriveAct]:
     """Every alert, with and without a speed, every request, every switch that a kind is about, and words."""
     for alert in AlertKind:
-        yield WatchAct(time_s, alert)
-        yield WatchAct(time_s, alert, Severity.CRITICAL, 30.0)
-    yield from (WatchAct(time_s, requests=(request,)) for request in REQUESTS)
+        yield DriveAct(time_s, alert)
+        yield DriveAct(time_s, alert, Severity.CRITICAL, 30.0)
+    yield from (DriveAct(time_s, requests=(request,)) for request in REQUESTS)
     for path in sorted({path for kind in KINDS.values() for path in kind.writes}):
-        yield from (WatchAct(time_s, writes=((path, value),)) for value in VALUES)
-    yield from (WatchAct(time_s, said=words) for words in WORDS)
+        yield from (DriveAct(time_s, writes=((path, value),)) for value in VALUES)
+    yield from (DriveAct(time_s, said=words) for words in WORDS)
 
 
 @pytest.mark.parametrize("family", EVERY)
@@ -140,7 +140,7 @@ def test_a_look_alike_is_only_taken_where_a_fact_tells_it_from_an_event(drive: R
     """No kind that is supported for all that is known is charged as a look-alike."""
     for event in drive.events:
         for alert in KINDS[event.kind].alerts if event.lookalike else ():
-            (found,) = judged(drive, [WatchAct(event.observable_s, alert)], [event]).acts
+            (found,) = judged(drive, [DriveAct(event.observable_s, alert)], [event]).acts
             if found.worth is Worth.LOOKALIKE:
                 assert drive.against(KINDS[event.kind], event.observable_s), (event, found)
                 assert found.reason
@@ -159,7 +159,7 @@ def test_what_is_on_its_way_is_no_false_alarm(drive: Recorded) -> None:
         if not event.lookalike:
             for alert in KINDS[event.kind].alerts:
                 for at_s in {event.observable_s, event.obliged_s or event.observable_s}:
-                    (found,) = judged(drive, [WatchAct(at_s, alert)]).acts
+                    (found,) = judged(drive, [DriveAct(at_s, alert)]).acts
                     too_fast = alert is AlertKind.SPEED and event.value is not None
                     assert not found.worth.is_nuisance or too_fast, (event, alert, found)
 
@@ -181,7 +181,7 @@ def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(drive: Record
 def test_without_its_events_nothing_is_gained_on_a_drive(drive: Recorded) -> None:
     lookalikes = [replace(event) for event in drive.events if event.lookalike]
     assert scored(drive, (), lookalikes).value == 0.0
-    assert scored(drive, [WatchAct(drive.begun_s + 100.0, requests=(PullOver(),))], lookalikes).value <= 0.0
+    assert scored(drive, [DriveAct(drive.begun_s + 100.0, requests=(PullOver(),))], lookalikes).value <= 0.0
 
 
 def test_every_kind_comes_in_some_family_as_an_event_and_as_a_look_alike() -> None:

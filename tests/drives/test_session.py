@@ -1,4 +1,4 @@
-"""A watch on a drive: what wakes, what ends it, and that watchers get what they deserve."""
+"""A session on a drive: what wakes, what ends it, and that watchers get what they deserve."""
 
 import re
 from collections.abc import Callable, Iterator, Sequence
@@ -24,16 +24,16 @@ from automotive_cosim.contracts.given import Language
 from automotive_cosim.drives.alarm import Alarm, noticed
 from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.driver import driver_line
-from automotive_cosim.drives.events import KINDS, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
 from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
 from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import Score, score
+from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.drives.wakes import LONGEST_S, WAKES
-from automotive_cosim.drives.watch import Watch
 from automotive_cosim.drives.watchers import READS, AlertAll, AlertOften, AlertOnWake, RulePerfect, Silent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.loop import Actor, play
@@ -48,57 +48,59 @@ from tests.drives.scenes import limit, moment, vehicle
 
 FAMILY, SEED, FOR_S = "grid_june", 43, 420.0
 
-Begin = Callable[..., Watch]
+Begin = Callable[..., DriveSession]
 
 
 @pytest.fixture
 def begin(simulations: Simulations) -> Iterator[Begin]:
     """Departs on a drive of which only the first minutes are driven."""
-    watches: list[Watch] = []
+    sessions: list[DriveSession] = []
 
-    def departed(seconds: float = FOR_S, channels: frozenset[Channel] = READS) -> Watch:
+    def departed(seconds: float = FOR_S, channels: frozenset[Channel] = READS) -> DriveSession:
         world = depart(FAMILIES[FAMILY].draw(SEED), simulations)
-        watches.append(Watch.depart_with(world, SessionSetup(channels, max_steps=10_000, max_sim_s=seconds)))
-        return watches[-1]
+        sessions.append(
+            DriveSession.depart_with(world, SessionSetup(channels, max_steps=10_000, max_sim_s=seconds))
+        )
+        return sessions[-1]
 
     yield departed
-    for watch in watches:
-        watch.close()
+    for session in sessions:
+        session.close()
 
 
 @pytest.fixture(scope="module")
 def departures(simulations: Simulations) -> Iterator[Begin]:
     """The same for drives that several tests look at."""
-    watches: list[Watch] = []
+    sessions: list[DriveSession] = []
 
-    def departed() -> Watch:
+    def departed() -> DriveSession:
         world = depart(FAMILIES[FAMILY].draw(SEED), simulations)
-        watches.append(Watch.depart_with(world, SessionSetup(READS, max_steps=10_000, max_sim_s=FOR_S)))
-        return watches[-1]
+        sessions.append(DriveSession.depart_with(world, SessionSetup(READS, max_steps=10_000, max_sim_s=FOR_S)))
+        return sessions[-1]
 
     yield departed
-    for watch in watches:
-        watch.close()
+    for session in sessions:
+        session.close()
 
 
 @pytest.fixture(scope="module")
-def perfect(departures: Begin) -> tuple[Watch, Score]:
+def perfect(departures: Begin) -> tuple[DriveSession, Score]:
     """A drive with the rule-perfect watcher."""
-    watch = departures()
-    return watch, played(watch, RulePerfect())
+    session = departures()
+    return session, played(session, RulePerfect())
 
 
 @pytest.fixture(scope="module")
-def silent(departures: Begin) -> tuple[Watch, Score]:
+def silent(departures: Begin) -> tuple[DriveSession, Score]:
     """A drive with a watcher that says nothing."""
-    watch = departures()
-    return watch, played(watch, Silent())
+    session = departures()
+    return session, played(session, Silent())
 
 
-def played(watch: Watch, actor: Actor) -> Score:
-    play(watch, actor)
-    assert watch.judgement is not None
-    return score(watch.judgement, watch.seconds)
+def played(session: DriveSession, actor: Actor) -> Score:
+    play(session, actor)
+    assert session.judgement is not None
+    return score(session.judgement, session.seconds)
 
 
 def woken(scenes: Sequence[dict[str, Any]]) -> dict[int, list[str]]:
@@ -213,15 +215,15 @@ def test_fog_that_thickens_is_told_as_often_as_it_asks_for_less_speed() -> None:
     assert woken([{"visibility": visibility_m} for visibility_m in (9000.0, 5000.0, 2000.0)]) == {}
 
 
-def test_what_wakes_says_something_new(silent: tuple[Watch, Score]) -> None:
+def test_what_wakes_says_something_new(silent: tuple[DriveSession, Score]) -> None:
     """At the instant at which it wakes, or after the seconds for which it had to last; at departure all is new."""
-    watch, wakes = silent[0], {wake.name: wake for wake in WAKES}
-    times_s = [round(each.time_s) for each in watch.moments]
-    told = [(times_s.index(round(time_s)), wakes[name]) for time_s, names in watch.woken for name in names]
+    session, wakes = silent[0], {wake.name: wake for wake in WAKES}
+    times_s = [round(each.time_s) for each in session.moments]
+    told = [(times_s.index(round(time_s)), wakes[name]) for time_s, names in session.woken for name in names]
     assert told
     for at, wake in (each for each in told if each[0] > each[1].hold_s):
-        before = watch.moments[: at - round(wake.hold_s)]
-        assert wake.words(watch.moments[: at + 1][-20:]) != wake.words(before[-20:]), (at, wake.name)
+        before = session.moments[: at - round(wake.hold_s)]
+        assert wake.words(session.moments[: at + 1][-20:]) != wake.words(before[-20:]), (at, wake.name)
 
 
 def test_a_vehicle_ahead_wakes_in_time_to_brake_gently_and_once_more_when_it_is_urgent() -> None:
@@ -361,59 +363,59 @@ def test_every_wake_says_what_it_is_about() -> None:
 
 def test_a_result_says_that_something_changed_and_not_what(begin: Begin) -> None:
     """So that no table of the words in results watches a drive: what changed stands in the readings."""
-    watch, told = begin(240.0), set()
-    while watch.end is None:
-        watch.step(Action(ActionType.WAIT))
-        told.add(re.sub(r"\d+", "N", watch.observation.feedback.text))
-        assert watch.observation.vehicle is not None
-        assert ("(changed)" in (watch.observation.vehicle.noticed or "")) is bool(watch.marked)
+    session, told = begin(240.0), set()
+    while session.end is None:
+        session.step(Action(ActionType.WAIT))
+        told.add(re.sub(r"\d+", "N", session.observation.feedback.text))
+        assert session.observation.vehicle is not None
+        assert ("(changed)" in (session.observation.vehicle.noticed or "")) is bool(session.marked)
     assert told <= {"N s passed", "N s passed; something changed"}
 
 
-# --- a watch -------------------------------------------------------------------------------------------------
+# --- a session -------------------------------------------------------------------------------------------------
 
 
 def test_a_wait_ends_when_something_changes_or_after_a_minute(begin: Begin) -> None:
-    watch = begin(240.0)
+    session = begin(240.0)
     waits = []
-    while watch.end is None:
-        before_s = watch.seconds
-        watch.step(Action(ActionType.WAIT))
-        waits.append((round(watch.seconds - before_s, 6), "; " in watch.observation.feedback.text))
+    while session.end is None:
+        before_s = session.seconds
+        session.step(Action(ActionType.WAIT))
+        waits.append((round(session.seconds - before_s, 6), "; " in session.observation.feedback.text))
     assert all(waited_s <= LONGEST_S for waited_s, _ in waits)
     assert all(woken or waited_s == LONGEST_S for waited_s, woken in waits[:-1])
     assert any(0 < waited_s < LONGEST_S for waited_s, _ in waits)
 
 
 def test_neither_a_status_nor_many_steps_end_a_watch(begin: Begin) -> None:
-    watch = begin(60.0)
+    session = begin(60.0)
     for _ in range(40):
-        watch.step(Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE))
-    assert watch.end is None
-    assert watch.declared is None
-    played(watch, Silent())
-    assert watch.end is End.WATCH_OVER
-    assert watch.seconds == pytest.approx(60.0)
+        session.step(Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE))
+    assert session.end is None
+    assert session.declared is None
+    played(session, Silent())
+    assert session.end is End.WATCH_OVER
+    assert session.seconds == pytest.approx(60.0)
 
 
 def test_a_picture_comes_when_it_is_asked_for(begin: Begin) -> None:
-    watch = begin(60.0, ALL)
-    watch.step(Action(ActionType.WAIT, seconds=1))
-    assert watch.observation.screenshot is None
-    watch.step(Action(ActionType.NAVIGATE_HOME))
-    assert watch.observation.screenshot is not None
+    session = begin(60.0, ALL)
+    session.step(Action(ActionType.WAIT, seconds=1))
+    assert session.observation.screenshot is None
+    session.step(Action(ActionType.NAVIGATE_HOME))
+    assert session.observation.screenshot is not None
 
 
 def test_an_agent_that_breaks_down_leaves_the_drive_to_itself(begin: Begin) -> None:
-    watch = begin(120.0)
-    watch.step(Action(ActionType.WAIT, seconds=5))
-    failed_s = round(watch.seconds, 1)
-    watch.give_up("its process has ended")
-    assert watch.end is End.AGENT_FAILED
-    assert watch.seconds == pytest.approx(120.0)
-    assert watch.judgement is not None
-    assert watch.unwatched_from_s == failed_s < 10.0
-    assert timeline(watch)["watched_until_s"] == failed_s
+    session = begin(120.0)
+    session.step(Action(ActionType.WAIT, seconds=5))
+    failed_s = round(session.seconds, 1)
+    session.give_up("its process has ended")
+    assert session.end is End.AGENT_FAILED
+    assert session.seconds == pytest.approx(120.0)
+    assert session.judgement is not None
+    assert session.unwatched_from_s == failed_s < 10.0
+    assert timeline(session)["watched_until_s"] == failed_s
 
 
 def test_nothing_that_an_agent_reads_names_an_event(begin: Begin) -> None:
@@ -437,69 +439,71 @@ def test_the_same_seed_and_actions_give_the_same_trace(begin: Begin) -> None:
 
 
 @pytest.mark.slow
-def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(silent: tuple[Watch, Score]) -> None:
-    watch, found = silent
+def test_nobody_at_the_cockpit_scores_0_and_drives_as_the_baseline(silent: tuple[DriveSession, Score]) -> None:
+    session, found = silent
     assert found.events >= 2
     assert (found.value, found.recall, found.false_alarms) == (0.0, 0.0, 0)
-    assert [m.driving for m in watch.moments] == [m.driving for m in watch.baseline_moments]
-    assert watch.unwatched_from_s is None
-    told = timeline(watch)
-    seconds = len(watch.moments)
+    assert [m.driving for m in session.moments] == [m.driving for m in session.baseline_moments]
+    assert session.unwatched_from_s is None
+    told = timeline(session)
+    seconds = len(session.moments)
     for key in ("time_s", "speed_kmh", "limit_kmh", "gap_s", "ttc_s", "visibility_m", "grip", "lamps"):
         assert len(told[key]) == seconds, key
-    assert len(told["wakes"]) == len(watch.woken) > 0
+    assert len(told["wakes"]) == len(session.woken) > 0
     assert told["advice"] == []
 
 
 @pytest.mark.slow
-def test_the_rule_perfect_watcher_meets_every_event_and_disturbs_nobody(perfect: tuple[Watch, Score]) -> None:
-    watch, found = perfect
+def test_the_rule_perfect_watcher_meets_every_event_and_disturbs_nobody(
+    perfect: tuple[DriveSession, Score],
+) -> None:
+    session, found = perfect
     assert found.events >= 2
     assert found.recall == 1.0
     assert found.nuisances == 0
     assert found.value > 90.0
-    mine, nobodys = watch.harms
+    mine, nobodys = session.harms
     assert mine.over_limit_s <= nobodys.over_limit_s
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("watcher", [AlertAll(), AlertOnWake(), AlertOften()])
 def test_who_alerts_by_rote_does_worse_than_nobody(begin: Begin, watcher: Actor) -> None:
-    watch = begin()
-    found = played(watch, watcher)
+    session = begin()
+    found = played(session, watcher)
     assert found.value < 0.0
-    assert watch.judgement is not None
-    again = JudgedDrive.of(watch).judgement()
-    assert again == judged_since(watch.judgement, watch.moments[0].time_s, watch.seconds), "as from its file"
+    assert session.judgement is not None
+    again = JudgedDrive.of(session).judgement()
+    assert again == judged_since(session.judgement, session.moments[0].time_s, session.seconds), "as from its file"
 
 
 @pytest.mark.slow
 def test_the_stand_in_keeps_watch_with_one_call_a_wait(begin: Begin) -> None:
     agent = make_agent("asurada", "rules")
-    watch = begin(240.0, agent.channels)
-    agent.reset(watch.goal)
-    assert watch.observation.on_watch
+    session = begin(240.0, agent.channels)
+    agent.reset(session.goal)
+    assert session.observation.on_watch
     asked = []
 
-    def count(session: Watch, seen: Sequence[Element]) -> None:
+    def count(session: DriveSession, seen: Sequence[Element]) -> None:
         assert isinstance(agent, Thinker)
         asked.append((session.steps[-2].action, sum(stage.reply is not None for stage in agent.stages)))
 
-    play(watch, agent, count)
-    assert watch.judgement is not None
-    assert score(watch.judgement, watch.seconds).met > 0
+    play(session, agent, count)
+    assert session.judgement is not None
+    assert score(session.judgement, session.seconds).met > 0
     waited = {calls for before, calls in asked if before is not None and before.action_type is ActionType.WAIT}
     assert waited == {1}
 
 
 @pytest.mark.parametrize("language", Language)
 def test_driver_and_car_speak_the_language(simulations: Simulations, language: Language) -> None:
-    with closing(DriveSpec(FAMILY, SEED, Conditions(language=language)).begin(simulations)) as watch:
-        assert watch.goal == STANDING_ORDERS[language]
-        assert watch.world.cockpit.signals[HMI.LANGUAGE] == language
-        watch.step(Action(ActionType.ASK_DRIVER, text="?"))
-        assert watch.observation.said == (ANSWERS[language],)
-        assert len(watch.goal.encode()) <= GOAL_BYTES
+    with closing(DriveSpec(FAMILY, SEED, Conditions(language=language)).begin(simulations)) as session:
+        assert session.goal == STANDING_ORDERS[language]
+        assert session.world.cockpit.signals[HMI.LANGUAGE] == language
+        session.step(Action(ActionType.ASK_DRIVER, text="?"))
+        assert session.observation.said == (ANSWERS[language],)
+        assert len(session.goal.encode()) <= GOAL_BYTES
 
 
 def test_the_answer_is_the_one_that_drivers_give_in_tasks() -> None:
@@ -508,7 +512,7 @@ def test_the_answer_is_the_one_that_drivers_give_in_tasks() -> None:
 
 
 @pytest.mark.slow
-def test_a_late_watcher_loses_and_delays(begin: Begin, perfect: tuple[Watch, Score]) -> None:
+def test_a_late_watcher_loses_and_delays(begin: Begin, perfect: tuple[DriveSession, Score]) -> None:
     _, prompt = perfect
     late = played(begin(), RulePerfect(delay_s=8.0))
     assert late.value < prompt.value
@@ -520,29 +524,29 @@ class Muted(RulePerfect):
 
     def reset(self, goal: str) -> None:
         super().reset(goal)
-        self.acts: list[WatchAct] = []
+        self.acts: list[DriveAct] = []
         self.begun_s = 0.0
 
     def act(self, observation: Observation) -> Action:
         action = super().act(observation)
         if action.action_type is ActionType.SHOW_ALERT:
-            self.acts.append(WatchAct(self.begun_s + observation.time_s, action.kind))
+            self.acts.append(DriveAct(self.begun_s + observation.time_s, action.kind))
             return Action(ActionType.WAIT, seconds=1)
         return action
 
 
 @pytest.mark.slow
 def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(begin: Begin) -> None:
-    watch, agent = begin(), Muted()
-    agent.reset(watch.goal)
-    agent.begun_s = watch.moments[0].time_s
-    play(watch, agent)
+    session, agent = begin(), Muted()
+    agent.reset(session.goal)
+    agent.begun_s = session.moments[0].time_s
+    play(session, agent)
 
     def judged(delay_s: float) -> list[JudgedEvent]:
         late = [replace(act, time_s=act.time_s + delay_s) for act in agent.acts]
         return [
             event
-            for event in judge(KINDS, watch.events, late, {}, facts_of(watch.moments)).events
+            for event in judge(KINDS, session.events, late, {}, facts_of(session.moments)).events
             if not event.lookalike
         ]
 
@@ -559,18 +563,18 @@ def test_a_delay_loses_exactly_the_events_whose_deadline_it_passes(begin: Begin)
 
 @pytest.mark.slow
 def test_the_most_frequent_right_alert_by_rote_does_worse_than_nobody(
-    begin: Begin, silent: tuple[Watch, Score]
+    begin: Begin, silent: tuple[DriveSession, Score]
 ) -> None:
-    watch, _ = silent
-    assert watch.judgement is not None
-    kind = most_frequent(watch.judgement, KINDS)
+    session, _ = silent
+    assert session.judgement is not None
+    kind = most_frequent(session.judgement, KINDS)
     assert kind is not None
     assert played(begin(), AlertOften(kind)).value < 0.0
 
 
 @pytest.mark.slow
 def test_thinking_takes_time_on_the_road(begin: Begin) -> None:
-    watch = begin(60.0)
-    watch.think(20.0)
-    watch.step(Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED))
-    assert watch.seconds == pytest.approx(21.0)
+    session = begin(60.0)
+    session.think(20.0)
+    session.step(Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED))
+    assert session.seconds == pytest.approx(21.0)

@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.actions import check
 from automotive_cosim.contracts import Action, ActionType, AlertKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.alarm import Alarm, noticed
-from automotive_cosim.drives.events import KINDS, WatchAct
+from automotive_cosim.drives.events import KINDS, DriveAct
 from automotive_cosim.drives.looks import LOOK_S
 from automotive_cosim.drives.reading import Reader
 from automotive_cosim.drives.watchers import RulePerfect
@@ -63,7 +63,7 @@ def test_a_border_is_told_in_words_that_settle_it(
     drive = [moment(float(second), position=position) for second, position in enumerate(places)]
     acts = [(at, act.text or "") for at, act in enumerate(watched(drive)) if act.action_type is ActionType.ANSWER]
     units, law = KINDS["limit_units"], KINDS["rule_change"]
-    said = [WatchAct(0.0, said=text) for _, text in acts]
+    said = [DriveAct(0.0, said=text) for _, text in acts]
     assert [(units.settles(act, 1.0), law.settles(act, None)) for act in said] == [settled]
     assert all(3 < at < 8 for at, _ in acts)
 

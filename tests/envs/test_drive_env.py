@@ -51,9 +51,9 @@ def test_a_seed_is_a_drive_of_the_family(simulations: Simulations) -> None:
     env = DriveEnv("grid_june", simulations=simulations)
     assert env.reset(seed=4)
     begun = env.episode.trace_sha256
-    watch = DriveSpec("grid_june", 4).begin(simulations)
-    assert watch.trace_sha256 == begun
-    watch.close()
+    session = DriveSpec("grid_june", 4).begin(simulations)
+    assert session.trace_sha256 == begun
+    session.close()
     assert env.reset()
     assert env.episode.trace_sha256 != begun
     env.close()

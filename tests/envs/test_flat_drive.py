@@ -1,4 +1,4 @@
-"""The flat view of drives: what reinforcement learning sees of a watch."""
+"""The flat view of drives: what reinforcement learning sees of a drive."""
 
 import warnings
 

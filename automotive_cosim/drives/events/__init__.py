@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from automotive_cosim.drives.events import border, car, errands, light, people, road, speed, weather
-from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
+from automotive_cosim.drives.events.base import DriveAct, EventKind, Sighting
 from automotive_cosim.drives.events.tracker import DriveEvent, Tracker
 
 KINDS: Mapping[str, EventKind] = {
@@ -54,4 +54,4 @@ KINDS: Mapping[str, EventKind] = {
 }
 """Every kind by its name."""
 
-__all__ = ["KINDS", "DriveEvent", "EventKind", "Sighting", "Tracker", "WatchAct"]
+__all__ = ["KINDS", "DriveAct", "DriveEvent", "EventKind", "Sighting", "Tracker"]

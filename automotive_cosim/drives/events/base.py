@@ -49,7 +49,7 @@ class Sighting:
 
 
 @dataclass(frozen=True, slots=True)
-class WatchAct:
+class DriveAct:
     """Something that an agent did and that reaches the driver, the car or the road."""
 
     time_s: float
@@ -159,7 +159,7 @@ class EventKind(ABC):
             return None
         return self.against(drive)
 
-    def settles(self, act: WatchAct, value: float | None) -> bool:
+    def settles(self, act: DriveAct, value: float | None) -> bool:
         """Whether an act is one that is right for an event.
 
         Args:
@@ -174,7 +174,7 @@ class EventKind(ABC):
             return any(word in act.said.casefold() for word in self.says)
         return any(path in self.writes and self.writes[path](written) for path, written in act.writes)
 
-    def concerns(self, act: WatchAct) -> bool:
+    def concerns(self, act: DriveAct) -> bool:
         """Whether an act touches what the kind is about, rightly or not."""
         return any(path in self.writes for path, _ in act.writes)
 

@@ -9,7 +9,7 @@ from typing import ClassVar
 from automotive_cosim.cockpit.signals import HMI
 from automotive_cosim.contracts import AlertKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, WatchAct
+from automotive_cosim.drives.events.base import DriveAct, EventKind, Sighting, Wanted
 from automotive_cosim.drives.margins import BORDER_S
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.rules import Status
@@ -70,7 +70,7 @@ class LimitUnits(EventKind):
         else:
             yield Sighting(words, now.context.country, due=True, hold_s=2.0, value=miles)
 
-    def settles(self, act: WatchAct, value: float | None) -> bool:
+    def settles(self, act: DriveAct, value: float | None) -> bool:
         """The display in the unit of the signs, or words about it."""
         wanted = "MILES" if value else "KILOMETERS"
         return super().settles(act, value) and all(

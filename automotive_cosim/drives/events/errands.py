@@ -12,7 +12,7 @@ from typing import ClassVar
 from automotive_cosim.cockpit.signals import CALL, HVAC, LINK
 from automotive_cosim.contracts.errand import Errand, ErrandKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
+from automotive_cosim.drives.events.base import DriveAct, EventKind, Sighting
 
 KEEPS = 3
 """Moments for which the state that was asked for must last: a value that is only passed on the way is not set."""
@@ -64,11 +64,11 @@ class ErrandEvent(EventKind):
         """What nobody asks for, or the driver does not want."""
         return REFUSED if any(self.sight(drive)) else UNASKED
 
-    def settles(self, act: WatchAct, value: float | None) -> bool:
+    def settles(self, act: DriveAct, value: float | None) -> bool:
         """Whatever changes what was asked for; whether it was right, the state says."""
         return any(path in self.keys for path, _ in act.writes)
 
-    def concerns(self, act: WatchAct) -> bool:
+    def concerns(self, act: DriveAct) -> bool:
         """The same."""
         return self.settles(act, None)
 

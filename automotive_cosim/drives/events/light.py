@@ -9,7 +9,7 @@ from typing import ClassVar
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.contracts import STANDING_BELOW_MPS, AlertKind
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, WatchAct, off, on
+from automotive_cosim.drives.events.base import DriveAct, EventKind, Sighting, Wanted, off, on
 from automotive_cosim.drives.events.law import may_say, says
 from automotive_cosim.drives.margins import LAMP_S
 from automotive_cosim.geo.context import GeoContext
@@ -67,7 +67,7 @@ class LampsMissing(EventKind):
             return None
         return f"the sun is {sun.elevation_deg:.0f} degrees up, and the air is clear"
 
-    def settles(self, act: WatchAct, value: float | None) -> bool:
+    def settles(self, act: DriveAct, value: float | None) -> bool:
         """By day an automatic switch lights nothing."""
         by_day_auto = value == 0.0 and (LIGHTS.SWITCH.path, "AUTO") in act.writes
         return super().settles(act, value) and not by_day_auto

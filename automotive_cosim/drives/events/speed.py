@@ -8,7 +8,7 @@ from automotive_cosim.cockpit.reach import HORIZON_M
 from automotive_cosim.cockpit.signals import ADAS
 from automotive_cosim.contracts import KMH_PER_MPS, AlertKind, Cruise, PullOver, SightKind, SlowDown
 from automotive_cosim.cosim.moment import Moment
-from automotive_cosim.drives.events.base import EventKind, Sighting, WatchAct
+from automotive_cosim.drives.events.base import DriveAct, EventKind, Sighting
 from automotive_cosim.drives.events.law import (
     REACTION_S,
     SLOW_KMH,
@@ -36,7 +36,7 @@ SWITCHES = frozenset({ADAS.CRUISE_ACTIVE.path, ADAS.LIMITER_ACTIVE.path})
 class SpeedKind(EventKind):
     """An event that a lower speed settles; its value is the highest right speed in km/h."""
 
-    def settles(self, act: WatchAct, value: float | None) -> bool:
+    def settles(self, act: DriveAct, value: float | None) -> bool:
         """An alert that advises no more than the right speed, a request for it, or a limiter set to it."""
         most_kmh = 1000.0 if value is None else value + 1.0
         if act.alert is not None:
@@ -52,7 +52,7 @@ class SpeedKind(EventKind):
             for path, written in act.writes
         )
 
-    def concerns(self, act: WatchAct) -> bool:
+    def concerns(self, act: DriveAct) -> bool:
         """Whether it touches what keeps the speed."""
         return any(path in KEEPERS | SWITCHES for path, _ in act.writes)
 
