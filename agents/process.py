@@ -64,7 +64,7 @@ class AgentRequest:
     settings: AgentSettings = field(default_factory=AgentSettings)
 
 
-class AskedModel:
+class _AskedModel:
     """The worker's model, asked over the wire. It has no errors here: one ends the episode on the other side."""
 
     def __init__(self, name: str, sees_pictures: bool, wire: Wire) -> None:
@@ -81,7 +81,7 @@ class AskedModel:
         return reply
 
 
-class AgentServer:
+class _AgentServer:
     """Starts and ends the agents' processes, one at a time."""
 
     def __init__(self, wire: Wire) -> None:
@@ -173,7 +173,7 @@ def live(wire: Wire, request: AgentRequest) -> NoReturn:
 def _made(wire: Wire, request: AgentRequest) -> Agent:
     if not request.model:
         return make_agent(request.name, settings=request.settings)
-    asked = AskedModel(request.model_name, request.sees_pictures, wire)
+    asked = _AskedModel(request.model_name, request.sees_pictures, wire)
     return make_agent(request.name, request.model, request.settings, asked)
 
 
@@ -226,7 +226,7 @@ def main() -> None:
         connection = socket.socket(fileno=int(sys.argv[1]))
     gc.collect()
     gc.freeze()  # collecting garbage would copy every page that the agents' processes share
-    AgentServer(Wire(connection)).run()
+    _AgentServer(Wire(connection)).run()
     os._exit(0)
 
 

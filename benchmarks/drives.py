@@ -110,7 +110,7 @@ def played(who: str, family: str, seed: int, simulations: Simulations, *, errand
         agent.reset(session.goal)
         play(session, agent)
         assert session.judgement is not None
-        mine, nobodys = session.harms
+        mine, baseline = session.harms
         return Kept(
             family,
             seed,
@@ -122,7 +122,7 @@ def played(who: str, family: str, seed: int, simulations: Simulations, *, errand
             session.judgement.events,
             session.judgement.acts,
             mine.short_ttc_s,
-            nobodys.short_ttc_s,
+            baseline.short_ttc_s,
         )
 
 

@@ -14,7 +14,6 @@ from automotive_cosim.agents.a2a.contract import (
     AnswerReader,
     Metrics,
     RemoteAnswer,
-    RemoteCall,
     opening,
     results,
 )
@@ -26,7 +25,7 @@ from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, S
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import action_of, offered
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.models.base import ModelReply
+from automotive_cosim.models.base import ModelReply, ToolCall
 
 if TYPE_CHECKING:
     from automotive_cosim.agents.a2a.line import AgentLine
@@ -84,10 +83,10 @@ class A2AAgent:
         self._line.begin()
         self._reader = AnswerReader(self._tools)
         self._is_new, self._heard = True, 0
-        self._asked: tuple[RemoteCall, ...] = ()
+        self._asked: tuple[ToolCall, ...] = ()
         self._results: dict[str, str] = {}
-        self._left: deque[RemoteCall] = deque()
-        self._waiting: RemoteCall | None = None
+        self._left: deque[ToolCall] = deque()
+        self._waiting: ToolCall | None = None
         self._tokens = 0
         self._seconds = 0.0
         self._is_reported = True

@@ -10,6 +10,7 @@ from typing import Any
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.interface.functions import Function, as_openai
+from automotive_cosim.models.base import ToolCall
 
 PREFIX = "a2a:"
 """Of the name of an agent behind an address."""
@@ -22,16 +23,6 @@ LARGEST_FIGURE = 10**9
 def is_remote(name: str) -> bool:
     """Whether a name is that of an agent behind an address."""
     return name.startswith(PREFIX)
-
-
-@dataclass(frozen=True, slots=True)
-class RemoteCall:
-    """A function that the agent calls."""
-
-    name: str
-    arguments: Any
-    """By name; as they came where they are no object."""
-    id: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,7 +41,7 @@ class RemoteAnswer:
     """What an agent answers: words to the driver, calls, or both."""
 
     say: str = ""
-    calls: tuple[RemoteCall, ...] = ()
+    calls: tuple[ToolCall, ...] = ()
     reasoning: str = ""
     metrics: Metrics | None = None
     """None if it reports none with this answer."""
@@ -67,7 +58,7 @@ def opening(system: str, words: str, tools: Iterable[Function]) -> list[Any]:
     return [f"System: {system}\n\nUser: {words}", {"tools": [as_openai(each) for each in tools]}]
 
 
-def results(calls: Sequence[RemoteCall], contents: Sequence[str]) -> list[Any]:
+def results(calls: Sequence[ToolCall], contents: Sequence[str]) -> list[Any]:
     """The part that has the results of calls, in their order."""
     told = [
         {"tool_name": call.name, "tool_call_id": call.id, "content": content}
@@ -91,7 +82,7 @@ class AnswerReader:
         """
         say: list[str] = []
         reasoning: list[str] = []
-        calls: list[RemoteCall] = []
+        calls: list[ToolCall] = []
         for part in map(_whole_characters, parts):
             if isinstance(part, str):
                 say.append(part)
@@ -106,13 +97,13 @@ class AnswerReader:
         metrics = _metrics(reported) if isinstance(reported, dict) else None
         return RemoteAnswer("\n".join(say).strip(), tuple(calls), "\n".join(reasoning), metrics)
 
-    def _call(self, told: Json) -> RemoteCall:
+    def _call(self, told: Json) -> ToolCall:
         name = str(told.get("tool_name", told.get("toolName", "")))
         arguments = told.get("arguments") or {}
         if isinstance(arguments, dict) and name in self.tools:
             arguments = _whole_numbers(arguments, self.tools[name].parameters)
         self._count += 1
-        return RemoteCall(name, arguments, f"call{self._count:05d}")
+        return ToolCall(f"call{self._count:05d}", name, arguments)
 
 
 def _metrics(told: Json) -> Metrics:

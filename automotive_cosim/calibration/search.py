@@ -114,7 +114,7 @@ def search(world: SearchWorld, given: DrivenDemand, per_h: float, rounds: int) -
     _add_by_way(found, trips, times, world, rng)
     passing = Counter(edge for route in found.routes for edge in set(route.edges))
     thin = tuple(sorted({edge for edge, _ in world.counts if passing[edge] < FEW}))
-    learned = Learned()
+    learned = _Learned()
     for _ in range(rounds):
         flows, fitted = _fit(world, found, times, per_h, learned)
         demand, vehicles, routes = _demand(found, flows, world)
@@ -128,7 +128,7 @@ def search(world: SearchWorld, given: DrivenDemand, per_h: float, rounds: int) -
 
 
 @dataclass(slots=True)
-class Learned:
+class _Learned:
     """What was learned from the simulations."""
 
     bounds: dict[Passing, float] = field(default_factory=dict)
@@ -251,7 +251,7 @@ def _add(
 
 
 def _fit(
-    world: SearchWorld, found: Candidates, times: EdgeTimes, per_h: float, learned: Learned
+    world: SearchWorld, found: Candidates, times: EdgeTimes, per_h: float, learned: _Learned
 ) -> tuple[Floats, dict[tuple[str, int], float]]:
     """Vehicles of each route and hour, (hours, routes), and what the counted edges then see."""
     clock, routes = world.clock, found.routes

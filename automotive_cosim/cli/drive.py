@@ -150,9 +150,9 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         soft_wrap=True,
     )
     if row.harm is not None and row.baseline_harm is not None:
-        near_s, nobodys_s = row.harm.short_ttc_s, row.baseline_harm.short_ttc_s
+        near_s, baseline_s = row.harm.short_ttc_s, row.baseline_harm.short_ttc_s
         console.print(
-            f"Near-collision time with the vehicle ahead {near_s:.0f} s; without the agent {nobodys_s:.0f} s",
+            f"Near-collision time with the vehicle ahead {near_s:.0f} s; without the agent {baseline_s:.0f} s",
             soft_wrap=True,
         )
     if row.unwatched_from_s is not None:

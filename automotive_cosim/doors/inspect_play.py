@@ -17,8 +17,7 @@ from inspect_ai.tool import ToolDef, ToolError, ToolParams
 from automotive_cosim.cockpit.actions import grammar
 from automotive_cosim.contracts import Json
 from automotive_cosim.doors.shared import HANDS, functions_of, shared_service, words
-from automotive_cosim.drives.specification import DriveSpec
-from automotive_cosim.episode.specification import EpisodeSpec
+from automotive_cosim.drives.specification import TrialSpec
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.interface.functions import Function, action_json
 from automotive_cosim.interface.observe import ALL, Channel
@@ -42,7 +41,7 @@ def seeds_of(given: int | str | list[int]) -> list[int]:
 
 
 async def played(
-    state: TaskState, generate: Generate, spec: EpisodeSpec | DriveSpec, instructions: str, pictures: bool
+    state: TaskState, generate: Generate, spec: TrialSpec, instructions: str, pictures: bool
 ) -> TaskState:
     """Plays an episode, in which the model acts until it is over, the model stops acting or meets a limit.
 

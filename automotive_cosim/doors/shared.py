@@ -14,7 +14,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.settings import DriveSettings
-from automotive_cosim.drives.specification import DriveSpec
+from automotive_cosim.drives.specification import DriveSpec, TrialSpec
 from automotive_cosim.episode.conditions import INPUTS, Condition, Conditions
 from automotive_cosim.episode.specification import EpisodeSpec
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -105,7 +105,7 @@ def trial(
     under: Conditions,
     *,
     errands: bool = False,
-) -> EpisodeSpec | DriveSpec:
+) -> TrialSpec:
     """What a door is asked to start: one half of a task, or a drive.
 
     Args:

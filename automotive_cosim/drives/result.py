@@ -77,14 +77,14 @@ def result_of(session: DriveSession) -> DriveResult:
     judgement = session.judgement
     assert judgement is not None
     events, acts, found = judged_since(judgement, session.moments[0].time_s, session.seconds)
-    mine, nobodys = session.harms
+    mine, baseline = session.harms
     texts = [str(step.action.text) for step in session.steps if step.action is not None and step.action.text]
     return DriveResult(
         agent_error=session.failure,
         score=found,
         value=found.value,
         harm=mine,
-        baseline_harm=nobodys,
+        baseline_harm=baseline,
         distraction_s=distraction_s(session.acts, texts),
         events=events,
         acts=acts,

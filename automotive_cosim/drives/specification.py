@@ -15,7 +15,7 @@ from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.observer import Observer
-from automotive_cosim.episode.specification import SessionSetup
+from automotive_cosim.episode.specification import EpisodeSpec, SessionSetup
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.traffic.fork import Simulations
 
@@ -85,3 +85,7 @@ class DriveSpec:
         assert session.end is not None
         seconds = round(session.seconds, 3)
         return DriveOutcome(episode_id, self.family, self.seed, session.end, seconds, result_of(session))
+
+
+TrialSpec = EpisodeSpec | DriveSpec
+"""What to run, by name, of either kind."""

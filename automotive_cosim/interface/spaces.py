@@ -86,7 +86,7 @@ BOUNDS: Mapping[str, tuple[float, float]] = {
 OPTIONAL = ("speed_limit_sign_kmh", "leader_gap_m", "leader_time_to_collision_s", "noticed")
 
 
-class AnyText(spaces.Text):
+class _AnyText(spaces.Text):
     """A ``Text`` space that takes any string up to its length; the parent knows only its character set."""
 
     def contains(self, x: Any) -> bool:
@@ -134,7 +134,7 @@ def action_space(width: int, height: int) -> spaces.Dict:
             "x": spaces.Discrete(width),
             "y": spaces.Discrete(height),
             "direction": spaces.Discrete(len(Direction)),
-            "text": AnyText(TEXT_LIMIT, min_length=0),
+            "text": _AnyText(TEXT_LIMIT, min_length=0),
             "clear_text": spaces.Discrete(2),
             "app": spaces.Discrete(len(APPS)),
             "seconds": spaces.Discrete(SECONDS_LIMIT, start=1),

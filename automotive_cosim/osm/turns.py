@@ -78,7 +78,7 @@ def _said(tags: Mapping[str, str], ending: str) -> str:
     return next((tags[key] for key in keys if tags.get(key)), "")
 
 
-class RoadGraph:
+class _RoadGraph:
     """The pieces of roads that meet at each node, and the directions open on them."""
 
     def __init__(self, pieces: Sequence[Piece], may: Sequence[Directions]) -> None:
@@ -131,7 +131,7 @@ def read_turns(
         pieces: the roads, cut at barriers.
         may: the directions open on each.
     """
-    network, turns = RoadGraph(pieces, may), BannedTurns()
+    network, turns = _RoadGraph(pieces, may), BannedTurns()
     for relation in restrictions:
         if any(key in relation.tags for key in AT_HOURS):
             turns.at_times.append(relation.relation_id)
@@ -187,7 +187,7 @@ def _at_hours(usual: Sequence[str], conditional: str) -> dict[bool, str] | None:
 
 
 def _bans(
-    relation: TurnRestriction, is_only: bool, network: RoadGraph, turns: BannedTurns
+    relation: TurnRestriction, is_only: bool, network: _RoadGraph, turns: BannedTurns
 ) -> Iterator[tuple[Ban, bool]]:
     """The bans of one relation, and whether each is of a turn beside which every other one is barred; a relation
     with a member that is no road for cars bars nothing more."""
@@ -222,7 +222,7 @@ def _bans(
         yield from ((ban, alone) for ban in (_others(bans, network) if bans_others and not alone else bans))
 
 
-def _at_node(froms: Sequence[int], via: int, tos: Sequence[int], network: RoadGraph) -> list[Ban]:
+def _at_node(froms: Sequence[int], via: int, tos: Sequence[int], network: _RoadGraph) -> list[Ban]:
     """The turns of a relation over a node."""
     starts, goals = (
         [piece for way in ways for piece in network.at(way, via) if network.is_clear(piece, via)]
@@ -231,7 +231,7 @@ def _at_node(froms: Sequence[int], via: int, tos: Sequence[int], network: RoadGr
     return [Ban(start, via, goal) for start, goal in product(starts, goals)]
 
 
-def _others(only: Sequence[Ban], network: RoadGraph) -> list[Ban]:
+def _others(only: Sequence[Ban], network: _RoadGraph) -> list[Ban]:
     """Every turn beside those that are the only ones allowed."""
     allowed = set(only)
     return [
@@ -243,7 +243,7 @@ def _others(only: Sequence[Ban], network: RoadGraph) -> list[Ban]:
 
 
 def _over_ways(
-    froms: Sequence[int], vias: Sequence[int], tos: Sequence[int], network: RoadGraph
+    froms: Sequence[int], vias: Sequence[int], tos: Sequence[int], network: _RoadGraph
 ) -> tuple[list[Ban], list[Ban]] | None:
     """The turns onto a way over which a relation leads, and off it. What it bars is the latter, if cars come onto
     that way from its ``from`` alone; None if they do not, because SUMO knows no turn over several junctions."""

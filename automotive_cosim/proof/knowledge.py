@@ -72,7 +72,7 @@ class _Pictured:
     value: Any
 
 
-class Evidence:
+class _Evidence:
     """What has been observed so far."""
 
     def __init__(self) -> None:
@@ -172,7 +172,7 @@ def unknown(
             belongs to none.
     """
     tellings = tuple(_open_in((half.start, half.says, [topic.reply for topic in half.topics], template)))
-    seen, guessed = Evidence(), set[tuple[int, str]]()
+    seen, guessed = _Evidence(), set[tuple[int, str]]()
     seen.add(template.format_map(drawn.parameters))
     for step, number in zip(steps, moves, strict=False):
         seen.look(step)
@@ -193,18 +193,18 @@ def unknown(
             yield f"move {number} types {bind(move, drawn.parameters).text!r}, which nothing has told"
 
 
-def _unheard(question: str, topics: Sequence[Topic], seen: Evidence) -> Iterator[str]:
+def _unheard(question: str, topics: Sequence[Topic], seen: _Evidence) -> Iterator[str]:
     topic = topic_of(question, topics)
     for choice in () if topic is None else topic.choices:
         if not any(map(seen.names, choice)):
             yield f"the question {question!r} names {choice[0]!r}, which nothing has told"
 
 
-def _has_words(seen: Evidence, text: str) -> bool:
+def _has_words(seen: _Evidence, text: str) -> bool:
     return all(seen.names(word) for word in re.findall(r"\w+", text))
 
 
-def _left(name: str, tellings: Sequence[Any], drawn: DrawnValues, seen: Evidence) -> list[Parameter]:
+def _left(name: str, tellings: Sequence[Any], drawn: DrawnValues, seen: _Evidence) -> list[Parameter]:
     """The other values that nothing seen has ruled out."""
     left = dict(drawn.others(name))
     for telling in tellings:

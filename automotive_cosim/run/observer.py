@@ -64,7 +64,7 @@ class TrialObserver(Observer, Generic[S, R]):
 
 
 @runtime_checkable
-class Timed(Protocol):
+class _Timed(Protocol):
     """An agent whose answers are timed from outside, so that it cannot influence the measurement."""
 
     @property
@@ -74,7 +74,7 @@ class Timed(Protocol):
 
 
 @runtime_checkable
-class Replayed(Protocol):
+class _Replayed(Protocol):
     """An agent that repeats a recording, including the time that each answer took."""
 
     @property
@@ -133,9 +133,9 @@ class Answers:
 
     def _seconds(self) -> float:
         agent, seconds = self._agent, self._conditions.latency_s
-        if isinstance(agent, Replayed):
+        if isinstance(agent, _Replayed):
             return agent.thought_s
-        if self._conditions.clock is Clock.MODEL and isinstance(agent, Timed):
+        if self._conditions.clock is Clock.MODEL and isinstance(agent, _Timed):
             seconds += agent.answer_s
         elif self._conditions.clock is Clock.MODEL and isinstance(agent, Thinker):
             seconds += sum(stage.reply.seconds for stage in agent.stages if stage.reply is not None)

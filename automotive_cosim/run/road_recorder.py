@@ -149,7 +149,7 @@ class RoadWriter:
         mark_as_written(self._raw)
         self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
         self._begin_s = begin_s
-        self._index = ShapeIndex(traffic.shapes())
+        self._index = _ShapeIndex(traffic.shapes())
         self._roads = {road.edge_id: road.shape_m for road in traffic.network.roads}
         self._lanes: set[int] = set()
         self._junctions: set[int] = set()
@@ -274,7 +274,7 @@ class RoadWriter:
         self._file.write(json.dumps(entry, ensure_ascii=False, separators=(",", ":")).encode() + b"\n")
 
 
-class ShapeIndex:
+class _ShapeIndex:
     """The lanes and junctions of a network, and the ground around them, by place."""
 
     def __init__(self, shapes: RoadShapes) -> None:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Sequence
 from difflib import get_close_matches
 from itertools import pairwise
 
 import numpy as np
 
+from automotive_cosim.contracts import lon_lat
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.georeference import GeoReference
@@ -110,23 +110,21 @@ def edges_at(network: Network, place: str) -> tuple[str, ...]:
     """The edges that a text may mean: an edge's id, a street's name, or ``LON,LAT``.
 
     Raises:
-        ScenarioError: it is none of them, or a position in a network without a place on earth.
+        ScenarioError: it is none of them, or a position that is not on this network.
     """
     if place in network.edges:
         return (place,)
-    if position := position_in(place):
+    try:
+        position = lon_lat(place)
+    except ValueError as error:
+        raise ScenarioError(str(error)) from error
+    if position is not None:
         return (_nearest(network, position),)
     named = [edge for edge in network.edges.values() if edge.name.casefold() == place.casefold()]
     if not named:
         raise ScenarioError(_unknown(network, place))
     step = max(1, len(named) // STREET_EDGES)
     return tuple(edge.edge_id for edge in named[::step])
-
-
-def position_in(text: str) -> tuple[float, float] | None:
-    """The longitude and latitude of ``LON,LAT``, None if it is something else."""
-    parts = re.fullmatch(r"\s*(-?\d+(?:\.\d*)?)\s*,\s*(-?\d+(?:\.\d*)?)\s*", text)
-    return (float(parts[1]), float(parts[2])) if parts else None
 
 
 def _nearest(network: Network, position: tuple[float, float]) -> str:

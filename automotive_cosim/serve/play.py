@@ -72,7 +72,7 @@ class PlayState(StrEnum):
     FAILED = "failed"
 
 
-class StoppedError(KeyboardInterrupt):
+class _StoppedError(KeyboardInterrupt):
     """The person has left before there was anything to record."""
 
 
@@ -124,7 +124,7 @@ class Game(AnyTrialObserver):
         self._thread: threading.Thread | None = None
         self._person = Person()
         self._preview = Preview()
-        self._shown = ShownScreen()
+        self._shown = _ShownScreen()
         self._hand = threading.Lock()
         """Held while an act or a step changes what is shown, so that they stay in order."""
         self._cockpit: Cockpit | None = None
@@ -295,7 +295,7 @@ class Game(AnyTrialObserver):
     def _check_stays(self) -> None:
         """Stops an episode that is left before the hand-over, as there is nothing to record."""
         if self._person.has_left:
-            raise StoppedError
+            raise _StoppedError
 
     def _show(self, observation: Observation, screenshot: npt.NDArray[np.uint8]) -> None:
         self._shown.show(screenshot)
@@ -318,7 +318,7 @@ class Game(AnyTrialObserver):
     def _run(self, play: Callable[[], None]) -> None:
         try:
             play()
-        except (StoppedError, PersonLeftError):
+        except (_StoppedError, PersonLeftError):
             self._tell(state=PlayState.IDLE, told=None, screen=b"")
         except Exception as error:
             self._tell(state=PlayState.FAILED, error=str(error) or type(error).__name__)
@@ -405,7 +405,7 @@ def _readings(seen: Observation) -> Json:
     }
 
 
-class ShownScreen:
+class _ShownScreen:
     """The screen that the page shows, as a JPEG with a number that changes with it."""
 
     def __init__(self) -> None:

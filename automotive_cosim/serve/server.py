@@ -61,7 +61,7 @@ class WebAnswer:
     """How long the browser may reuse it without asking."""
 
 
-class RefusedRequestError(Exception):
+class _RefusedRequestError(Exception):
     """A request that is not answered, and why."""
 
     def __init__(self, status: HTTPStatus, why: str) -> None:
@@ -154,7 +154,7 @@ class Site:
         """The answer to a path.
 
         Raises:
-            RefusedRequestError: there is no such page, it is not for this visitor, or it cannot be made.
+            _RefusedRequestError: there is no such page, it is not for this visitor, or it cannot be made.
         """
         if path == "/api/about":
             about = {"version": __version__, "plays": self._game is not None, "visitor": visitor}
@@ -166,22 +166,22 @@ class Site:
                 try:
                     return route(found.groupdict(), query)
                 except (NotHereError, UnknownNameError) as error:
-                    raise RefusedRequestError(HTTPStatus.NOT_FOUND, str(error)) from error
+                    raise _RefusedRequestError(HTTPStatus.NOT_FOUND, str(error)) from error
                 except (UserError, OSError, ValueError, LookupError, TypeError, AttributeError) as error:
                     why = f"this record cannot be read: {error}"
-                    raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, why) from error
-        raise RefusedRequestError(HTTPStatus.NOT_FOUND, "there is no such page")
+                    raise _RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, why) from error
+        raise _RefusedRequestError(HTTPStatus.NOT_FOUND, "there is no such page")
 
     def change(self, path: str, query: Mapping[str, str], body: bytes, visitor: Visitor) -> WebAnswer:
         """Carries out a player's request.
 
         Raises:
-            RefusedRequestError: there is no such action, or it is not possible now.
+            _RefusedRequestError: there is no such action, or it is not possible now.
         """
         is_study = path.startswith("/api/study/") and self._study is not None
         is_play = path.startswith("/api/play/") and self._game is not None and visitor is Visitor.OWNER
         if not is_study and not is_play:
-            raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "these pages are read-only")
+            raise _RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "these pages are read-only")
         try:
             asked = parse_json(body or b"{}")
             if not isinstance(asked, dict):
@@ -191,7 +191,7 @@ class Site:
                 return _json(self._take_part(what, query, asked))
             return self._play(what, self._game_of(query), asked, is_free=is_play)
         except (UserError, ValueError) as error:
-            raise RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, str(error)) from error
+            raise _RefusedRequestError(HTTPStatus.UNPROCESSABLE_ENTITY, str(error)) from error
 
     def _play(self, what: str, game: Game, asked: Json, *, is_free: bool) -> WebAnswer:
         """One episode; people in a study can neither choose it nor stop its clock."""
@@ -208,7 +208,7 @@ class Site:
                     raise UserError("speed must be a number")
                 game.pace(float(speed), paused=bool(asked.get("paused")))
             case _:
-                raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
+                raise _RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
         return _json({})
 
     def _take_part(self, what: str, query: Mapping[str, str], asked: Json) -> Json:
@@ -221,7 +221,7 @@ class Site:
             case "answer":
                 study.answer(seat, asked)
             case _:
-                raise RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
+                raise _RefusedRequestError(HTTPStatus.METHOD_NOT_ALLOWED, "there is no such thing to do")
         return {}
 
     def close(self) -> None:
@@ -312,7 +312,7 @@ class WebServer(ThreadingHTTPServer):
         if ":" in host:
             self.address_family = socket.AF_INET6
         try:
-            super().__init__((host, port), RequestHandler)
+            super().__init__((host, port), _RequestHandler)
         except (OSError, OverflowError) as error:
             why = getattr(error, "strerror", None) or str(error)
             raise UserError(f"cannot listen on {host} port {port}: {why}; give another --host or --port") from error
@@ -341,7 +341,7 @@ class WebServer(ThreadingHTTPServer):
         """Prints nothing: a browser that disconnects is not an error."""
 
 
-class RequestHandler(BaseHTTPRequestHandler):
+class _RequestHandler(BaseHTTPRequestHandler):
     """Handles one HTTP request."""
 
     protocol_version = "HTTP/1.1"
@@ -358,7 +358,7 @@ class RequestHandler(BaseHTTPRequestHandler):
                 self._welcome(path, query["token"])
                 return
             self._send(HTTPStatus.OK, self._web.site.answer(path, query, visitor))
-        except RefusedRequestError as refusal:
+        except _RefusedRequestError as refusal:
             is_data = self.path.startswith("/api/")
             why = _json({"error": str(refusal)}) if is_data else WebAnswer(f"{refusal}\n".encode(), "text/plain")
             self._send(refusal.status, why)
@@ -372,12 +372,12 @@ class RequestHandler(BaseHTTPRequestHandler):
         try:
             path, query, visitor = self._request()
             if self.headers.get("Origin") is None:
-                raise RefusedRequestError(HTTPStatus.FORBIDDEN, "only the pages themselves may do this")
+                raise _RefusedRequestError(HTTPStatus.FORBIDDEN, "only the pages themselves may do this")
             length = self.headers.get("Content-Length", "")
             if not length.isdecimal() or int(length) > MOST_BYTES:
-                raise RefusedRequestError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"give at most {MOST_BYTES} bytes")
+                raise _RefusedRequestError(HTTPStatus.REQUEST_ENTITY_TOO_LARGE, f"give at most {MOST_BYTES} bytes")
             self._send(HTTPStatus.OK, self._web.site.change(path, query, self.rfile.read(int(length)), visitor))
-        except RefusedRequestError as refusal:
+        except _RefusedRequestError as refusal:
             self.close_connection = True  # the body may not have been read
             self._send(refusal.status, _json({"error": str(refusal)}))
 
@@ -393,23 +393,23 @@ class RequestHandler(BaseHTTPRequestHandler):
         """The path, the query and the visitor of a request that may be answered.
 
         Raises:
-            RefusedRequestError: it comes from elsewhere, or without the token.
+            _RefusedRequestError: it comes from elsewhere, or without the token.
         """
         host = self.headers.get("Host", "")
         if not is_own(host, self._web.names, self._web.server_port):
-            raise RefusedRequestError(
+            raise _RefusedRequestError(
                 HTTPStatus.BAD_REQUEST, "this server has another name; open the address that it printed"
             )
         origin = self.headers.get("Origin")
         if origin is not None and origin != f"http://{host}":
-            raise RefusedRequestError(HTTPStatus.FORBIDDEN, "other sites may not read this")
+            raise _RefusedRequestError(HTTPStatus.FORBIDDEN, "other sites may not read this")
         parts = urlsplit(self.path)
         query = {name: values[-1] for name, values in parse_qs(parts.query).items()}
         given = query.get("token") or self._cookie()
         for token, visitor in ((self._web.token, Visitor.OWNER), (self._web.people_token, Visitor.PERSON)):
             if hmac.compare_digest(given.encode(), token.encode()):
                 return unquote(parts.path), query, visitor
-        raise RefusedRequestError(
+        raise _RefusedRequestError(
             HTTPStatus.FORBIDDEN, "the token is missing or wrong; open the address that the server printed"
         )
 

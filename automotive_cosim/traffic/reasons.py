@@ -59,7 +59,7 @@ class AdviceReason(Protocol):
 
 
 @dataclass(slots=True)
-class PoorRoad:
+class _PoorRoad:
     """Little grip, or little sight."""
 
     to_place_m: float = 0.0
@@ -70,7 +70,7 @@ class PoorRoad:
 
 
 @dataclass(slots=True)
-class LowerLimit:
+class _LowerLimit:
     """A lower limit ahead, and then that limit."""
 
     limit_mps: float
@@ -88,7 +88,7 @@ class LowerLimit:
 
 
 @dataclass(slots=True)
-class StandingAhead:
+class _StandingAhead:
     """A breakdown or roadworks ahead, with the lower limit there."""
 
     limit_mps: float | None
@@ -106,7 +106,7 @@ class StandingAhead:
 
 
 @dataclass(slots=True)
-class JamAhead:
+class _JamAhead:
     """A queue, from before its tail to its head."""
 
     to_place_m: float
@@ -120,18 +120,18 @@ class JamAhead:
 def reason_for(kind: AlertKind | None, view: RoadView) -> AdviceReason | None:
     """What an alert of a kind, or a request for a speed, is for; None if it is for this road as it is."""
     if kind in WEATHER_KINDS:
-        return PoorRoad() if view.is_poor else None
+        return _PoorRoad() if view.is_poor else None
     found: list[AdviceReason] = []
     if view.to_limit_m is not None and (kind is None or kind in LIMIT_KINDS):
         lower_mps = view.next_limit_mps
         if lower_mps is not None and lower_mps < (view.limit_mps or math.inf):
-            found.append(LowerLimit(lower_mps, view.to_limit_m))
+            found.append(_LowerLimit(lower_mps, view.to_limit_m))
     if view.to_standing_m is not None and (kind is None or kind in STANDING_KINDS):
-        found.append(StandingAhead(view.limit_mps, view.to_standing_m))
+        found.append(_StandingAhead(view.limit_mps, view.to_standing_m))
     if view.to_jam_m is not None and (kind is None or kind in QUEUE_KINDS):
-        found.append(JamAhead(view.to_jam_m))
+        found.append(_JamAhead(view.to_jam_m))
     near = [reason for reason in found if view.is_near(reason.to_place_m)]
     if near:
         return min(near, key=lambda reason: reason.to_place_m)
     about_road = kind is None or kind is AlertKind.SPEED
-    return PoorRoad() if about_road and view.is_poor else None
+    return _PoorRoad() if about_road and view.is_poor else None

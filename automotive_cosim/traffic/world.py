@@ -196,7 +196,7 @@ class World:
         if stops:
             self._sumo.vehicle.setVia(EGO, stops)
         pedals = SumoPedals(self._sumo, EGO, self.network, sensor, self._router, stops)
-        road = EgoRoad(self, self._sumo, sensor, pedals, round_)
+        road = _EgoRoad(self, self._sumo, sensor, pedals, round_)
         return EgoDrive(road, Driver(plan, pedals, self.step_s), road.now)
 
     @property
@@ -345,7 +345,7 @@ class World:
         return tuple(edges)
 
 
-class EgoRoad:
+class _EgoRoad:
     """The road of the ego: steps the world and reads the ego's state."""
 
     def __init__(
