@@ -26,8 +26,7 @@ from statistics import mean, median
 from typing import NamedTuple
 
 from automotive_cosim.contracts import EgoEnd, Reroute
-from automotive_cosim.scenarios import shipped
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario, shipped
 from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
 

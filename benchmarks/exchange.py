@@ -30,7 +30,7 @@ from automotive_cosim.exchange.opendrive import write_opendrive
 from automotive_cosim.exchange.openscenario import VERSIONS, write_openscenario
 from automotive_cosim.exchange.osi import write_osi
 from automotive_cosim.exchange.recording import Recording, read_recording
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.traffic.options import read_configuration
 
 CHECKERS = {".xodr": ("qc_opendrive", "xodrBundle"), ".xosc": ("qc_openscenario", "xoscBundle")}

@@ -23,8 +23,7 @@ from dataclasses import replace
 from pathlib import Path
 from time import perf_counter
 
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations

@@ -21,9 +21,8 @@ from automotive_cosim.calibration.sites import Mapped, map_sites
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import CountsError, ScenarioError
 from automotive_cosim.osm.network import entries, exits
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery import variant
-from automotive_cosim.scenery.gap import vehicle_types
+from automotive_cosim.scenarios import Scenario, variant
+from automotive_cosim.scenarios.gap import vehicle_types
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Copied, Setup, copied, read_configuration, run_options
 

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from automotive_cosim.calibration.capacity import Movement
 from automotive_cosim.calibration.driving import HOUR_S, CountedTime
 from automotive_cosim.calibration.fit import Floats
-from automotive_cosim.scenery.gap import INTERVAL_S, DrivenTrip, EdgeTimes
+from automotive_cosim.scenarios.gap import INTERVAL_S, DrivenTrip, EdgeTimes
 
 SENSITIVITY = 0.15
 """Spread of the choice between the routes of one start and end, as a share of the quickest's time (logit)."""

@@ -10,7 +10,7 @@ from itertools import pairwise
 from pathlib import Path
 
 from automotive_cosim.calibration.capacity import Movement
-from automotive_cosim.scenery.gap import DrivenTrip, read_trips
+from automotive_cosim.scenarios.gap import DrivenTrip, read_trips
 from automotive_cosim.traffic.options import command_line
 from automotive_cosim.traffic.stability import FEW_VEHICLES, summary
 

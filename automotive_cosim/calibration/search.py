@@ -15,8 +15,8 @@ from automotive_cosim.calibration.candidates import Candidate, Candidates, Ends,
 from automotive_cosim.calibration.capacity import USABLE, Capacity, Movement
 from automotive_cosim.calibration.driving import HOUR_S, CountedTime, DrivenDemand
 from automotive_cosim.calibration.fit import CountedFlows, Floats, fit
-from automotive_cosim.scenery import variant
-from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes, quickest
+from automotive_cosim.scenarios import variant
+from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes, quickest
 
 COUNT_ERROR = 0.02
 """Variance of a count, as a share of it: a fit may miss 1,000 vehicles by some tens if the prior insists."""

@@ -41,7 +41,7 @@ def calibrate_scenario(
     from automotive_cosim.calibration.calibrate import calibrate
     from automotive_cosim.report.calibration import write_page
     from automotive_cosim.report.charts import require_plots
-    from automotive_cosim.scenery import open_scenario
+    from automotive_cosim.scenarios import open_scenario
 
     require_plots()
     given = open_scenario(scenario)

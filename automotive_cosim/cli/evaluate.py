@@ -87,7 +87,7 @@ def evaluate(
     from automotive_cosim.run.plan import make_plan, read_plan, with_preset
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.run.store import megabytes
-    from automotive_cosim.scenery import open_scenario
+    from automotive_cosim.scenarios import open_scenario
 
     running = filled(RunSettings, settings)
     values: dict[str, Any] = read_plan(plan_file) if plan_file else {}

@@ -43,7 +43,7 @@ def export(
     from automotive_cosim.exchange.recording import read_recording
     from automotive_cosim.exchange.trajectories import write_csv, write_fcd, write_parquet
     from automotive_cosim.run.store import cannot_write
-    from automotive_cosim.scenery import open_scenario
+    from automotive_cosim.scenarios import open_scenario
     from automotive_cosim.traffic.options import read_configuration
 
     if not (openscenario or opendrive or osi or fcd or table or parquet):

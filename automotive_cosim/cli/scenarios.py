@@ -20,7 +20,7 @@ from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
-from automotive_cosim.scenery.settings import EquilibriumSettings
+from automotive_cosim.scenarios.settings import EquilibriumSettings
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -28,9 +28,9 @@ if TYPE_CHECKING:
     from automotive_cosim.contracts import Json, Tell
     from automotive_cosim.osm.report import ImportReport
     from automotive_cosim.scenarios import Scenario
-    from automotive_cosim.scenery.check import ScenarioProof
-    from automotive_cosim.scenery.optimum import SystemOptimum
-    from automotive_cosim.scenery.streets import StreetEdges
+    from automotive_cosim.scenarios.check import ScenarioProof
+    from automotive_cosim.scenarios.optimum import SystemOptimum
+    from automotive_cosim.scenarios.streets import StreetEdges
     from automotive_cosim.traffic.stability import Stability
 
 app = typer.Typer(help="List, check, draw, import and calibrate scenarios.", no_args_is_help=True)
@@ -66,8 +66,8 @@ def show(
     as_json: AsJson = False,
 ) -> None:
     """Show one scenario: its place, time, weather, ego trips, and the edges that options such as --measure name."""
-    from automotive_cosim.scenery import open_scenario
-    from automotive_cosim.scenery.streets import streets
+    from automotive_cosim.scenarios import open_scenario
+    from automotive_cosim.scenarios.streets import streets
 
     tell_opening(scenario)
     found = open_scenario(scenario)
@@ -181,8 +181,8 @@ def check_scenarios(
     Each is loaded, warmed up and located. Its streets and limits are compared with those that it states, every trip
     of the ego is driven to its end, its situations must occur, and its traffic must flow for an hour.
     """
-    from automotive_cosim.scenery import open_scenario
-    from automotive_cosim.scenery.check import check
+    from automotive_cosim.scenarios import open_scenario
+    from automotive_cosim.scenarios.check import check
 
     proofs = []
     tell_opening(*names or ())
@@ -228,8 +228,8 @@ def render(
     ] = None,
 ) -> None:
     """Draw scenarios from above: road classes, names, limits, tunnels and the ego's trips."""
-    from automotive_cosim.scenery import open_scenario
-    from automotive_cosim.scenery.picture import ENDINGS, save_picture
+    from automotive_cosim.scenarios import open_scenario
+    from automotive_cosim.scenarios.picture import ENDINGS, save_picture
 
     tell_opening(*names or ())
     found = [open_scenario(name) for name in names or scenarios.shipped()]
@@ -322,10 +322,10 @@ def equilibrate_scenario(
 
     Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
     """
-    from automotive_cosim.scenery.equilibrium import AssignmentStep, equilibrate
-    from automotive_cosim.scenery.optimum import RECORD as OPTIMUM
-    from automotive_cosim.scenery.optimum import OptimumStep, compare
-    from automotive_cosim.scenery.variant import check_target
+    from automotive_cosim.scenarios.equilibrium import AssignmentStep, equilibrate
+    from automotive_cosim.scenarios.optimum import RECORD as OPTIMUM
+    from automotive_cosim.scenarios.optimum import OptimumStep, compare
+    from automotive_cosim.scenarios.variant import check_target
 
     target = out or folder.with_name(f"{folder.resolve().name.removesuffix('.sumocfg')}_equilibrium")
 

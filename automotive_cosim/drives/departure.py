@@ -10,8 +10,7 @@ from automotive_cosim.cosim.simulation import CoSimulation, couple
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.episode.observer import Observer
 from automotive_cosim.errors import NoRoomError
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.tasking.draws import SEED_LIMIT, Draws, Purpose
 from automotive_cosim.traffic.base import EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.fork import Simulations

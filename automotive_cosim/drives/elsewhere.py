@@ -8,9 +8,8 @@ from dataclasses import replace
 
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Trip
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import Trip, open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.rounds import planned
 

@@ -15,9 +15,9 @@ from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.formats.annotations import Form, Latitude, Longitude
 from automotive_cosim.formats.checked import as_json, checked
+from automotive_cosim.formats.incidents import AnyIncident
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.scenarios import WeatherAt
-from automotive_cosim.scenarios.incidents import AnyIncident
 from automotive_cosim.traffic.base import DriverAt, HaltAt
 
 SHORTEST_S = 600.0

@@ -28,7 +28,7 @@ from automotive_cosim.drives.sky import (
     shower,
     sleet,
 )
-from automotive_cosim.scenarios.incidents import (
+from automotive_cosim.formats.incidents import (
     AheadIncident,
     AnyIncident,
     BrakingLeader,

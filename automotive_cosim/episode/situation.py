@@ -19,9 +19,8 @@ from automotive_cosim.episode.observer import Observer
 from automotive_cosim.episode.specification import EpisodeSpec, Seeds
 from automotive_cosim.errors import NoRoomError, TriggerNotReachedError, UserError
 from automotive_cosim.geo.forecast import drawn_weather
-from automotive_cosim.scenarios import Scenario, Trip, WeatherAt
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import Scenario, Trip, WeatherAt, open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.tasking.binding import POSTED_LIMIT, UnmetNeedError, bound, needs, never_here
 from automotive_cosim.tasking.draws import Draws, Purpose
 from automotive_cosim.tasking.instance import Instance, draw, speech

@@ -7,4 +7,5 @@ checked      values -> an instance, or the problems in words
 toml         a file, and the lines of its entries
 words        what came and what was expected, from a JSON Schema
 schema       the JSON Schema of a type
+scenario     the form of a ``scenario.toml``, with the incidents that it may stage
 """

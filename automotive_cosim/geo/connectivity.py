@@ -5,7 +5,7 @@ from __future__ import annotations
 from copy import copy
 
 from automotive_cosim.contracts import Connectivity, DrivingState
-from automotive_cosim.scenarios import LINKS, LinkAt, link_at
+from automotive_cosim.formats.scenario import LINKS, LinkAt, link_at
 
 OFFLINE = Connectivity(online=False, kind="none", signal_bars=0)
 IN_TOWN = Connectivity(online=True, kind="5g", signal_bars=4)

@@ -24,9 +24,9 @@ import numpy as np
 
 from automotive_cosim.contracts import DrivingState, Weather
 from automotive_cosim.errors import ScenarioError, UserError
+from automotive_cosim.formats.scenario import WeatherAt
 from automotive_cosim.geo.climate import NEAR_KM, ClimateNorm, climate_norm
 from automotive_cosim.geo.weather import FOG_BELOW_M, HEAVY_RAIN_FROM_MM_PER_H, WMO_WORDS, typical_weather
-from automotive_cosim.scenarios import WeatherAt
 
 OPEN_METEO_URL = "https://api.open-meteo.com/v1/forecast"
 TIMEOUT_S = 5.0

@@ -13,7 +13,7 @@ from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
-from automotive_cosim.scenery.opening import network_of, open_scenario
+from automotive_cosim.scenarios.opening import network_of, open_scenario
 from automotive_cosim.traffic.network import Network
 
 if TYPE_CHECKING:

@@ -23,8 +23,7 @@ from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.run import memory
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.confinement import confined

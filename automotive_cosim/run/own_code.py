@@ -11,7 +11,7 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.scenery.opening import own_files
+from automotive_cosim.scenarios.opening import own_files
 
 
 def own_code(agents: Iterable[str]) -> dict[str, str]:

@@ -33,7 +33,7 @@ from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, EpisodeJob, Limits, TrialJob, digest
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE

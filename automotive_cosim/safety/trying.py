@@ -26,7 +26,7 @@ from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.space import CONDITIONS, SETTINGS, FactorChoices, SearchPoint, Space
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.tasks import CATALOGUE
 
 

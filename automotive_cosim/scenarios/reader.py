@@ -17,8 +17,8 @@ from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import ScenarioError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import Called, Form
 from automotive_cosim.formats.files import is_file
+from automotive_cosim.formats.scenario import Described, LinkAt, Scenario, WeatherAt
 from automotive_cosim.formats.toml import Document, read_toml
-from automotive_cosim.scenarios.model import Described, LinkAt, Scenario, WeatherAt
 
 YEARS = 1970, 2199
 """Those that sun, clocks and calendars are computed for."""

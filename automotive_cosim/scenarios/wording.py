@@ -8,7 +8,7 @@ from typing import Any, get_args, get_origin, get_type_hints
 
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
-from automotive_cosim.scenarios.incidents import AnyIncident, Incident
+from automotive_cosim.formats.incidents import AnyIncident, Incident
 
 KINDS: dict[str, type[Incident]] = {
     get_args(get_type_hints(each)["kind"])[0]: each for each in get_args(get_args(AnyIncident)[0])

@@ -20,7 +20,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.toml import read_toml
 from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.plan import Plan, choose
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.serve.played import check_code_name, people_plan
 
 MOST_PEOPLE = 100

@@ -11,8 +11,8 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.road import NAME as ROAD
 from automotive_cosim.run.road_recorder import is_being_written
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.studies.decisions import told
 from automotive_cosim.studies.live import LIVE

@@ -4,7 +4,7 @@ Every day drives all trips in SUMO. Overnight, the times of the roads go into a 
 J. L. Horowitz, The Stability of Stochastic Equilibrium in a Two-Link Transportation Network, Transportation
 Research B 18, 1984), and every advised driver for whom another route would have been quicker by that memory takes
 it the next day, if the driver follows the advice. All others keep their routes. Beside it runs the user equilibrium
-of the same trips (``scenery.equilibrium``): everybody looks for the quickest route of the day before, fewer and
+of the same trips (``scenarios.equilibrium``): everybody looks for the quickest route of the day before, fewer and
 fewer each day.
 """
 
@@ -29,11 +29,10 @@ from automotive_cosim.run.executor import Executor, LoneJob, Runner
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_manifest, read_rows
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery import open_scenario, variant
-from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, rerouted
-from automotive_cosim.scenery.gap import NOTICED_S, TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
-from automotive_cosim.scenery.optimum import POWER
+from automotive_cosim.scenarios import Scenario, open_scenario, variant
+from automotive_cosim.scenarios.equilibrium import ROUTES, Assigned, rerouted
+from automotive_cosim.scenarios.gap import NOTICED_S, TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
+from automotive_cosim.scenarios.optimum import POWER
 from automotive_cosim.studies.plan import checked_plan, driven_at, plan_of
 from automotive_cosim.studies.settings import DaysSettings
 from automotive_cosim.traffic.network import read_network
@@ -48,7 +47,7 @@ Drivers = float | str
 WEEK = 5
 """Days whose mean is compared with that of as many days before."""
 NEAR = 0.02
-"""Relative gap up to which the routes count as near a user equilibrium, as in ``scenery.equilibrium.Options``."""
+"""Relative gap up to which the routes count as near a user equilibrium, as in ``EquilibriumSettings``."""
 SETTLED = 0.01
 """Traffic has settled when the two differ by less than this share."""
 
@@ -129,7 +128,7 @@ class StudyDay:
     """Of those of advised drivers; None if there are none."""
     others_s: float | None
     relative_gap: float
-    """What all lost against the quickest routes of the day, as a share of these (``scenery.gap``)."""
+    """What all lost against the quickest routes of the day, as a share of these (``scenarios.gap``)."""
     changed: int
     """Drivers who take another route the next day."""
     unfinished: int
@@ -243,7 +242,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
             memory = 0.0 if job.share is None else plan.memory
             memories.append(memories[-1].blended(times, memory) if memories else times)
             known = memories[max(0, number - (0 if job.share is None else plan.lag))]
-            if job.optimum:  # by what one more vehicle costs all, as in ``scenery.optimum``
+            if job.optimum:  # by what one more vehicle costs all, as in ``scenarios.optimum``
                 calm_s |= {edge: min(least_s, calm_s.get(edge, least_s)) for edge, least_s in times.least_s.items()}
                 known = times.raised(calm_s, POWER)
             counted = [trip for trip in ran.trips if first_s <= trip.departed_s < first_s + observe_s]

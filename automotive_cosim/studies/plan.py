@@ -13,13 +13,12 @@ from typing import Any, TypeVar
 from automotive_cosim.agents import make_agent
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.incidents import AnyIncident, Incident
 from automotive_cosim.formats.options import option
 from automotive_cosim.run.executor import LoneJob
-from automotive_cosim.scenarios import Scenario, Trip
-from automotive_cosim.scenarios.incidents import AnyIncident, Incident
+from automotive_cosim.scenarios import Scenario, Trip, open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.scenarios.wording import KINDS, read_line
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
 from automotive_cosim.studies.policies import AGENT, parse_policy
 from automotive_cosim.studies.settings import RerouteSettings, TrafficSettings
 from automotive_cosim.traffic.profiles import profile

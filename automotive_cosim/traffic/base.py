@@ -25,8 +25,8 @@ from automotive_cosim.contracts import (
     RoadSnapshot,
     RouteOption,
 )
-from automotive_cosim.scenarios import Trip, WeatherAt
-from automotive_cosim.scenarios.incidents import AnyIncident
+from automotive_cosim.formats.incidents import AnyIncident
+from automotive_cosim.formats.scenario import Trip, WeatherAt
 
 WarmUpProgress = Callable[[float, float], None]
 """Called with the simulated seconds of the warm-up that are done, and their total."""

@@ -28,8 +28,8 @@ from automotive_cosim.contracts import (
     RouteOption,
 )
 from automotive_cosim.errors import SetupError, TrafficError
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenarios.incidents import Closure, Incident
+from automotive_cosim.formats.incidents import Closure, Incident
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.chance import Fresh, Trial

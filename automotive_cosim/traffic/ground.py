@@ -15,9 +15,9 @@ import shapely
 
 from automotive_cosim.contracts import GroundArea, GroundKind, RoadNetwork, in_drawing_order
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
-from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.mirror import mirrored
 from automotive_cosim.traffic.network import Network, Shape, quantity, read_network

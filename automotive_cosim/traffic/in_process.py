@@ -15,7 +15,7 @@ from automotive_cosim.contracts import (
     RouteOption,
 )
 from automotive_cosim.errors import TrafficError
-from automotive_cosim.scenarios import Scenario
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic, WarmUpProgress
 from automotive_cosim.traffic.drive import Call, EgoDrive
 from automotive_cosim.traffic.fork import replayed

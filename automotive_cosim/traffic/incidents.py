@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
 
 from automotive_cosim.contracts import RoadIncident
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenarios.incidents import EgoIncident, Incident
+from automotive_cosim.formats.incidents import EgoIncident, Incident
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.sensing import Sensor

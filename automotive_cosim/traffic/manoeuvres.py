@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import incidents
+from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident

@@ -16,8 +16,8 @@ from xml.sax.saxutils import quoteattr
 
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.xml import scan
-from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_network, root_of

@@ -23,7 +23,7 @@ from typing import Any
 
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, ScenarioError, TrafficError
-from automotive_cosim.scenarios.incidents import Incident
+from automotive_cosim.formats.incidents import Incident
 from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew

@@ -11,7 +11,7 @@ from bisect import bisect_right
 from dataclasses import dataclass, replace
 
 from automotive_cosim.contracts import Weather
-from automotive_cosim.scenarios import WeatherAt, weather_at
+from automotive_cosim.formats.scenario import WeatherAt, weather_at
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.sumo import LibSumo
 

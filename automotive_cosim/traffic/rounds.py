@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Trip
+from automotive_cosim.formats.scenario import Trip
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.ways import way_through, ways_from
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError, TrafficError
-from automotive_cosim.scenarios import Scenario
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.confinement import confined
 from automotive_cosim.traffic.options import Copied, Setup, command_line, copied, read_configuration, run_options
 from automotive_cosim.traffic.sumo_programs import environment, first_error, program

@@ -10,7 +10,7 @@ from typing import Any
 
 from automotive_cosim.contracts import KMH_PER_MPS, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import incidents
+from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.manoeuvres import (
     StagedBraking,

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from automotive_cosim.contracts import EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
-from automotive_cosim.scenarios import Trip
-from automotive_cosim.scenarios.incidents import Incident
+from automotive_cosim.formats.incidents import Incident
+from automotive_cosim.formats.scenario import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion

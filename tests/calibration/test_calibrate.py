@@ -22,7 +22,7 @@ from automotive_cosim.calibration.settings import CalibrationOptions
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, UserError
 from automotive_cosim.report.calibration import by_hour, findings, write_page
-from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes
+from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes
 from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 
 COUNTS = Path(__file__).parents[2] / "docs/examples/grid_counts.csv"

@@ -10,7 +10,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.calibration.capacity import Capacity
 from automotive_cosim.calibration.counts import Counts, SitePlace
 from automotive_cosim.calibration.sites import Mapped, map_sites
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
 

@@ -25,7 +25,7 @@ from automotive_cosim.formats.options import option
 from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
 from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
 from automotive_cosim.safety.settings import SearchSettings
-from automotive_cosim.scenery.settings import EquilibriumSettings
+from automotive_cosim.scenarios.settings import EquilibriumSettings
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings, SuiteSettings
 from tests.laws import over
 

@@ -149,7 +149,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
     (r"scenarios (check|download)", HELP, "takes minutes or the network; tests/osm has them"),
     (r"scenarios calibrate", HELP, "takes minutes; tests/calibration try it on the grid"),
-    (r"scenarios equilibrate", HELP, "takes minutes; tests/scenery/test_equilibrium.py tries it"),
+    (r"scenarios equilibrate", HELP, "takes minutes; tests/scenarios/test_equilibrium.py tries it"),
     (r"scenarios import pass", HELP, "needs a scenario of the reader's; tests/exchange has one"),
     (r"scenarios import city", HELP, "needs a map of the reader's; the hamlet is imported"),
     (r"scenarios import", ("--force",), ""),

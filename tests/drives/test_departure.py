@@ -22,9 +22,9 @@ from automotive_cosim.drives.departure import depart, departed_on_a_free_road
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.script import DriveScript
 from automotive_cosim.errors import NoRoomError, ScenarioError, UnknownNameError
+from automotive_cosim.formats.incidents import AheadIncident, EmergencyVehicle
 from automotive_cosim.interface.trace import canonical, plain
 from automotive_cosim.scenarios import Trip, WeatherAt
-from automotive_cosim.scenarios.incidents import AheadIncident, EmergencyVehicle
 from automotive_cosim.traffic.base import DriverAt, EgoPlan
 from automotive_cosim.traffic.ego import BUCKLES, CLEARS_VIEW, WAKES_UP
 from automotive_cosim.traffic.fork import Simulations

@@ -9,9 +9,8 @@ import pytest
 from automotive_cosim.drives.elsewhere import elsewhere
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.errors import UnknownNameError
-from automotive_cosim.scenarios import load
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import load, open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic.rounds import planned
 
 PLAN = FAMILIES["beauce_june"].draw(1)

@@ -29,9 +29,8 @@ from automotive_cosim.drives.script import (
 from automotive_cosim.drives.staging import AT_SCHOOLS, COMES_S, ONCE, SCHOOL_ZONE, STAGED, STAGINGS, Setting
 from automotive_cosim.errors import UserError
 from automotive_cosim.proof.world import implausible
-from automotive_cosim.scenarios import load, shipped
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import load, open_scenario, shipped
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.profiles import PROFILES
 from tests.drives.scenes import CLEAR, found, moment

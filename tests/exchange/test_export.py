@@ -22,7 +22,7 @@ from automotive_cosim.formats.files import opened
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.road import RoadRecord, Second
 from automotive_cosim.run.road_recorder import RoadRecorder
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.traffic.network import drives_on_left
 from automotive_cosim.traffic.options import read_configuration
 

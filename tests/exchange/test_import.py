@@ -9,9 +9,8 @@ import pytest
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.incoming import import_openscenario
 from automotive_cosim.exchange.opendrive import write_opendrive
-from automotive_cosim.scenarios import load
-from automotive_cosim.scenarios.incidents import VehicleAction
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.formats.incidents import VehicleAction
+from automotive_cosim.scenarios import load, open_scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.options import read_configuration

@@ -37,7 +37,7 @@ from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.run.road import read_record
 from automotive_cosim.run.script import read_script
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, write_trace
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario
 
 GRID = scenarios.load("grid").folder
 QUICK = settings(
@@ -350,7 +350,7 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.osm import extract
 from automotive_cosim.calibration.counts import read_counts
 from automotive_cosim.run.store import read_trace
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario
 resource.setrlimit(resource.RLIMIT_DATA, ({memory}, {memory}))
 resource.setrlimit(resource.RLIMIT_CPU, ({seconds}, {seconds}))
 for name in sys.argv[1:]:

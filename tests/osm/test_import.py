@@ -22,7 +22,7 @@ from automotive_cosim.osm.report import ImportReport
 from automotive_cosim.osm.roads import describe
 from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.scenarios import load
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import Edge, read_network
 from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, measure

@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.errors import CosimError, UnknownNameError
+from automotive_cosim.formats.incidents import Breakdown, Incident, Jam
 from automotive_cosim.scenarios import load
-from automotive_cosim.scenarios.incidents import Breakdown, Incident, Jam
 from automotive_cosim.scenarios.wording import KINDS, read_line
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import CosimError
-from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes
+from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes
 from automotive_cosim.studies.days import (
     WEEK,
     DaysJob,

@@ -13,7 +13,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.geo.place import Atlas
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.sumo_scenarios import build
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS

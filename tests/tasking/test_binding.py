@@ -21,8 +21,8 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.tasking.binding import UnmetNeedError, bound, needs, never_here
 from automotive_cosim.tasking.task import Basis, Half
 from automotive_cosim.tasks import CATALOGUE

@@ -13,9 +13,8 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import LIGHTS
 from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.geo.sun import sun_at
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import Scenario, open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.tasking.instance import draw
 from automotive_cosim.tasking.task import Half, Start, Task
 from automotive_cosim.tasks import CATALOGUE

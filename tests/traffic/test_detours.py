@@ -12,9 +12,8 @@ import numpy as np
 import pytest
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenarios.incidents import Closure, Incident, Roadworks
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.formats.incidents import Closure, Incident, Roadworks
+from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.in_process import InProcess

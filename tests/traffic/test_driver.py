@@ -23,8 +23,8 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
+from automotive_cosim.formats.incidents import Breakdown, EmergencyVehicle
 from automotive_cosim.scenarios import Scenario, Trip, load
-from automotive_cosim.scenarios.incidents import Breakdown, EmergencyVehicle
 from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan, HaltAt, Traffic
 from automotive_cosim.traffic.ego import DRIVES_ON, PARKS, PASS_SHARE, RELEASED, SETS_OFF
 from automotive_cosim.traffic.fork import Forked

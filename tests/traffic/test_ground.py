@@ -10,7 +10,7 @@ import pytest
 from automotive_cosim import scenarios
 from automotive_cosim.contracts import GroundArea, GroundKind
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic import ground
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.ground import read_mapped

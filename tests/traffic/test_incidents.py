@@ -12,8 +12,8 @@ import pytest
 
 from automotive_cosim.contracts import KMH_PER_MPS, DrivingState, EgoEnd, IncidentKind, RoadIncident
 from automotive_cosim.errors import ScenarioError, UnknownNameError
+from automotive_cosim.formats.incidents import AnyIncident
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenarios.incidents import AnyIncident
 from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.fork import Forked

@@ -9,8 +9,8 @@ import pytest
 
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic.rounds import planned
 
 EVERY = [pytest.param(family, id=family.id) for family in FAMILIES.values()]

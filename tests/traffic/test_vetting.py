@@ -15,7 +15,7 @@ import pytest
 from automotive_cosim import scenarios
 from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.formats import files
-from automotive_cosim.scenery import open_scenario
+from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.traffic import sumo_programs, vocabulary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked

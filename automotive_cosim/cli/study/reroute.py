@@ -138,7 +138,7 @@ def _announce(console: Console, plan: StudyPlan, folder: Path) -> None:
 
 def _departures(scenario: str, text: str) -> tuple[float, ...]:
     """Departures in seconds after the warm-up; clock times are relative to the scenario's start."""
-    from automotive_cosim.scenery import open_scenario
+    from automotive_cosim.scenarios import open_scenario
 
     found = []
     for word in words("departures", text):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.scenarios.incidents import Jam
+from automotive_cosim.formats.incidents import Jam
 from automotive_cosim.studies.congestion.charts import charts
 from automotive_cosim.studies.congestion.plan import measure_in, name_of
 from automotive_cosim.studies.congestion.results import (

@@ -9,11 +9,10 @@ from functools import lru_cache
 from typing import Any
 
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.incidents import AnyIncident, EgoIncident, RushHour
 from automotive_cosim.run.executor import LoneJob
-from automotive_cosim.scenarios import Scenario, Trip
-from automotive_cosim.scenarios.incidents import AnyIncident, EgoIncident, RushHour
+from automotive_cosim.scenarios import Scenario, Trip, open_scenario
 from automotive_cosim.scenarios.wording import KINDS, read_line
-from automotive_cosim.scenery import open_scenario
 from automotive_cosim.studies.plan import check_edges, checked_plan, driven_at, plan_of
 from automotive_cosim.studies.settings import CongestionSettings
 from automotive_cosim.traffic.flow import Advice, SignalControl

@@ -12,11 +12,11 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, WeatherAt
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.geo.place import NOWHERE, Atlas, Place
-from automotive_cosim.scenarios import Ego, Scenario, Sumo, WeatherAt
-from automotive_cosim.scenery.relocation import zone_of
-from automotive_cosim.scenery.routes import drawn_trips
+from automotive_cosim.scenarios.relocation import zone_of
+from automotive_cosim.scenarios.routes import drawn_trips
 from automotive_cosim.traffic.georeference import middle
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import (

@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from automotive_cosim import scenarios
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Ego, Scenario
-from automotive_cosim.scenery.foreign import foreign_scenario
-from automotive_cosim.scenery.relocation import at_home, relocated
-from automotive_cosim.scenery.routes import chosen_trips
+from automotive_cosim.formats.scenario import Ego, Scenario
+from automotive_cosim.scenarios.foreign import foreign_scenario
+from automotive_cosim.scenarios.reader import load
+from automotive_cosim.scenarios.relocation import at_home, relocated
+from automotive_cosim.scenarios.routes import chosen_trips
 from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.network import Network, root_of
 from automotive_cosim.traffic.options import read_configuration
@@ -76,7 +76,7 @@ def own_files(name: str | Path) -> tuple[Path, ...]:
     path = _configuration(Path(name))
     described: tuple[Path, ...] = ()
     if path.is_dir() or path.name == "scenario.toml":
-        scenario = scenarios.load(path if path.is_dir() else path.parent)
+        scenario = load(path if path.is_dir() else path.parent)
         path, described = scenario.config, (scenario.folder / "scenario.toml",)
     if not path.is_file():
         return ()
@@ -100,9 +100,9 @@ def _opened(name: str | Path, *, to_be_moved: bool) -> Scenario:
     if not path.is_file():
         if path.name.endswith((".sumocfg", ".xml", ".gz")):
             raise ScenarioError(f"there is no file {path}")
-        return scenarios.load(name)
+        return load(name)
     if path.name == "scenario.toml":
-        return scenarios.load(path.parent)
+        return load(path.parent)
     root = root_of(path).tag
     if root == "osm":
         raise ScenarioError(f"{path} is an OpenStreetMap extract; import it first: scenarios import {path}")

@@ -16,10 +16,10 @@ from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, QUIET, Camera, View
 from automotive_cosim.cockpit.theme import DAY, Colour, Weight, face, font
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ScenarioError, UserError
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.geo.place import Atlas
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery.labels import GREY, RED, Labels, Points, place_labels
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios.labels import GREY, RED, Labels, Points, place_labels
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network
 from automotive_cosim.traffic.ways import way_through

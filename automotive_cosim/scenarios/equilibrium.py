@@ -17,11 +17,11 @@ import numpy as np
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery import variant
-from automotive_cosim.scenery.gap import NOTICED_S, Driven, DrivenTrip, Gap, drive, vehicle_types
-from automotive_cosim.scenery.opening import open_scenario
-from automotive_cosim.scenery.settings import EquilibriumSettings
+from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.scenarios import variant
+from automotive_cosim.scenarios.gap import NOTICED_S, Driven, DrivenTrip, Gap, drive, vehicle_types
+from automotive_cosim.scenarios.opening import open_scenario
+from automotive_cosim.scenarios.settings import EquilibriumSettings
 from automotive_cosim.traffic.options import Configuration, copied, read_configuration
 
 ROUTES = "equilibrium.rou.xml"

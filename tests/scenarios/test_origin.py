@@ -17,8 +17,8 @@ from automotive_cosim.contracts import Reroute, Weather
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import UserError
 from automotive_cosim.geo.place import shipped
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.georeference import GeoReference, middle

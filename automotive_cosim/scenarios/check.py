@@ -13,11 +13,12 @@ from functools import partial
 
 from automotive_cosim.contracts import EgoEnd, Json, LimitSource, Tell
 from automotive_cosim.errors import ScenarioError, TrafficError
+from automotive_cosim.formats import incidents
+from automotive_cosim.formats.incidents import Incident
+from automotive_cosim.formats.scenario import Scenario, Street, Trip
 from automotive_cosim.geo.place import Atlas, Place
-from automotive_cosim.scenarios import Scenario, Street, Trip, incidents
-from automotive_cosim.scenarios.incidents import Incident
-from automotive_cosim.scenery.opening import network_of
-from automotive_cosim.scenery.relocation import zone_of
+from automotive_cosim.scenarios.opening import network_of
+from automotive_cosim.scenarios.relocation import zone_of
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference, middle

@@ -25,10 +25,10 @@ import numpy as np
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError
-from automotive_cosim.scenery import variant
-from automotive_cosim.scenery.equilibrium import ROUTES, Assigned, changes, is_stuck, opened, rerouted
-from automotive_cosim.scenery.gap import TAIL_S, DrivenTrip, EdgeTimes, drive, run, vehicle_types
-from automotive_cosim.scenery.settings import EquilibriumSettings
+from automotive_cosim.scenarios import variant
+from automotive_cosim.scenarios.equilibrium import ROUTES, Assigned, changes, is_stuck, opened, rerouted
+from automotive_cosim.scenarios.gap import TAIL_S, DrivenTrip, EdgeTimes, drive, run, vehicle_types
+from automotive_cosim.scenarios.settings import EquilibriumSettings
 from automotive_cosim.traffic.options import copied, read_configuration
 
 RECORD = "optimum.json"

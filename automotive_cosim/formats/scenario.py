@@ -15,7 +15,7 @@ from annotated_types import Ge, Gt, Le, MinLen
 from automotive_cosim.contracts import Weather
 from automotive_cosim.errors import UnknownNameError
 from automotive_cosim.formats.annotations import Called, Latitude, Longitude, OneOf
-from automotive_cosim.scenarios.incidents import AnyIncident, EdgeId
+from automotive_cosim.formats.incidents import AnyIncident, EdgeId
 
 
 @dataclass(frozen=True, slots=True)

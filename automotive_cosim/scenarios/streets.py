@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from automotive_cosim.scenarios import Scenario
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.network import Edge, read_network
 from automotive_cosim.traffic.options import read_configuration
 

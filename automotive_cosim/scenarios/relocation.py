@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from zoneinfo import ZoneInfo
 
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.geo.place import Place, shipped
-from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.network import drives_on_left
 from automotive_cosim.traffic.options import read_configuration
 

@@ -15,11 +15,10 @@ from automotive_cosim import scenarios
 from automotive_cosim.cockpit import theme
 from automotive_cosim.cockpit.theme import DAY, Weight, can_set, face
 from automotive_cosim.errors import ScenarioError, UserError
-from automotive_cosim.scenarios import Ego, Trip
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.labels import Labels, place_labels
-from automotive_cosim.scenery.opening import network_of
-from automotive_cosim.scenery.picture import ASPECTS, Viewport, draw_scenario, save_picture, trip_colour
+from automotive_cosim.scenarios import Ego, Trip, open_scenario
+from automotive_cosim.scenarios.labels import Labels, place_labels
+from automotive_cosim.scenarios.opening import network_of
+from automotive_cosim.scenarios.picture import ASPECTS, Viewport, draw_scenario, save_picture, trip_colour
 
 GRID = scenarios.load("grid")
 

@@ -13,7 +13,7 @@ from xml.sax.saxutils import quoteattr
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
-from automotive_cosim.scenarios import Scenario
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.options import Configuration
 
 NOT_TAKEN = re.compile(rb"<(stop|person|personFlow|container|containerFlow|ride|walk)[\s/>]")

@@ -22,7 +22,7 @@ import numpy.typing as npt
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats import files
-from automotive_cosim.scenarios import Scenario
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import (

@@ -10,11 +10,11 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UserError
-from automotive_cosim.scenery import optimum
-from automotive_cosim.scenery.equilibrium import RECORD, AssignmentStep, equilibrate, is_stuck
-from automotive_cosim.scenery.gap import DrivenTrip, EdgeTimes, Gap, measure
-from automotive_cosim.scenery.settings import EquilibriumSettings
-from automotive_cosim.scenery.variant import settings
+from automotive_cosim.scenarios import optimum
+from automotive_cosim.scenarios.equilibrium import RECORD, AssignmentStep, equilibrate, is_stuck
+from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes, Gap, measure
+from automotive_cosim.scenarios.settings import EquilibriumSettings
+from automotive_cosim.scenarios.variant import settings
 from automotive_cosim.traffic import sumo_programs
 
 FREE_S = {"a": 10.0, "b": 20.0, "c": 30.0, "d": 5.0}

@@ -11,7 +11,7 @@ import numpy as np
 
 from automotive_cosim.contracts import lon_lat
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Trip
+from automotive_cosim.formats.scenario import Trip
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.ways import NEAREST, ways_from

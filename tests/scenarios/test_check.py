@@ -10,11 +10,10 @@ import pytest
 
 from automotive_cosim import scenarios
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import Ego, Scenario, Street, Trip
-from automotive_cosim.scenarios.incidents import Breakdown, EmergencyVehicle, Incident
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.check import ScenarioProof, by_clock, check
-from automotive_cosim.scenery.opening import network_of
+from automotive_cosim.formats.incidents import Breakdown, EmergencyVehicle, Incident
+from automotive_cosim.scenarios import Ego, Scenario, Street, Trip, open_scenario
+from automotive_cosim.scenarios.check import ScenarioProof, by_clock, check
+from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic import stability
 from automotive_cosim.traffic.posted import timed_limits
 
@@ -109,7 +108,7 @@ def test_a_trip_that_cannot_be_driven_fails_alone(trip: Trip) -> None:
 
 @pytest.mark.sumo
 def test_a_trip_that_is_blocked_for_good_does_not_arrive(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("automotive_cosim.scenery.check.LONGEST_DRIVE_S", 240.0)
+    monkeypatch.setattr("automotive_cosim.scenarios.check.LONGEST_DRIVE_S", 240.0)
     blocks = tuple(Breakdown(edge="c2c3", lane=lane, position_m=150.0) for lane in (0, 1))
     failing = _failing(check(replace(_with_trips(AVENUE), incidents=blocks), quick=True))
     assert "is still on its way" in failing["trip avenue"]
@@ -164,7 +163,7 @@ def test_traffic_that_locks_up_fails(monkeypatch: pytest.MonkeyPatch) -> None:
         seen["step"] = step_length_s
         return flow
 
-    monkeypatch.setattr("automotive_cosim.scenery.check.measure", measured)
+    monkeypatch.setattr("automotive_cosim.scenarios.check.measure", measured)
     detail = _failing(check(_with_trips(AVENUE)))["an hour of traffic"]
     assert "90% of the vehicles halted" in detail
     assert "7 vehicles stood" in detail

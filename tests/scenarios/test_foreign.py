@@ -14,11 +14,10 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts import EgoEnd
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import ScenarioError, UnknownNameError
-from automotive_cosim.scenarios import Scenario
-from automotive_cosim.scenery import open_scenario
-from automotive_cosim.scenery.opening import network_of
-from automotive_cosim.scenery.routes import LONG_M, chosen_trips, edges_at
-from automotive_cosim.scenery.variant import write_variant
+from automotive_cosim.scenarios import Scenario, open_scenario
+from automotive_cosim.scenarios.opening import network_of
+from automotive_cosim.scenarios.routes import LONG_M, chosen_trips, edges_at
+from automotive_cosim.scenarios.variant import write_variant
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference
