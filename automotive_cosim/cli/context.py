@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, replace
+from dataclasses import asdict, dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 from zoneinfo import ZoneInfo
 
 import typer
+from annotated_types import Ge, Le
 
-from automotive_cosim.cli.options import number, print_json, whole_number
+from automotive_cosim.cli.derived import filled, takes
+from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.formats.annotations import Option
 
 if TYPE_CHECKING:
     from automotive_cosim.contracts import DrivingState, Json, Weather
@@ -29,68 +32,62 @@ COMMAND_SETTINGS = {"ignore_unknown_options": True}
 """Lets a negative number be a plain argument."""
 
 
+@dataclass(frozen=True, slots=True)
+class ContextSettings:
+    """What can be told about a car that is somewhere."""
+
+    time: str = ""
+    """ISO date and time, in the local zone unless it has one; now by default."""
+    speed_kmh: Annotated[float, Ge(0), Le(FASTEST_KMH), Option("speed", form="KMH")] = 0.0
+    """Speed of the car in km/h."""
+    heading_deg: Annotated[float, Ge(0), Le(360), Option("heading", form="DEG")] = 0.0
+    """Heading of the car in degrees clockwise from north."""
+    weather: Annotated[int | None, Option(form="CODE")] = None
+    """WMO weather code as Open-Meteo uses it."""
+    visibility_m: Annotated[float | None, Ge(0), Le(1e6), Option("visibility", form="M")] = None
+    """Visibility in metres, instead of the usual one for the weather code."""
+    draw: Annotated[int | None, Option(form="SEED")] = None
+    """Seed to draw the weather from the climate of the place and month."""
+    online: bool = False
+    """Ask Open-Meteo for the weather; if that fails, use the climate."""
+    road: str = ""
+    """OSM highway value, e.g. motorway, primary, residential."""
+    street: str = ""
+    """Name of the street."""
+    budget: Annotated[int | None, Ge(1), Le(10**6)] = None
+    """Limit of the text in tokens."""
+
+
+@takes(ContextSettings)
 def context(
     lat: Annotated[float, typer.Argument(help="Degrees north; negative is south.")],
     lon: Annotated[float, typer.Argument(help="Degrees east; negative is west.")],
-    time: Annotated[
-        str, typer.Option(help="ISO date and time, in the local zone unless it has one; now by default.")
-    ] = "",
-    speed: Annotated[
-        float, typer.Option(parser=number(0, FASTEST_KMH), metavar="KMH", help="Speed of the car in km/h.")
-    ] = 0.0,
-    heading: Annotated[
-        float,
-        typer.Option(
-            parser=number(0, 360), metavar="DEG", help="Heading of the car in degrees clockwise from north."
-        ),
-    ] = 0.0,
-    weather: Annotated[int | None, typer.Option(help="WMO weather code as Open-Meteo uses it.")] = None,
-    visibility: Annotated[
-        float | None,
-        typer.Option(
-            parser=number(0, 1e6),
-            metavar="M",
-            help="Visibility in metres, instead of the usual one for the weather code.",
-        ),
-    ] = None,
-    draw: Annotated[
-        int | None,
-        typer.Option(metavar="SEED", help="Seed to draw the weather from the climate of the place and month."),
-    ] = None,
-    online: Annotated[
-        bool, typer.Option("--online", help="Ask Open-Meteo for the weather; if that fails, use the climate.")
-    ] = False,
-    road: Annotated[str, typer.Option(help="OSM highway value, e.g. motorway, primary, residential.")] = "",
-    street: Annotated[str, typer.Option(help="Name of the street.")] = "",
     rules: Annotated[
         list[Path] | None, typer.Option(help="Folder with your own rule files, which override the shipped ones.")
     ] = None,
-    budget: Annotated[
-        int | None,
-        typer.Option(parser=whole_number(1, 10**6), metavar="N", help="Limit of the text in tokens."),
-    ] = None,
-    as_json: Annotated[bool, typer.Option("--json", help="Print one JSON object.")] = False,
+    as_json: AsJson = False,
+    **settings: Any,
 ) -> None:
     """Print the traffic law, sky and climate at a place."""
     from automotive_cosim.contracts import GpsFix
     from automotive_cosim.geo.locate import Geo
 
-    _check(road, rules or ())
+    told = filled(ContextSettings, settings)
+    _check(told.road, rules or ())
     geo = Geo(rules or ())
     place = geo.atlas.place(lon, lat)
-    local_time = _time(time, place.time_zone)
+    local_time = _time(told.time, place.time_zone)
+    heading_deg = told.heading_deg
     found = geo.locate(
-        _driving(road, street, speed, heading),
-        GpsFix(has_fix=True, lon_deg=lon, lat_deg=lat, accuracy_m=0.0, age_s=0.0, heading_deg=heading),
-        _weather(weather, visibility, lat, lon, local_time)
-        if draw is None and not online
-        else _report(weather, draw or 0, online, lat, lon, local_time),
+        _driving(told),
+        GpsFix(has_fix=True, lon_deg=lon, lat_deg=lat, accuracy_m=0.0, age_s=0.0, heading_deg=heading_deg),
+        _weather(told, lat, lon, local_time),
         local_time,
     )
     if as_json:
         print_json(_json(found))
     else:
-        typer.echo(found.text() if budget is None else found.text(budget))
+        typer.echo(found.text() if told.budget is None else found.text(told.budget))
 
 
 def _check(road: str, folders: Sequence[Path]) -> None:
@@ -115,36 +112,38 @@ def _time(text: str, zone_name: str) -> datetime:
         raise UserError(f"{text!r} is not a date and time; give one such as 2026-03-20T18:30") from error
 
 
-def _weather(
-    code: int | None, visibility_m: float | None, lat: float, lon: float, local_time: datetime
-) -> Weather | None:
+def _weather(told: ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather | None:
     from automotive_cosim.geo.climate import climate_norm
     from automotive_cosim.geo.weather import typical_weather
 
-    if code is None:
-        if visibility_m is not None:
+    if told.draw is not None or told.online:
+        return _report(told, lat, lon, local_time)
+    if told.weather is None:
+        if told.visibility_m is not None:
             raise UserError("--visibility requires --weather, e.g. --weather 45 for fog")
         return None
     norm = climate_norm(lon, lat, local_time.month)
-    found = typical_weather(code, norm.temperature_c, norm.humidity_pct) if norm else typical_weather(code)
-    return found if visibility_m is None else replace(found, visibility=visibility_m)
+    usual = (norm.temperature_c, norm.humidity_pct) if norm else ()
+    found = typical_weather(told.weather, *usual)
+    return found if told.visibility_m is None else replace(found, visibility=told.visibility_m)
 
 
-def _report(code: int | None, seed: int, online: bool, lat: float, lon: float, local_time: datetime) -> Weather:
+def _report(told: ContextSettings, lat: float, lon: float, local_time: datetime) -> Weather:
     from automotive_cosim.geo.forecast import Climate, OpenMeteo
 
-    if code is not None:
+    if told.weather is not None:
         raise UserError("--weather sets the weather; omit --draw and --online")
+    seed = told.draw or 0
     if seed < 0:
         raise UserError(f"--draw {seed} is not a seed; give a whole number from 0")
-    source = OpenMeteo(Climate(seed)) if online else Climate(seed)
+    source = OpenMeteo(Climate(seed)) if told.online else Climate(seed)
     report = source.report(lon, lat, local_time)
     if report.note:
         typer.echo(report.note, err=True)
     return report.weather
 
 
-def _driving(road_class: str, street: str, speed_kmh: float, heading_deg: float) -> DrivingState:
+def _driving(told: ContextSettings) -> DrivingState:
     """A car alone on a road with one lane and no sign."""
     from automotive_cosim import contracts
 
@@ -154,8 +153,8 @@ def _driving(road_class: str, street: str, speed_kmh: float, heading_deg: float)
         lane_index=0,
         lane_count=1,
         lane_position_m=0.0,
-        name=street,
-        road_class=road_class,
+        name=told.street,
+        road_class=told.road,
         limit=contracts.NO_LIMIT,
         in_tunnel=False,
         lit=None,
@@ -169,8 +168,8 @@ def _driving(road_class: str, street: str, speed_kmh: float, heading_deg: float)
         y_m=0.0,
         lon_deg=None,
         lat_deg=None,
-        heading_deg=heading_deg,
-        speed_mps=speed_kmh / contracts.KMH_PER_MPS,
+        heading_deg=told.heading_deg,
+        speed_mps=told.speed_kmh / contracts.KMH_PER_MPS,
         acceleration_mps2=0.0,
         standing_s=0.0,
         distance_m=0.0,
