@@ -12,10 +12,11 @@ from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from dataclasses import fields as dataclass_fields
 from enum import StrEnum
-from math import isfinite
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.cockpit.calls import function_named
+from automotive_cosim.cockpit.numbers import number_in, whole_in
 from automotive_cosim.contracts import (
     UNCALLED,
     Action,
@@ -52,8 +53,6 @@ SECONDS_LIMIT = 10
 """Longest ``wait`` that a task's agent is told of."""
 LONGEST_WAIT_S = 60
 """Longest ``wait``, as an agent that watches over a drive is told."""
-LONGEST_NUMBER = 40
-"""Characters of a number that comes as text."""
 LARGEST = 2**31 - 1
 """A number beyond it counts no element and no pixel."""
 RANGES: Mapping[str, tuple[int, int]] = {
@@ -491,26 +490,6 @@ def _field(name: str, value: Any) -> Any:
     return converted
 
 
-def _whole(value: Any) -> int | None:
-    """A whole number from its text or from a float that holds one; beyond any range, the nearest bound of all."""
-    number = _real(value)
-    return int(number) if number is not None and number.is_integer() else None
-
-
-def _real(value: Any) -> float | None:
-    """A number from an int or its text; beyond any range, the nearest bound of all: a float may not hold it."""
-    if isinstance(value, str):
-        try:
-            value = float(value) if len(value) <= LONGEST_NUMBER else None
-        except ValueError:
-            return None
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return None
-    if isinstance(value, float) and not isfinite(value):
-        return None
-    return float(min(max(value, -LARGEST - 1), LARGEST + 1))
-
-
 def _words(value: Any) -> str | None:
     return str(value) if isinstance(value, int | float) else None
 
@@ -529,8 +508,8 @@ def _object(value: Any) -> dict[str, Any] | None:
 
 
 _CONVERTED: Mapping[type, Callable[[Any], Any]] = {
-    int: _whole,
-    float: _real,
+    int: partial(whole_in, most=LARGEST + 1),
+    float: partial(number_in, most=LARGEST + 1),
     str: _words,
     bool: _switch,
     dict: _object,

@@ -26,6 +26,7 @@ from annotated_types import Ge, Le, MultipleOf
 
 from automotive_cosim.cockpit import signals as catalogue
 from automotive_cosim.cockpit.commands import Set
+from automotive_cosim.cockpit.numbers import number_in, whole_in
 from automotive_cosim.cockpit.restrictions import Restriction
 from automotive_cosim.cockpit.signals import LeafKind, Signal
 from automotive_cosim.cockpit.state import Message, State
@@ -391,27 +392,6 @@ def as_told(value: Any) -> Feedback:
     return Feedback(FeedbackCode.OK, words or say("Nothing here"))
 
 
-def _number(value: Any) -> float | None:
-    if isinstance(value, str):
-        try:
-            value = float(value) if len(value) <= 40 else None
-        except ValueError:
-            return None
-    if (
-        isinstance(value, bool)
-        or not isinstance(value, int | float)
-        or value != value
-        or abs(value) == float("inf")
-    ):
-        return None
-    return float(min(max(value, -1e9), 1e9))
-
-
-def _whole(value: Any) -> int | None:
-    number = _number(value)
-    return int(number) if number is not None and number.is_integer() else None
-
-
 def _switch(value: Any) -> bool | None:
     if isinstance(value, str):
         return {"true": True, "false": False, "on": True, "off": False}.get(value.casefold())
@@ -426,8 +406,8 @@ def _words(value: Any) -> str | None:
 
 
 _CONVERTED: Mapping[str, Callable[[Any], Any]] = {
-    "integer": _whole,
-    "number": _number,
+    "integer": partial(whole_in, most=1e9),
+    "number": partial(number_in, most=1e9),
     "boolean": _switch,
     "string": _words,
 }

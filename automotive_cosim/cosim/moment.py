@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Sight, Surroundings, Weather
+from automotive_cosim.contracts import Connectivity, DrivingState, GpsFix, Sight, SightKind, Surroundings, Weather
 from automotive_cosim.contracts.errand import Errand
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.sun import elevation_deg
@@ -38,6 +38,10 @@ class Moment:
     """What the car notices and shows by itself; empty if it has no such equipment."""
     asked: tuple[Errand, ...] = ()
     """What people aboard have asked for so far; times are simulation times."""
+
+    def sight(self, kind: SightKind) -> Sight | None:
+        """What the car notices of a kind, as its screens show it; None if nothing."""
+        return next((sight for sight in self.sights if sight.kind is kind), None)
 
     def earlier(self, by: timedelta) -> Moment:
         """The same at an earlier time of day; what the car has sensed is not changed."""

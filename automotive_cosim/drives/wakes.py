@@ -28,7 +28,7 @@ from automotive_cosim.cockpit.signals import (
     OCCUPANT,
     TYRE,
 )
-from automotive_cosim.contracts import KMH_PER_MPS, OtherVehicle, Sight, SightKind
+from automotive_cosim.contracts import KMH_PER_MPS, OtherVehicle, SightKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.margins import margin_kmh
 from automotive_cosim.geo.text import KM_PER_MILE
@@ -216,14 +216,14 @@ def _speed_words(drive: Drive) -> str:
     return f"{kmh:.0f} km/h, {'no limit' if lifted else 'limit unknown'}, {trend}"
 
 
-def _in_sight(now: Moment) -> OtherVehicle | None:
+def in_sight(now: Moment) -> OtherVehicle | None:
     """The vehicle ahead, within the reach of the radar."""
     leader = now.driving.around.leader
     return leader if leader is not None and leader.gap_m <= RADAR_M else None
 
 
 def _leader(drive: Drive) -> Hashable:
-    leader, mps = _in_sight(drive[-1]), drive[-1].driving.speed_mps
+    leader, mps = in_sight(drive[-1]), drive[-1].driving.speed_mps
     if leader is None or mps < QUEUE_MPS:
         return None
     left_s = leader.time_to_collision_s
@@ -233,7 +233,7 @@ def _leader(drive: Drive) -> Hashable:
 
 
 def _leader_words(drive: Drive) -> str:
-    leader, mps = _in_sight(drive[-1]), drive[-1].driving.speed_mps
+    leader, mps = in_sight(drive[-1]), drive[-1].driving.speed_mps
     if leader is None:
         return ""
     gap_s = f"time gap {leader.gap_m / mps:.1f} s" if mps >= STANDING_MPS else "the car stands"
@@ -242,20 +242,16 @@ def _leader_words(drive: Drive) -> str:
     return f"{leader.gap_m:.0f} m at {leader.speed_mps * KMH_PER_MPS:.0f} km/h, {gap_s}, {closing}"
 
 
-def _seen(now: Moment, kind: SightKind) -> Sight | None:
-    return next((sight for sight in now.sights if sight.kind is kind), None)
-
-
 def _behind(drive: Drive) -> Hashable:
-    blue = _seen(drive[-1], SightKind.EMERGENCY_VEHICLE)
+    blue = drive[-1].sight(SightKind.EMERGENCY_VEHICLE)
     if blue is not None:
         return "blue light", (blue.distance_m or 0.0) <= BLUE_M
-    return "vehicle" if _seen(drive[-1], SightKind.VEHICLE_BEHIND) is not None else None
+    return "vehicle" if drive[-1].sight(SightKind.VEHICLE_BEHIND) is not None else None
 
 
 def _behind_words(drive: Drive) -> str:
     for kind, words in ((SightKind.EMERGENCY_VEHICLE, "blue light"), (SightKind.VEHICLE_BEHIND, "vehicle")):
-        sight = _seen(drive[-1], kind)
+        sight = drive[-1].sight(kind)
         if sight is not None:
             away_m, closing_mps = sight.distance_m or 0.0, sight.value or 0.0
             if closing_mps * KMH_PER_MPS <= 1:
@@ -296,7 +292,7 @@ def _next_limit_words(drive: Drive) -> str:
     if limit is None or not limit.is_posted or away_m is None or away_m > HORIZON_M:
         return ""
     what = "no limit" if limit.kmh is None else f"{limit.kmh:.0f} km/h"
-    sign = _seen(drive[-1], SightKind.LIMIT)
+    sign = drive[-1].sight(SightKind.LIMIT)
     return f"{what} in {_far(away_m, drive[-1])}{_signed('' if sign is None else sign.hours)}"
 
 
@@ -344,11 +340,11 @@ def _ahead(
 
 def _reported(kind: SightKind, about: str) -> Wake:
     def away_m(now: Moment) -> float | None:
-        sight = _seen(now, kind)
+        sight = now.sight(kind)
         return None if sight is None else sight.distance_m
 
     def more(now: Moment) -> str:
-        sight = _seen(now, kind)
+        sight = now.sight(kind)
         if sight is None:
             return ""
         left_m = sight.value if not sight.distance_m else None
@@ -437,7 +433,7 @@ def _unwiped(now: Moment) -> float:
 
 
 def _hours(now: Moment) -> float | None:
-    sight = _seen(now, SightKind.DRIVING_TIME)
+    sight = now.sight(SightKind.DRIVING_TIME)
     return None if sight is None else sight.value
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import bz2
+import codecs
 import errno
 import gzip
 import io
@@ -191,3 +192,19 @@ class _Unpacked(io.RawIOBase):
             self._content.close()
             self._packed.close()
         super().close()
+
+
+def is_utf8(path: Path) -> bool:
+    """Whether the text of a file, packed or not, is in UTF-8.
+
+    Raises:
+        OSError: it cannot be read.
+    """
+    decoder = codecs.getincrementaldecoder("utf-8")()
+    try:
+        with opened(path) as file:
+            while piece := file.read(2**20):
+                decoder.decode(piece)
+    except UnicodeDecodeError:
+        return False
+    return True

@@ -6,7 +6,6 @@ differently. A file in an encoding that not every parser knows has to be rewritt
 
 from __future__ import annotations
 
-import codecs
 import gc
 from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
@@ -15,7 +14,7 @@ from typing import IO
 from xml.parsers import expat
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import opened
+from automotive_cosim.formats.files import is_utf8, opened
 
 SHARED_ENCODINGS = frozenset(("utf-8", "us-ascii", "ascii", "iso-8859-1", "utf-16"))
 """Encodings that every parser knows."""
@@ -84,7 +83,7 @@ def scan(
         raise error(f"{path} is missing") from broken
     except (expat.ExpatError, OSError, ValueError, LookupError) as broken:
         hint = ""
-        if encoding == "utf-8" and getattr(broken, "code", 0) == INVALID_TOKEN and not _is_utf8(path):
+        if encoding == "utf-8" and getattr(broken, "code", 0) == INVALID_TOKEN and not is_utf8(path):
             hint = f"; it is not UTF-8: save it so, or let it begin with {LATIN_1}"
         raise error(f"{path} is not {what}: {broken}{hint}") from broken
     return encoding
@@ -115,14 +114,3 @@ class _Tee:
         data = self._source.read(size)
         self._copy.write(data)
         return data
-
-
-def _is_utf8(path: Path) -> bool:
-    decoder = codecs.getincrementaldecoder("utf-8")()
-    try:
-        with opened(path) as file:
-            while piece := file.read(2**20):
-                decoder.decode(piece)
-    except UnicodeDecodeError:
-        return False
-    return True

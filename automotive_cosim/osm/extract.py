@@ -6,7 +6,6 @@ ways (paths, railways) are removed, because each path that meets a road would sp
 
 from __future__ import annotations
 
-import codecs
 import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Set
@@ -18,7 +17,7 @@ from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
-from automotive_cosim.formats.files import open_file, opened
+from automotive_cosim.formats.files import is_utf8, open_file
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
@@ -321,7 +320,7 @@ def _explain(source: Path, error: str) -> str:
         return f"{source} is XML but not OSM ({error}); give an extract whose root is <osm>"
     if "gzip error" in error or "bzip2 error" in error or "EOF" in error or "truncated" in error:
         return f"{source} is truncated or damaged ({error}); download it again"
-    if "unknown encoding" in error or ("invalid token" in error and not _is_utf8(source)):
+    if "unknown encoding" in error or ("invalid token" in error and not is_utf8(source)):
         return (
             f"{source} has letters that are not in the encoding that it names, or that is not read ({error});"
             ' save it as UTF-8, or begin it with <?xml version="1.0" encoding="ISO-8859-1"?> if it is in Latin-1'
@@ -329,17 +328,6 @@ def _explain(source: Path, error: str) -> str:
     if "XML parsing error" in error:
         return f"{source} is truncated or not OSM XML ({error}); download it again"
     return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
-
-
-def _is_utf8(source: Path) -> bool:
-    decoder = codecs.getincrementaldecoder("utf-8")()
-    try:
-        with opened(source) as file:
-            while piece := file.read(2**20):
-                decoder.decode(piece)
-    except UnicodeDecodeError:
-        return False
-    return True
 
 
 def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[TurnRestriction, ...]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from automotive_cosim.contracts import KMH_PER_MPS, Sight, SightKind
+from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.geo.applied import AppliedRule
 from automotive_cosim.geo.breaches import BindingLimit, binding_limit
@@ -58,11 +58,6 @@ def may_say(context: GeoContext, topic: str, word: str) -> bool:
         found.value == word if found.certain else any(case.value == word for case in found.rule.cases)
         for found in rules
     )
-
-
-def seen(moment: Moment, kind: SightKind) -> Sight | None:
-    """What the car notices of a kind, as its screens show it; None if nothing."""
-    return next((sight for sight in moment.sights if sight.kind is kind), None)
 
 
 def grows(drive: Sequence[Moment], path: str, by: float, within_s: float = TREND_S) -> bool:

@@ -11,7 +11,7 @@ from automotive_cosim.cockpit.signals import CALL, DRIVE, HVAC, MOTION, OCCUPANT
 from automotive_cosim.contracts import AlertKind, PullOver, SightKind
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
-from automotive_cosim.drives.events.law import SLOW_KMH, seen, speed_kmh
+from automotive_cosim.drives.events.law import SLOW_KMH, speed_kmh
 from automotive_cosim.drives.margins import gaze_s
 
 ALONE_S = 15.0
@@ -39,7 +39,7 @@ class Fatigue(EventKind):
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Reads the driving time that the car shows."""
-        driven = seen(drive[-1], SightKind.DRIVING_TIME)
+        driven = drive[-1].sight(SightKind.DRIVING_TIME)
         if driven is None or driven.value is None:
             return
         due = driven.value >= BREAK_AFTER_H
@@ -49,7 +49,7 @@ class Fatigue(EventKind):
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """A shorter time at the wheel."""
-        driven = seen(drive[-1], SightKind.DRIVING_TIME)
+        driven = drive[-1].sight(SightKind.DRIVING_TIME)
         if driven is None or driven.value is None:
             return "less than an hour at the wheel"
         return f"{driven.value:.1f} h at the wheel; a break is due after {BREAK_AFTER_H:.0f}"

@@ -12,7 +12,6 @@ from automotive_cosim.contracts import (
     KMH_PER_MPS,
     AlertKind,
     IncidentKind,
-    OtherVehicle,
     PullOver,
     Reroute,
     SightKind,
@@ -21,7 +20,8 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.drives.driver import IN_FORCE_S, SETS_OFF, STOPS
 from automotive_cosim.drives.events.base import EventKind, Sighting, Wanted, on
-from automotive_cosim.drives.events.law import REACTION_S, certain, may_say, seen, speed_kmh, time_left_s
+from automotive_cosim.drives.events.law import REACTION_S, certain, may_say, speed_kmh, time_left_s
+from automotive_cosim.drives.wakes import in_sight
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.traffic.ego import EASING_MPS2
 
@@ -129,7 +129,7 @@ class JamTail(EventKind):
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Reads the live traffic on the route."""
         now = drive[-1]
-        tail, mps = seen(now, SightKind.JAM), now.driving.speed_mps
+        tail, mps = now.sight(SightKind.JAM), now.driving.speed_mps
         away_m = None if tail is None else tail.distance_m
         if away_m is None:
             if now.driving.around.relative_speed < 0.6 and mps > 2.0:
@@ -146,7 +146,7 @@ class JamTail(EventKind):
     def against(self, drive: Sequence[Moment]) -> str | None:
         """No jam on the route."""
         now = drive[-1]
-        if seen(now, SightKind.JAM) is not None or seen(now, SightKind.CLOSURE) is not None:
+        if now.sight(SightKind.JAM) is not None or now.sight(SightKind.CLOSURE) is not None:
             return None
         return "no jam is reported within 2 km"
 
@@ -176,7 +176,7 @@ class RearEnd(EventKind):
     def against(self, drive: Sequence[Moment]) -> str | None:
         """Nobody behind who would soon be there."""
         now = drive[-1]
-        follower = seen(now, SightKind.VEHICLE_BEHIND) or seen(now, SightKind.EMERGENCY_VEHICLE)
+        follower = now.sight(SightKind.VEHICLE_BEHIND) or now.sight(SightKind.EMERGENCY_VEHICLE)
         if follower is None or follower.distance_m is None:
             return "nobody comes close from behind"
         closing_mps = max(follower.value or 0.0, 0.1)
@@ -198,7 +198,7 @@ class StandsAhead(EventKind):
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Reads the reported incidents, on the route or elsewhere."""
         now = drive[-1]
-        there, mps = seen(now, self.sights), now.driving.speed_mps
+        there, mps = now.sight(self.sights), now.driving.speed_mps
         if there is None:
             kind = IncidentKind(self.sights.value)
             if any(incident.kind is kind for incident in now.driving.ahead.incidents):
@@ -214,7 +214,7 @@ class StandsAhead(EventKind):
     def against(self, drive: Sequence[Moment]) -> str | None:
         """None of it on the route."""
         now, kind = drive[-1], IncidentKind(self.sights.value)
-        if seen(now, self.sights) is not None:
+        if now.sight(self.sights) is not None:
             return None
         words = kind.value.replace("_", " ")
         elsewhere = any(incident.kind is kind for incident in now.driving.ahead.incidents)
@@ -261,7 +261,7 @@ class BlueLight(EventKind):
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """By the radio message that such a vehicle sends, or the radar."""
         now = drive[-1]
-        behind, follower = seen(now, SightKind.EMERGENCY_VEHICLE), seen(now, SightKind.VEHICLE_BEHIND)
+        behind, follower = now.sight(SightKind.EMERGENCY_VEHICLE), now.sight(SightKind.VEHICLE_BEHIND)
         if behind is not None and behind.distance_m is not None:
             due = behind.distance_m <= BLUE_DUE_M and not _stands_aside(drive)
             yield Sighting(f"a blue light {behind.distance_m:.0f} m behind", due=due, hold_s=1.0)
@@ -270,7 +270,7 @@ class BlueLight(EventKind):
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """Nobody behind with a blue light."""
-        follower = seen(drive[-1], SightKind.VEHICLE_BEHIND)
+        follower = drive[-1].sight(SightKind.VEHICLE_BEHIND)
         if follower is not None:
             return f"a vehicle without a blue light {follower.distance_m or 0:.0f} m behind"
         return f"no blue light within {BLUE_LIGHT_M:.0f} m"
@@ -308,7 +308,7 @@ class Corridor(EventKind):
         now = drive[-1]
         if not may_say(now.context, "emergency_corridor", "required"):
             return "no rule here asks for a corridor"
-        if speed_kmh(now) < CORRIDOR_KMH or seen(now, SightKind.JAM) is not None:
+        if speed_kmh(now) < CORRIDOR_KMH or now.sight(SightKind.JAM) is not None:
             return None
         return f"no jam, at {speed_kmh(now):.0f} km/h"
 
@@ -332,7 +332,7 @@ class LeaderClose(EventKind):
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Above 30 km/h, within the radar's reach."""
         now = drive[-1]
-        leader, mps = _in_sight(now), now.driving.speed_mps
+        leader, mps = in_sight(now), now.driving.speed_mps
         if leader is None or speed_kmh(now) < GAP_FROM_KMH:
             return
         least_s = max([CLOSE_S, *_lawful_s(now)])
@@ -346,7 +346,7 @@ class LeaderClose(EventKind):
     def against(self, drive: Sequence[Moment]) -> str | None:
         """Nobody ahead, or a gap as long as any rule asks."""
         now = drive[-1]
-        leader, mps = _in_sight(now), now.driving.speed_mps
+        leader, mps = in_sight(now), now.driving.speed_mps
         if leader is None:
             return f"nobody within {RADAR_M:.0f} m ahead"
         if mps < 1.0:
@@ -380,7 +380,7 @@ class LeaderBrakes(EventKind):
 
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Sights the vehicle ahead from half a metre per second squared on."""
-        leader = _in_sight(drive[-1])
+        leader = in_sight(drive[-1])
         if leader is None or leader.drac_mps2 is None or leader.time_to_collision_s is None:
             return
         words = f"{leader.drac_mps2:.1f} m/s2 needed, {leader.time_to_collision_s:.1f} s to the vehicle ahead"
@@ -394,7 +394,7 @@ class LeaderBrakes(EventKind):
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """Nobody ahead to run into, or room to brake gently."""
-        leader = _in_sight(drive[-1])
+        leader = in_sight(drive[-1])
         if leader is None:
             return f"nobody within {RADAR_M:.0f} m ahead"
         ttc_s, needed_mps2 = leader.time_to_collision_s, leader.drac_mps2 or 0.0
@@ -422,7 +422,7 @@ class TractorAhead(EventKind):
     def sight(self, drive: Sequence[Moment]) -> Iterator[Sighting]:
         """Reads the radar and the road's limit."""
         now = drive[-1]
-        leader, mps = _in_sight(now), now.driving.speed_mps
+        leader, mps = in_sight(now), now.driving.speed_mps
         limit_kmh = now.driving.road.limit.kmh
         if leader is None or limit_kmh is None:
             return
@@ -440,7 +440,7 @@ class TractorAhead(EventKind):
 
     def against(self, drive: Sequence[Moment]) -> str | None:
         """Nobody ahead, or nobody whom the car would reach soon."""
-        leader, mps = _in_sight(drive[-1]), drive[-1].driving.speed_mps
+        leader, mps = in_sight(drive[-1]), drive[-1].driving.speed_mps
         if leader is None:
             return f"nobody within {RADAR_M:.0f} m ahead"
         closing_mps = mps - leader.speed_mps
@@ -448,8 +448,3 @@ class TractorAhead(EventKind):
             return f"the vehicle ahead drives {leader.speed_mps * KMH_PER_MPS:.0f} km/h, as fast as the car"
         left_s = leader.gap_m / closing_mps
         return f"{left_s:.0f} s to the vehicle ahead" if left_s > SOON_S else None
-
-
-def _in_sight(now: Moment) -> OtherVehicle | None:
-    leader = now.driving.around.leader
-    return leader if leader is not None and leader.gap_m <= RADAR_M else None

@@ -14,7 +14,6 @@ from automotive_cosim.drives.events.law import (
     SLOW_KMH,
     is_reduced,
     limit_here,
-    seen,
     speed_kmh,
     time_left_s,
 )
@@ -217,7 +216,7 @@ class SchoolHours(SpeedKind):
         now = drive[-1]
         road, kmh = now.driving.road, speed_kmh(now)
         if not road.school_zone:
-            return None if seen(now, SightKind.SCHOOL_ZONE) is not None else "no school zone within 2 km"
+            return None if now.sight(SightKind.SCHOOL_ZONE) is not None else "no school zone within 2 km"
         if not is_school_time(now) or road.limit.kmh is None:
             return f"the zone's limit applies at other hours: {road.limit_hours}" if road.limit_hours else None
         over = kmh > road.limit.kmh + margin_kmh(road.limit.kmh)
