@@ -37,7 +37,7 @@ class EpisodeSettings:
     """What is run, and where; the same with the same actions gives the same trace."""
 
     task: Annotated[str, Option(default=f"{DEFAULT_TASK}, elsewhere {ANYWHERE}")] = DEFAULT_TASK
-    """Id of the task; `tasks list` lists them."""
+    """Id of the task, one of `tasks list`."""
     half: str = "first"
     """Half of a pair: `first` or `second`."""
     scenario: str | None = None
