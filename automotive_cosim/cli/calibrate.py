@@ -25,13 +25,16 @@ def calibrate_scenario(
         Path,
         typer.Option(
             help="Hourly counts: a workbook or CSV with site,hour,vehicles_per_hour and edge or lon,lat,bearing;"
-            " or Open Data Paris' (medians over Mondays to Fridays).",
+            " Open Data Paris' (medians over Mondays to Fridays); SUMO's edge data; or what its detectors counted.",
             show_default=False,
         ),
     ],
     sites: Annotated[
         Path | None,
-        typer.Option(help="Table with site and edge or lon,lat,bearing.", show_default="columns of --counts"),
+        typer.Option(
+            help="Table with site and edge or lon,lat,bearing; or SUMO's file of detectors.",
+            show_default="columns of --counts",
+        ),
     ] = None,
     times: Annotated[
         Path | None,
