@@ -1,7 +1,7 @@
 """Reads hourly counts of many sites, and where they stand.
 
-SUMO's own formats are read (``sumo_counts``), and two kinds of tables, as workbooks or text (``sheets``). All may be
-gzipped. The tables:
+SUMO's own formats are read (``sumo_counts``), and two kinds of tables, as workbooks or text (``sheets``). All may
+be gzipped. The tables:
 
 * One row per site and hour: ``site,hour,vehicles_per_hour``; ``hour`` is local, 0 to 23, also written as 8:00 or
   08:00-09:00. An empty site is that of the row above, as merged cells are saved. Several rows of one site and hour
