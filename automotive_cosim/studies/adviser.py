@@ -35,6 +35,7 @@ class Adviser(Protocol):
 
     def advise(self, day: AdvisedDay) -> Routes:
         """Routes for the next day; a trip without one keeps its own. Not every driver follows (``compliance``)."""
+        ...
 
 
 class Quickest:

@@ -267,7 +267,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
             mine = tuple(trip for trip in home if trip.id in advised)
             ways = quickest(mine, known, ran.net, ran.types, today)
             routes = adviser.advise(AdvisedDay(number=number, trips=mine, memory=known, quickest=ways))
-            taken = {name: way for name, way in routes.items() if rng.random() < chance}
+            taken = {name: tuple(way) for name, way in routes.items() if rng.random() < chance}
             day = _day(now, ran.trips, first_s, first_s + observe_s + TAIL_S, advised)
             means_s.append(day.mean_s)
             gap = (own_s - least_s) / least_s if least_s else 0.0
