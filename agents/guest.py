@@ -53,7 +53,7 @@ class Guest:
         try:
             self._agent.reset(goal)
         except FAULTS as error:
-            raise UserError(f"agent {self.name!r} raised {_told(error)} in reset") from error
+            raise UserError(f"agent {self.name!r} raised {told(error)} in reset") from error
 
     def act(self, observation: Observation) -> Action:
         """Passes the observation on and returns the agent's action.
@@ -68,7 +68,7 @@ class Guest:
         except (ActionError, OutOfBudgetError) as error:
             raise type(error)(_plain(str(error))) from error
         except FAULTS as error:
-            raise ActionError(f"agent {self.name!r} raised {_told(error)}") from error
+            raise ActionError(f"agent {self.name!r} raised {told(error)}") from error
         if isinstance(returned, Action):
             return check(returned)
         if isinstance(returned, dict | str):
@@ -82,12 +82,7 @@ def load(spec: str) -> Agent:
     Raises:
         UserError: the module or class does not exist, cannot be instantiated, or lacks something.
     """
-    module_name, _, class_name = spec.partition(":")
-    if not module_name or not class_name:
-        raise UserError(f"agent {spec!r} does not have the form {FORM}")
-    made = _found(spec, module_name, class_name)
-    if not inspect.isclass(made):
-        raise UserError(f"agent {spec!r} is {type(made).__name__}; {FORM} has to name a class")
+    made = own_class(spec, "agent")
     if callable(getattr(made, "step", None)) and not hasattr(made, "act"):
         return AndroidWorldAgent(made)
     missing = [method for method in ("reset(goal)", "act(observation)") if not _has(made, method)]
@@ -116,23 +111,40 @@ def classes_in(module_name: str) -> tuple[str, ...]:
     )
 
 
-def _found(spec: str, module_name: str, class_name: str) -> Any:
+def own_class(spec: str, what: str) -> type:
+    """The class ``package.module:Class``, which may be in the working folder.
+
+    Args:
+        spec: its name.
+        what: it should be, for errors.
+
+    Raises:
+        UserError: there is no such module or class.
+    """
+    module_name, _, class_name = spec.partition(":")
+    if not module_name or not class_name:
+        raise UserError(f"{what} {spec!r} does not have the form {FORM}")
     here = str(Path.cwd())
     if here not in sys.path:
         sys.path.insert(0, here)
     if module_name.endswith(".py"):
-        raise UserError(f"agent {spec!r}: omit the .py, as in {module_name.removesuffix('.py')}:{class_name}")
+        raise UserError(f"{what} {spec!r}: omit the .py, as in {module_name.removesuffix('.py')}:{class_name}")
     try:
         module = importlib.import_module(module_name)
     except ImportError as error:
-        raise UserError(f"agent {spec!r}: cannot import {module_name}: {error}") from error
+        raise UserError(f"{what} {spec!r}: cannot import {module_name}: {error}") from error
     except FAULTS as error:
-        raise UserError(f"agent {spec!r}: importing {module_name} raised {_told(error)}") from error
+        raise UserError(f"{what} {spec!r}: importing {module_name} raised {told(error)}") from error
     try:
-        return getattr(module, class_name)
+        made = getattr(module, class_name)
     except AttributeError:
         classes = sorted(name for name, value in vars(module).items() if inspect.isclass(value))
-        raise UserError(f"agent {spec!r}: {module_name} has no {class_name}; it has {', '.join(classes)}") from None
+        raise UserError(
+            f"{what} {spec!r}: {module_name} has no {class_name}; it has {', '.join(classes)}"
+        ) from None
+    if not inspect.isclass(made):
+        raise UserError(f"{what} {spec!r} is {type(made).__name__}; {FORM} has to name a class")
+    return made
 
 
 def _has(made: type, method: str) -> bool:
@@ -154,11 +166,12 @@ def _made(spec: str, made: type) -> Any:
         return made()
     except FAULTS as error:
         raise UserError(
-            f"agent {spec!r}: {made.__name__}() raised {_told(error)}; it is called without arguments"
+            f"agent {spec!r}: {made.__name__}() raised {told(error)}; it is called without arguments"
         ) from error
 
 
-def _told(error: BaseException) -> str:
+def told(error: BaseException) -> str:
+    """What a guest's code raised, in a line."""
     return _plain(f"{type(error).__name__}: {' '.join(str(error).split())[:200]}")
 
 

@@ -1,6 +1,7 @@
 """Reads hourly counts of many sites, and where they stand.
 
-Two kinds of tables are read, as workbooks or text (``sheets``), also gzipped:
+SUMO's own formats are read (``sumo_counts``), and two kinds of tables, as workbooks or text (``sheets``). All may
+be gzipped. The tables:
 
 * One row per site and hour: ``site,hour,vehicles_per_hour``; ``hour`` is local, 0 to 23, also written as 8:00 or
   08:00-09:00. An empty site is that of the row above, as merged cells are saved. Several rows of one site and hour
@@ -26,6 +27,16 @@ from pathlib import Path
 from statistics import median
 
 from automotive_cosim.calibration.sheets import Sheet, SheetRow, read_sheet
+from automotive_cosim.calibration.sumo_counts import (
+    CARS,
+    DETECTOR,
+    LORRIES,
+    MINUTES,
+    Flows,
+    is_xml,
+    read_dfrouter_counts,
+    read_xml_counts,
+)
 from automotive_cosim.errors import CountsError
 
 HOURS = 24
@@ -35,9 +46,10 @@ TIME, FLOW, ARC = "Date et heure de comptage", "Débit horaire", "Identifiant ar
 """Columns of Open Data Paris."""
 
 PLAIN = ("site", "hour", "vehicles_per_hour")
+DFROUTER = (DETECTOR, MINUTES, CARS)
 TRAVEL = ("from_edge", "to_edge", "hour", "seconds")
 
-FIGURES = frozenset({"vehicles_per_hour", "seconds", "lon", "lat", "bearing", FLOW})
+FIGURES = frozenset({"vehicles_per_hour", "seconds", "lon", "lat", "bearing", FLOW, MINUTES, CARS, LORRIES})
 KNOWN = frozenset({*PLAIN, *TRAVEL, "edge", "lon", "lat", "bearing"})
 HOUR = re.compile(r"0?(\d{1,2})(?:[:h]00(?::00)?|h)?(?: *(?:-|–|to) *\d{1,2}(?:[:h]00(?::00)?|h)?)?")
 """An hour of the clock, or the two that it lies between."""
@@ -104,36 +116,53 @@ def read_counts(path: Path, zone: tzinfo, sites: Path | None = None) -> Counts:
     """Reads a file of counts.
 
     Args:
-        path: of either kind.
+        path: of any kind.
         zone: time zone of the counted roads.
-        sites: a file that says where the sites stand.
+        sites: a file that says where the sites stand; for counts of SUMO's detectors, theirs.
 
     Raises:
         CountsError: one cannot be read, lacks a column or has an impossible figure, or has only zeros.
     """
-    sheet = _table(path)
-    flows: dict[tuple[str, int], list[float]] = defaultdict(list)
     places: dict[str, SitePlace] = {}
+    about = path.name
+    sheet = None if is_xml(path) else _table(path)
+    if sheet is None or DETECTOR in sheet.columns:
+        flows = _sumo_counts(path, sheet, sites)
+        places |= {edge: SitePlace(edge) for edge, _ in flows}
+    else:
+        if TIME in sheet.columns:
+            about = f"{path.name}: medians over Mondays to Fridays, local time"
+        else:
+            _need(path, sheet, PLAIN)
+            places |= _places(path, sheet)
+        flows = _table_counts(path, sheet, zone)
+        if sites is not None:
+            sheet = _table(sites)
+            _need(sites, sheet, ("site",))
+            places |= _places(sites, sheet)
+    if not any(any(each) for each in flows.values()):
+        raise CountsError(f"{path} has no count above zero; give counts of working detectors")
+    return Counts({key: median(each) for key, each in sorted(flows.items())}, places, about)
+
+
+def _sumo_counts(path: Path, sheet: Sheet | None, detectors: Path | None) -> Flows:
+    if sheet is None:
+        return read_xml_counts(path, detectors)
+    _need(path, sheet, DFROUTER)
+    return read_dfrouter_counts(path, sheet, detectors)
+
+
+def _table_counts(path: Path, sheet: Sheet, zone: tzinfo) -> Flows:
     is_paris = TIME in sheet.columns
     if is_paris:
         _need(path, sheet, (TIME, FLOW, ARC))
-        about = f"{path.name}: medians over Mondays to Fridays, local time"
-    else:
-        _need(path, sheet, PLAIN)
-        about = path.name
-        places |= _places(path, sheet)
+    flows: Flows = defaultdict(list)
     for row, name in _by_site(path, sheet, ARC if is_paris else "site"):
         hour = _paris_hour(path, row, zone) if is_paris else _hour(path, row)
         flow = _figure(path, row, FLOW if is_paris else "vehicles_per_hour", MOST)
         if hour is not None and flow is not None:
             flows[name, hour].append(flow)
-    if not any(any(each) for each in flows.values()):
-        raise CountsError(f"{path} has no count above zero; give counts of working detectors")
-    if sites is not None:
-        sheet = _table(sites)
-        _need(sites, sheet, ("site",))
-        places |= _places(sites, sheet)
-    return Counts({key: median(each) for key, each in sorted(flows.items())}, places, about)
+    return flows
 
 
 def read_travel_times(path: Path) -> tuple[TravelTime, ...]:
@@ -153,7 +182,7 @@ def read_travel_times(path: Path) -> tuple[TravelTime, ...]:
 
 
 def _table(path: Path) -> Sheet:
-    wanted = ((TIME, FLOW, ARC), PLAIN, TRAVEL, ("site", "edge"), ("site", "lon", "lat"))
+    wanted = ((TIME, FLOW, ARC), PLAIN, DFROUTER, TRAVEL, ("site", "edge"), ("site", "lon", "lat"))
     return read_sheet(path, wanted, KNOWN, FIGURES)
 
 

@@ -33,7 +33,7 @@ class CalibrationOptions:
     """What can be set about a calibration."""
 
     sites: Annotated[Path | None, Option(default="columns of --counts")] = None
-    """Table with site and edge or lon,lat,bearing."""
+    """Table with site and edge or lon,lat,bearing; or SUMO's file of detectors."""
     times: Annotated[Path | None, Option(default="none")] = None
     """Measured travel times to compare: from_edge,to_edge,hour,seconds."""
     hours: Annotated[

@@ -24,7 +24,7 @@ def calibrate_scenario(
         Path,
         typer.Option(
             help="Hourly counts: a workbook or CSV with site,hour,vehicles_per_hour and edge or lon,lat,bearing;"
-            " or Open Data Paris' (medians over Mondays to Fridays).",
+            " Open Data Paris' (medians over Mondays to Fridays); SUMO's edge data; or what its detectors counted.",
             show_default=False,
         ),
     ],

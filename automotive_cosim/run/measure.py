@@ -17,12 +17,12 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from statistics import median
 from time import perf_counter
+from typing import Any
 
 from automotive_cosim.contracts import Action, ActionType, Json
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.run import memory
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
@@ -33,7 +33,6 @@ from automotive_cosim.traffic.options import Setup, command_line, copied, read_c
 TASK = "hvac_fan_max"
 """A task whose trigger holds anywhere: the car is driving."""
 SECOND = Action(ActionType.WAIT, seconds=1)
-EXTRA_ENVS = 3
 REPEATS = 3
 RESETS = 9
 
@@ -114,8 +113,8 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
         unrendered = median(_env(scenario, steps, ALL - {Channel.SCREENSHOT}, simulations) for _ in range(REPEATS))
         say("environment with rendering")
         rendered = median(_env(scenario, steps, ALL, simulations) for _ in range(REPEATS))
-        say("memory")
-        one_mb, extra_mb = _memory(scenario, simulations)
+    say("memory")
+    one_mb, extra_mb = _in_own_process("footprint", scenario)
     return Figures(
         scenario=loaded.name,
         vehicles=vehicles,
@@ -170,20 +169,22 @@ def _seconds_of_program(program: Path, options: Mapping[str, str], simulated_s: 
 
 def _plain(scenario: Scenario, steps: int) -> float:
     """Seconds per step of a loop over libsumo."""
-    seconds = []
     with _options(scenario) as (options, scratch):
         warm_up_steps = round(scenario.sumo.warm_up_s / scenario.sumo.step_length_s)
         command = command_line(options)
         job = json.dumps(
             {"command": command, "folder": str(scratch), "warm_up_steps": warm_up_steps, "steps": steps}
         )
-        for _ in range(REPEATS):
-            loop = [sys.executable, "-m", "automotive_cosim.run.plain", job]
-            done = subprocess.run(loop, capture_output=True, check=False)
-            if done.returncode != 0:
-                raise TrafficError("the libsumo loop failed: " + done.stderr.decode("utf-8", "replace")[-300:])
-            seconds.append(float(done.stdout.splitlines()[-1]))
-    return median(seconds) / steps
+        return median(_in_own_process("plain", job) for _ in range(REPEATS)) / steps
+
+
+def _in_own_process(module: str, *arguments: str) -> Any:
+    """What a module of this package prints, as JSON."""
+    command = [sys.executable, "-m", f"{__package__}.{module}", *arguments]
+    done = subprocess.run(command, capture_output=True, check=False)
+    if done.returncode != 0:
+        raise TrafficError(f"the part {module!r} failed: " + done.stderr.decode("utf-8", "replace")[-300:])
+    return json.loads(done.stdout.splitlines()[-1])
 
 
 @contextmanager
@@ -200,15 +201,8 @@ def _plan(scenario: Scenario) -> EgoPlan:
 
 def _inside(scenario: str, steps: int) -> tuple[float, float]:
     """Seconds per step in one process, and the ratio to bare steps measured with it."""
-    found = []
-    for _ in range(REPEATS):
-        job = [sys.executable, "-m", "automotive_cosim.run.inside", scenario, str(steps)]
-        done = subprocess.run(job, capture_output=True, check=False)
-        if done.returncode != 0:
-            raise TrafficError("the drive in one process failed: " + done.stderr.decode("utf-8", "replace")[-300:])
-        figures = json.loads(done.stdout.splitlines()[-1])
-        found.append((figures["full"], figures["full"] / figures["bare"]))
-    return median(full for full, _ in found), median(ratio for _, ratio in found)
+    found = [_in_own_process("inside", scenario, str(steps)) for _ in range(REPEATS)]
+    return median(each["full"] for each in found), median(each["full"] / each["bare"] for each in found)
 
 
 def _forked(scenario: Scenario, steps: int, at_once: int, simulations: Simulations) -> float:
@@ -260,26 +254,3 @@ def _env(scenario: str, steps: int, channels: frozenset[Channel], simulations: S
             seconds += perf_counter() - began_s
             done += per_second
         return seconds / done
-
-
-def _memory(scenario: str, simulations: Simulations) -> tuple[float | None, float | None]:
-    """Megabytes of one environment during an episode, and what each additional one adds."""
-    envs = [CockpitEnv(TASK, scenario=scenario, simulations=simulations) for _ in range(1 + EXTRA_ENVS)]
-    try:
-        _advance(envs[0])
-        one_mb = memory.rss_mb()
-        for env in envs[1:]:
-            _advance(env)
-        all_mb = memory.rss_mb()
-    finally:
-        for env in envs:
-            env.close()
-    if one_mb is None or all_mb is None:
-        return None, None
-    return round(one_mb, 1), round((all_mb - one_mb) / EXTRA_ENVS, 1)
-
-
-def _advance(env: CockpitEnv) -> None:
-    env.reset(seed=0)
-    for _ in range(10):
-        env.step(SECOND)

@@ -270,7 +270,7 @@ def _check(folder: Path) -> None:
 def _manifest(folder: Path, plan: Json, planned: int | None, *, grows: bool) -> None:
     """Writes the manifest, or adds this start to an existing one."""
     now = {"started": datetime.now().astimezone().isoformat(timespec="seconds"), **stamp()}
-    now["own_code"] = own_code(plan.get("agents", ()))
+    now["own_code"] = own_code((*plan.get("agents", ()), plan.get("adviser", "")))
     now["own_scenarios"] = own_scenarios(plan)
     if not (folder / "manifest.json").exists():
         count = {} if planned is None else {"episodes": planned}

@@ -31,8 +31,9 @@ from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_manifest, read_rows
 from automotive_cosim.scenarios import Scenario, open_scenario, variant
 from automotive_cosim.scenarios.equilibrium import ROUTES, Assigned, rerouted
-from automotive_cosim.scenarios.gap import NOTICED_S, TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
+from automotive_cosim.scenarios.gap import TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
 from automotive_cosim.scenarios.optimum import POWER
+from automotive_cosim.studies.adviser import AdvisedDay, Adviser, OwnAdviser, Quickest
 from automotive_cosim.studies.plan import checked_plan, driven_at, plan_of
 from automotive_cosim.studies.settings import DaysSettings
 from automotive_cosim.traffic.network import read_network
@@ -64,7 +65,10 @@ class DaysPlan(DaysSettings):
         """
         checked_plan(type(self), asdict(self))
         self.check_lists()
-        variant.check_demand(read_configuration(self.scene().config))
+        configuration = read_configuration(self.scene().config)
+        variant.check_demand(configuration)
+        if self.adviser:
+            OwnAdviser(self.adviser, self.seeds[0], read_network(configuration.net))
 
     def scene(self) -> Scenario:
         """The scenario as it is driven on the first day: everybody keeps the route that they set out on."""
@@ -232,6 +236,8 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
         types = vehicle_types(copied(configuration, _made(scratch / "types")), ["route-files"])
         now = _first(configuration, scenario, types, observe_s, job.seed, scratch)
         advised = {trip.id for trip in now.trips if job.share is None or _draw(job.seed, trip.id) < job.share}
+        is_own = bool(plan.adviser) and job.share is not None
+        adviser: Adviser = OwnAdviser(plan.adviser, job.seed, network) if is_own else Quickest()
         memories: list[EdgeTimes] = []
         calm_s: dict[str, float] = {}
         means_s: list[float] = []
@@ -257,13 +263,16 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
                 for trip in home
             )
             chance = 1 / (number + 2) if job.share is None else plan.compliance
-            routes = _advice([trip for trip in home if trip.id in advised], known, ran.net, ran.types, today)
-            taken = {name: way for name, way in routes.items() if rng.random() < chance}
+            mine = tuple(trip for trip in home if trip.id in advised)
+            ways = quickest(mine, known, ran.net, ran.types, today)
+            routes = adviser.advise(AdvisedDay(number=number, trips=mine, memory=known, quickest=ways))
+            taken = {name: tuple(way) for name, way in routes.items() if rng.random() < chance}
             day = _day(now, ran.trips, first_s, first_s + observe_s + TAIL_S, advised)
             means_s.append(day.mean_s)
             gap = (own_s - least_s) / least_s if least_s else 0.0
             yield replace(day, relative_gap=gap, changed=len(taken), teleports=ran.teleports)
-            if has_settled(means_s) or not taken:  # with nobody on another route, tomorrow is as today
+            learns = is_own and bool(mine)  # one of the user's own may try something else tomorrow
+            if has_settled(means_s) or not (taken or learns):  # with nobody on another route, tomorrow is as today
                 return
             now = rerouted(now, taken)
 
@@ -276,19 +285,6 @@ def _first(
     last_s = configuration.begin_s + scenario.sumo.warm_up_s + observe_s
     trips = tuple(trip for trip in ran.trips if trip.departed_s < last_s)
     return Assigned(variant.with_fixed_routes(scenario), configuration, types, trips)
-
-
-def _advice(
-    trips: Sequence[DrivenTrip], known: EdgeTimes, net: Path, types: str, scratch: Path
-) -> dict[str, tuple[str, ...]]:
-    """The route of each trip that would have been quicker by what is known."""
-    found = quickest(trips, known, net, types, scratch)
-    return {
-        trip.id: found[trip.id]
-        for trip in trips
-        if trip.id in found
-        and known.of(trip.edges, trip.exits_s[0]) - known.of(found[trip.id], trip.exits_s[0]) >= NOTICED_S
-    }
 
 
 def _day(

@@ -202,6 +202,8 @@ class DaysSettings(TrafficSettings):
     """Weight of all earlier days in what is remembered; the rest is that of the day just over."""
     lag: Annotated[int, Ge(0), Le(30)] = 0
     """Age of the news: how many days pass before a day is in the memory that advises."""
+    adviser: Annotated[str, Option(default="quickest route by memory")] = ""
+    """A class of your own that chooses the routes of the advised: `package.module:Class`."""
     days: Annotated[int, Ge(2), Le(365)] = 30
     """Most days to drive after the first."""
     minutes: Annotated[float, Ge(5), Le(1_440)] = 60.0

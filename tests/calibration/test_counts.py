@@ -191,3 +191,66 @@ def test_the_champs_elysees(data_of_others: Callable[[str], Path]) -> None:
     (site,) = counts.sites
     assert counts.flows_per_h[site, 8] == pytest.approx(994, abs=1)
     assert counts.flows_per_h[site, 18] == 1090
+
+
+EDGE_DATA = """<meandata><interval begin="25200" end="30600" id="peak">
+<edge id="north" entered="900" sampledSeconds="12"/><edge id="south" entered="0"/><edge id="quiet" sampledSeconds="0"/>
+</interval></meandata>"""
+LOOPS = """<additional><e1Detector id="a" lane="north_0" pos="10" file="out.xml"/>
+<e1Detector id="b" lane="north_1" pos="10" file="out.xml"/><inductionLoop id="behind" lane="north_1" pos="90" file="out.xml"/>
+</additional>"""
+LOOPED = """<detector>
+<interval begin="0.00" end="1800.00" id="a" nVehContrib="100"/><interval begin="1800.00" end="3600.00" id="a" nVehContrib="200"/>
+<interval begin="0.00" end="1800.00" id="b" nVehContrib="10"/><interval begin="1800.00" end="3600.00" id="b" nVehContrib="20"/>
+<interval begin="0.00" end="1800.00" id="behind" nVehContrib="10"/>
+<interval begin="86400.00" end="88200.00" id="a" nVehContrib="100"/><interval begin="86400.00" end="88200.00" id="b" nVehContrib="5"/>
+</detector>"""
+
+
+@pytest.mark.parametrize("packed", [False, True])
+def test_edge_data_of_sumo_is_counts_per_hour_of_each_edge(tmp_path: Path, packed: bool) -> None:
+    path = tmp_path / "edges.xml"
+    path.write_bytes(gzip.compress(EDGE_DATA.encode()) if packed else EDGE_DATA.encode())
+    counts = read_counts(path, PARIS)
+    # 900 vehicles from 7:00 to 8:30: hour 8 was counted for half of it, which is enough
+    assert counts.flows_per_h == {("north", 7): 600, ("north", 8): 600, ("south", 7): 0, ("south", 8): 0}
+    assert counts.places["north"] == SitePlace("north")
+
+
+def test_loops_are_added_up_over_the_lanes_of_an_edge_and_have_a_median_over_days(tmp_path: Path) -> None:
+    counted, loops = _file(tmp_path, [LOOPED], "out.xml"), _file(tmp_path, [LOOPS], "loops.add.xml")
+    counts = read_counts(counted, PARIS, loops)
+    assert counts.flows_per_h == {("north", 0): (330 + 210) / 2}
+    with pytest.raises(CountsError, match="--sites"):
+        read_counts(counted, PARIS)
+
+
+def test_a_table_of_dfrouter_counts_cars_and_lorries_of_its_periods(tmp_path: Path) -> None:
+    rows = [
+        "Detector;Time;qPKW;qLKW;vPKW;vLKW",
+        "a;480;50;10;0;0",
+        "b;480;5;0;0;0",
+        "a;495;70;;0;0",
+        "a;510;60;0;0;0",
+    ]
+    loops = _file(tmp_path, [LOOPS], "loops.add.xml")
+    counts = read_counts(_file(tmp_path, rows), PARIS, loops)
+    assert counts.flows_per_h == {("north", 8): pytest.approx(190 * 3600 / 2700)}
+    with pytest.raises(CountsError, match="detector 'c' was counted"):
+        read_counts(_file(tmp_path, [*rows, *(row.replace("a;", "c;") for row in rows[1:])]), PARIS, loops)
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("<meandata><interval", "is not XML"),
+        ("<routes><vehicle/></routes>", "no counts: neither edge data"),
+        (EDGE_DATA.replace('"900"', '"many"'), "'many'; it must be a number from 0"),
+        (EDGE_DATA.replace('"900"', '"-9"'), "'-9'; it must be a number from 0"),
+        (EDGE_DATA.replace('"30600"', '"25200"'), "its end must be later"),
+    ],
+)
+def test_xml_that_cannot_be_used_is_said_in_one_line(tmp_path: Path, text: str, words: str) -> None:
+    with pytest.raises(CountsError, match=words) as caught:
+        read_counts(_file(tmp_path, [text], "edges.xml"), PARIS)
+    assert "\n" not in str(caught.value)

@@ -136,3 +136,73 @@ def test_advised_drivers_learn_the_way_around_lorries(two_ways: Draw) -> None:
     assert second.relative_gap < first.relative_gap
     assert [each.changed for each in nobody.days] == [0]
     assert nobody.days[0].mean_s == pytest.approx(first.mean_s), "the first day is the same for all shares"
+
+
+def test_an_adviser_of_ones_own_is_followed_and_its_faults_are_told(
+    two_ways: Draw, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "advisers.py").write_text(ADVISERS, encoding="utf-8")
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.syspath_prepend(tmp_path)
+    plan = DaysPlan(str(two_ways(CARS)), compliance=1.0, memory=0.0, days=2, minutes=5.0, warm_up_s=300.0)
+
+    def days(adviser: str) -> DaysRow:
+        own = replace(plan, adviser=f"advisers:{adviser}")
+        own.check()
+        return run_chain(DaysJob(own, 1.0, 0), Path())
+
+    stays = days("Stays")
+    assert stays.error is None, stays.error
+    assert [each.changed for each in stays.days] == [0, 0, 0], "it may change its mind on any day"
+    leads = days("Leads")
+    assert leads.error is None, leads.error
+    assert leads.days[0].changed > 0
+    assert leads.days[1].mean_s < leads.days[0].mean_s - 100
+    for adviser, told in [
+        ("Strays", "does not lead from 'access'"),
+        ("Jumps", "has no way from 'access' to 'exit'"),
+        ("Dreams", "'nobody', which is no trip of day.trips"),
+        ("Fails", "raised ZeroDivisionError"),
+    ]:
+        assert told in str(days(adviser).error), adviser
+    for adviser, told in [
+        ("Mute", r"lacks advise\(day\)"),
+        ("Missing", "has no Missing"),
+        ("Raw", "raised TypeError"),
+    ]:
+        with pytest.raises(CosimError, match=told):
+            days(adviser)
+
+
+ADVISERS = """
+class Stays:
+    def __init__(self, seed): ...
+    def advise(self, day):
+        return {trip.id: trip.edges for trip in day.trips}
+
+class Leads(Stays):
+    def advise(self, day):
+        return {name: list(way) for name, way in day.quickest.items()}
+
+class Strays(Stays):
+    def advise(self, day):
+        return {trip.id: ["main"] for trip in day.trips}
+
+class Jumps(Stays):
+    def advise(self, day):
+        return {trip.id: ["access", "exit"] for trip in day.trips}
+
+class Dreams(Stays):
+    def advise(self, day):
+        return {"nobody": ["access", "exit"]}
+
+class Fails(Stays):
+    def advise(self, day):
+        return 1 / 0
+
+class Mute:
+    def __init__(self, seed): ...
+
+class Raw:
+    def advise(self, day): ...
+"""
