@@ -175,7 +175,7 @@ def _plain(scenario: Scenario, steps: int) -> float:
         job = json.dumps(
             {"command": command, "folder": str(scratch), "warm_up_steps": warm_up_steps, "steps": steps}
         )
-        return median(_in_own_process("plain", job) for _ in range(REPEATS)) / steps
+        return float(median(_in_own_process("plain", job) for _ in range(REPEATS))) / steps
 
 
 def _in_own_process(module: str, *arguments: str) -> Any:

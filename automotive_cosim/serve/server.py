@@ -71,7 +71,7 @@ class _RefusedRequestError(Exception):
 
 WebRoute = Callable[[Mapping[str, str], Mapping[str, str]], WebAnswer]
 """Parts of the path and of the query, to an answer."""
-Routes = list[tuple[re.Pattern[str], WebRoute]]
+_Routes = list[tuple[re.Pattern[str], WebRoute]]
 
 
 class Visitor(StrEnum):
@@ -104,7 +104,7 @@ class Site:
         self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
         run, episode = r"(?P<run>[0-9a-f]{12})", r"(?:/episodes/(?P<episode>[\w.+-]+))?"
         content = self._content
-        self._for_everybody: Routes = [
+        self._for_everybody: _Routes = [
             (re.compile(pattern), route)
             for pattern, route in (
                 (r"/", lambda _, __: self._file("index.html")),
@@ -115,7 +115,7 @@ class Site:
                 (r"/api/study/play/screen", self._screen),
             )
         ]
-        self._routes: Routes = [
+        self._routes: _Routes = [
             (re.compile(pattern), route)
             for pattern, route in (
                 (r"/api/play", self._scene),
@@ -159,7 +159,7 @@ class Site:
         if path == "/api/about":
             about = {"version": __version__, "plays": self._game is not None, "visitor": visitor}
             return _json(about | {"study": self._study and self._study.name})
-        routes: Routes = self._for_everybody + (self._routes if visitor is Visitor.OWNER else [])
+        routes: _Routes = self._for_everybody + (self._routes if visitor is Visitor.OWNER else [])
         for pattern, route in routes:
             found = pattern.fullmatch(path)
             if found:

@@ -194,16 +194,21 @@ def test_the_champs_elysees(data_of_others: Callable[[str], Path]) -> None:
 
 
 EDGE_DATA = """<meandata><interval begin="25200" end="30600" id="peak">
-<edge id="north" entered="900" sampledSeconds="12"/><edge id="south" entered="0"/><edge id="quiet" sampledSeconds="0"/>
+<edge id="north" entered="900" sampledSeconds="12"/><edge id="south" entered="0"/>
+<edge id="quiet" sampledSeconds="0"/>
 </interval></meandata>"""
 LOOPS = """<additional><e1Detector id="a" lane="north_0" pos="10" file="out.xml"/>
-<e1Detector id="b" lane="north_1" pos="10" file="out.xml"/><inductionLoop id="behind" lane="north_1" pos="90" file="out.xml"/>
+<e1Detector id="b" lane="north_1" pos="10" file="out.xml"/>
+<inductionLoop id="behind" lane="north_1" pos="90" file="out.xml"/>
 </additional>"""
 LOOPED = """<detector>
-<interval begin="0.00" end="1800.00" id="a" nVehContrib="100"/><interval begin="1800.00" end="3600.00" id="a" nVehContrib="200"/>
-<interval begin="0.00" end="1800.00" id="b" nVehContrib="10"/><interval begin="1800.00" end="3600.00" id="b" nVehContrib="20"/>
+<interval begin="0.00" end="1800.00" id="a" nVehContrib="100"/>
+<interval begin="1800.00" end="3600.00" id="a" nVehContrib="200"/>
+<interval begin="0.00" end="1800.00" id="b" nVehContrib="10"/>
+<interval begin="1800.00" end="3600.00" id="b" nVehContrib="20"/>
 <interval begin="0.00" end="1800.00" id="behind" nVehContrib="10"/>
-<interval begin="86400.00" end="88200.00" id="a" nVehContrib="100"/><interval begin="86400.00" end="88200.00" id="b" nVehContrib="5"/>
+<interval begin="86400.00" end="88200.00" id="a" nVehContrib="100"/>
+<interval begin="86400.00" end="88200.00" id="b" nVehContrib="5"/>
 </detector>"""
 
 
