@@ -140,7 +140,7 @@ def _begun(key: str, state: State) -> FigureDraft:
     if key != "arrive" or state.outside is None:
         return FigureDraft(key, sentence.start)
     then = state.outside.local_time + timedelta(seconds=state.outside.driving.ahead.eta_s)
-    minute = 60 * then.hour + then.minute
+    minute = 60 * then.hour + then.minute + then.second / 60
     return FigureDraft(key, math.ceil(minute / sentence.fine) * sentence.fine % DAY_MIN)
 
 
