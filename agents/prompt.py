@@ -83,7 +83,7 @@ def turn(
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
-            "feedback": result(observation),
+            "feedback": _timed_result(observation),
             "elements": _elements(profile, observation) if is_listed else None,
             "pictures": (PICTURES if is_listed else PICTURE) if pictures else None,
             "seen": "the screen, its elements" if is_listed else "the screen",
@@ -120,7 +120,7 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
         "caller_now",
         {
             "goal": driver_words(observation) if is_spoken else None,
-            "feedback": result(observation),
+            "feedback": _timed_result(observation),
             "elements": _elements(profile, observation) if is_listed else None,
             "pictures": PICTURE if pictures else None,
             "vehicle": _vehicle(observation.vehicle, profile.length) if Channel.VEHICLE in given else None,
@@ -210,7 +210,7 @@ def look_back(
         "goal": driver_words(after),
         "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
         "plan": one_line(plan) or None,
-        "feedback": result(after),
+        "feedback": _timed_result(after),
         "pictures": BEFORE_AND_AFTER.get(pictures),
     }
     if length is not PromptLength.LONG:
@@ -269,9 +269,13 @@ def _slots(section: str) -> set[str]:
 
 
 def result(observation: Observation) -> str:
-    """The last action's result, and the time since the hand-over, which no screen shows to the second."""
-    feedback = observation.feedback
-    return f"{feedback.code}: {one_line(feedback.text)}".rstrip(": ") + f" ({passed(observation)})"
+    """The last action's result, as it came: a function's can be JSON."""
+    return f"{observation.feedback.code}: {observation.feedback.text}".rstrip(": ")
+
+
+def _timed_result(observation: Observation) -> str:
+    """The same on one line, with the time since the hand-over, which no screen shows to the second."""
+    return f"{one_line(result(observation))} ({passed(observation)})"
 
 
 def passed(observation: Observation) -> str:
