@@ -183,7 +183,7 @@ def stepper(
         style: of the value.
         locked: why it is locked while driving; empty if it is not.
         ways: where the buttons lead.
-        gauge: whether a bar under the value shows how far it is between its ends.
+        gauge: whether it shows its ends, and by a bar under the value how far it is between them.
     """
     value = signals[signal]
     side = min(rect.height, 64)
@@ -204,14 +204,8 @@ def stepper(
         locked=locked,
     )
     ends = joined(" … ", (show(signal.low), show(signal.high)))
-    number = Label(
-        rect=middle,
-        key=f"{key}.value",
-        text=show(value),
-        description=joined(". ", (name, ends)),
-        style=style,
-        align="centre",
-    )
+    told = joined(". ", (name, ends)) if gauge else name
+    number = Label(rect=middle, key=f"{key}.value", text=show(value), description=told, style=style, align="centre")
     increase = Button(
         rect=plus.middle(side, side),
         key=f"{key}.increase",
@@ -223,6 +217,8 @@ def stepper(
         locked=locked,
     )
     share = (value - signal.low) / (signal.high - signal.low)
+    if words.more_first:
+        share = 1 - share
     bar = middle.inset(28, 0).bottom_part(4)
     shown = (number, Bar(rect=bar, share=share)) if gauge else (number,)
     return (increase, *shown, decrease) if words.more_first else (decrease, *shown, increase)

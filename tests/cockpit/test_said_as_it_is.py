@@ -208,9 +208,6 @@ def test_what_goes_by_steps_shows_its_ends(parked: Cockpit) -> None:
     assert found(parked, "seat.driver.massage").content_description == "Off, Low, High"
     parked.visit("climate")
     assert found(parked, "hvac.driver_seat_heating").content_description == "Driver: Seat heat. Off, Low, High"
-    parked.inject(HMI.TEMPERATURE_UNIT.path, "F")
-    value = found(parked, "dock.driver_temperature.value")
-    assert value.content_description == "Driver's temperature. 61 °F … 82 °F"
 
 
 def test_a_row_says_where_it_leads() -> None:
