@@ -11,9 +11,12 @@ import numpy as np
 import pytest
 
 from automotive_cosim.cockpit.apps.phone.state import directory
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.places import Gazetteer
 from automotive_cosim.tasking.instance import Instance, draw
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
+from tests.cockpit.conftest import town
 from tests.laws import over
 
 HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
@@ -72,3 +75,11 @@ def test_a_dated_memo_is_of_a_day_before_the_start(task, name):
             day = datetime.strptime(f"{found[2]} {now.year}", "%d %b %Y")
             assert f"{day:%a}" == found[1]
             assert day.date() < now.date()
+
+
+def test_no_name_of_a_place_is_part_of_another():
+    for seed in range(20):
+        names = [
+            place.name for place in Cockpit(town(), rng=np.random.default_rng(seed)).state.of(Gazetteer).places
+        ]
+        assert not [(one, other) for one in names for other in names if one != other and one in other]
