@@ -493,15 +493,16 @@ def sight(grounds: dict[str, Ground]) -> Wrong:
 
 def lasting(grounds: dict[str, Ground]) -> Wrong:
     """Waits as long as somebody needs who looks round first, and holds the place against the trigger's."""
-    played = (ground.reference.moments for ground in grounds.values())
+    played = [ground.reference.moments for ground in grounds.values()]
     longest_s = max(moments[-1].time_s - moments[0].time_s for moments in played)
     for half, ground in grounds.items():
-        spots = tuple(_spots(ground.half.trigger.condition))
         needed_s = min(LEISURE * longest_s, ground.half.deadline.seconds)
-        waited = ground.play(Script((Action(ActionType.WAIT, seconds=1),)), math.ceil(needed_s)) if spots else None
-        for moment in () if waited is None else waited.moments:
+        if not (spots := tuple(_spots(ground.half.trigger.condition))):
+            continue
+        moments = ground.play(Script((Action(ActionType.WAIT, seconds=1),)), math.ceil(needed_s)).moments
+        for moment in moments:
             if left := [spot for spot in spots if not spot(moment)]:
-                passed_s = moment.time_s - waited.moments[0].time_s
+                passed_s = moment.time_s - moments[0].time_s
                 yield f"{half}: {left[0]} for less than {passed_s:.0f} s, where {needed_s:.0f} s are needed"
                 break
 

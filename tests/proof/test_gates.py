@@ -555,5 +555,5 @@ def test_a_tunnel_that_ends_before_the_solution_is_seen(ground):
         second=replace(task.second, moves=(*wait, *task.second.moves), deadline=patient),
     )
     assert list(gates.lasting({half: ground(task, half) for half in task.halves})) == []
-    (wrong,) = gates.lasting({half: ground(slow, half) for half in slow.halves})
-    assert wrong.startswith("first: in a tunnel for less than")
+    wrong = list(gates.lasting({half: ground(slow, half) for half in slow.halves}))
+    assert any(fault.startswith("first: in a tunnel for less than") for fault in wrong)
