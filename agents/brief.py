@@ -147,6 +147,8 @@ def _state(element: Element) -> Iterator[str]:
         yield "disabled"
     if element.is_scrollable and element.class_name != "SeekBar":
         yield "scrolls"
+    if element.is_long_clickable:
+        yield "hold"
     if element.class_name == "SeekBar":
         box = element.bbox_pixels
         yield f"x {box.x_min} to {box.x_max}, y {(box.y_min + box.y_max) // 2}"

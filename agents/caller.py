@@ -89,8 +89,8 @@ class Caller:
         """
         self.stages.clear()
         if self._waiting is not None:
-            result = f"{observation.feedback.code}: {observation.feedback.text}".rstrip(": ")
-            self._told[-1][1].append(ChatMessage("tool", result, call_id=self._waiting.id))
+            answer = ChatMessage("tool", prompt.result(observation), call_id=self._waiting.id)
+            self._told[-1][1].append(answer)
             self._waiting = None
         if not self._left:
             self._ask(observation)

@@ -139,11 +139,8 @@ class ModelAgent:
         lesson = self._reflect(last, now) if self._profile.reflects and not has_waited else ""
         done = prompt.action_words(last.action, last.seen)
         number = len(self._history) + 1
-        line = (
-            prompt.step(number, last.action, last.seen, now.feedback, lesson)
-            if self._profile.length is not PromptLength.LONG
-            else prompt.summary(number, last.action, now.feedback, prompt.target(last.action, last.seen), lesson)
-        )
+        told = prompt.summary if self._profile.length is PromptLength.LONG else prompt.step
+        line = told(number, last.action, last.seen, now, lesson)
         self._done.append(done)
         self._history.append(line)
         self._asking.note(StageName.REMEMBER, now, line)

@@ -24,7 +24,6 @@ from automotive_cosim.contracts import (
     Action,
     ActionType,
     Element,
-    Feedback,
     GpsFix,
     Json,
     Observation,
@@ -37,6 +36,8 @@ from automotive_cosim.interface.observe import Channel
 SHOWN_FLAGS = ("is_checked", "is_selected", "is_editable", "is_scrollable", "is_long_clickable")
 SLIDERS = ("SeekBar",)
 """Elements whose bounds are listed, because it matters where they are touched."""
+HOLDERS = frozenset({*SLIDERS, "EditText"})
+"""Elements whose text is what they are set to; their description names them."""
 
 
 def fill(name: str, slots: Mapping[str, str | None]) -> str:
@@ -82,7 +83,7 @@ def turn(
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
-            "feedback": _result(observation),
+            "feedback": _timed_result(observation),
             "elements": _elements(profile, observation) if is_listed else None,
             "pictures": (PICTURES if is_listed else PICTURE) if pictures else None,
             "seen": "the screen, its elements" if is_listed else "the screen",
@@ -119,7 +120,7 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
         "caller_now",
         {
             "goal": driver_words(observation) if is_spoken else None,
-            "feedback": _result(observation),
+            "feedback": _timed_result(observation),
             "elements": _elements(profile, observation) if is_listed else None,
             "pictures": PICTURE if pictures else None,
             "vehicle": _vehicle(observation.vehicle, profile.length) if Channel.VEHICLE in given else None,
@@ -209,7 +210,7 @@ def look_back(
         "goal": driver_words(after),
         "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
         "plan": one_line(plan) or None,
-        "feedback": _result(after),
+        "feedback": _timed_result(after),
         "pictures": BEFORE_AND_AFTER.get(pictures),
     }
     if length is not PromptLength.LONG:
@@ -225,20 +226,31 @@ def _sides(before: Observation, after: Observation) -> Iterator[tuple[str, Obser
     yield "after", after
 
 
-def step(number: int, action: Action | None, seen: Observation, feedback: Feedback, lesson: str = "") -> str:
+def step(number: int, action: Action | None, seen: Observation, after: Observation, lesson: str = "") -> str:
     """The same as ``summary`` in fewer words, with the element's words in place of its index."""
-    learnt = f"; {one_line(lesson)}" if lesson else ""
-    result = f"{feedback.code} {one_line(feedback.text)}".rstrip()
-    return f"Step {number}: {action_words(action, seen)} -> {result}{learnt}"
+    return _line(number, action_words(action, seen), seen, after, lesson)
 
 
-def summary(number: int, action: Action | None, feedback: Feedback, target: str, lesson: str = "") -> str:
-    """One line of history: the action, its result, and the lesson."""
+def summary(number: int, action: Action | None, seen: Observation, after: Observation, lesson: str = "") -> str:
+    """One line of history: the action, when it was chosen, its result, and the lesson.
+
+    Args:
+        number: of the step.
+        action: the action; None for an answer that could not be read.
+        seen: what was seen when it was chosen.
+        after: what was seen then.
+        lesson: what the agent learnt from it.
+    """
     done = json.dumps(to_json(action)) if action else "unreadable answer"
     kind = action.action_type if action else "none"
-    on = f" on {one_line(target)}" if target else ""
+    on = f" on {one_line(name)}" if (name := target(action, seen)) else ""
+    return _line(number, f"{kind} {done}{on}", seen, after, lesson)
+
+
+def _line(number: int, done: str, seen: Observation, after: Observation, lesson: str) -> str:
     learnt = f"; {one_line(lesson)}" if lesson else ""
-    return f"Step {number}: {kind} {done}{on} -> {feedback.code} {one_line(feedback.text)}".rstrip() + learnt
+    came = f"{after.feedback.code} {one_line(after.feedback.text)}".rstrip()
+    return f"Step {number} at {seen.time_s:.0f} s: {done} -> {came}{learnt}"
 
 
 def elements(observation: Observation) -> str:
@@ -256,9 +268,19 @@ def _slots(section: str) -> set[str]:
     return set(re.findall(r"\$([a-z]+)", section))
 
 
-def _result(observation: Observation) -> str:
-    feedback = observation.feedback
-    return f"{feedback.code}: {one_line(feedback.text)}".rstrip(": ")
+def result(observation: Observation) -> str:
+    """The last action's result, as it came: a function's can be JSON."""
+    return f"{observation.feedback.code}: {observation.feedback.text}".rstrip(": ")
+
+
+def _timed_result(observation: Observation) -> str:
+    """The same on one line, with the time since the hand-over, which no screen shows to the second."""
+    return f"{one_line(result(observation))} ({passed(observation)})"
+
+
+def passed(observation: Observation) -> str:
+    """The time since the hand-over in words."""
+    return f"{observation.time_s:.0f} s have passed"
 
 
 def _elements(profile: AgentProfile, observation: Observation) -> str:
@@ -331,7 +353,8 @@ def target(action: Action | None, seen: Observation) -> str:
     if action is None or action.index is None or not 0 <= action.index < len(elements):
         return ""
     element = elements[action.index]
-    return element.text or element.content_description or element.resource_id
+    texts = element.text, element.content_description
+    return next(filter(None, reversed(texts) if element.class_name in HOLDERS else texts), element.resource_id)
 
 
 def action_words(action: Action | None, seen: Observation) -> str:

@@ -254,7 +254,7 @@ DOOR_IN_THE_WIND = hazard(
     (
         "She always leaps out, on the right. If the air could rip the door from her hand, only I may open it.",
         "We've arrived, and she's seven. In calm weather she may open it herself, in a gale not; see to her door.",
-        "Last time her door dented the car beside ours. It must not fly open today, in case it blows that hard.",
+        "Last time her door dented the car beside ours. It must not fly open today, if it blows that hard.",
         "Listen to it howl, or is that the motorway? Keep the child from opening against a storm, if it's one.",
         "My daughter and that heavy door! If the wind is stronger than she is, take the handle from her.",
     ),
@@ -277,7 +277,7 @@ BLADES = pair(
     "phenomenon_blades_for_the_night",
     Module.PHENOMENON,
     (
-        "She stands outside until seven. Think of the blades on the windshield, if it'll be that kind of night.",
+        "She stands outside until seven. If it'll be a night of frost, see that the blades in front stay still.",
         "Last winter the sensor woke them up and tore the rubber. Don't let it happen again, should it freeze.",
         "Good night. If those arms could stick to the glass by morning, they mustn't move by themselves.",
         "New wipers, forty euros. Save them from tonight's weather if they need saving.",
@@ -333,7 +333,7 @@ HOT_BENCH = hazard(
     (
         "My wet coat was drying on the left of the bench. Is it still heated? Not for somebody tiny, please.",
         "The cushion behind me is on full. Fine for whoever can say 'too hot'; for anybody else, switch it off.",
-        "Feel under my passenger at the back left: cosy or cruel? If cruel, end it, please.",
+        "My passenger at the back left sits on full heat. If it's one too small to say so, end it, please.",
         "Full heat on the rear left place since this morning. Leave it for one who can move away, no other.",
         "Who's on the warmed seat? For one that can't complain, cool it down at once, please.",
     ),
@@ -357,7 +357,7 @@ TO_THE_ROOF = hazard(
         "Five people, nine bags, twelve hundred kilometres. Warn me if she can't carry that the way she stands.",
         "I never kick the tyres before a holiday. Alert me if I should have.",
         "We're as heavy as we'll ever be. A warning, please, if the rubber isn't up to it.",
-        "Sound off before we're on the motorway, in case one of the four won't make it to the sea.",
+        "Sound off before we're on the motorway, if one of the four tyres won't make it to the sea.",
         "Everyone's in, the roof box too. Tell me with an alert if a wheel would suffer.",
     ),
     act(

@@ -62,8 +62,8 @@ LAST_POINT = pair(
     "road_one_point_left",
     Module.ROAD,
     (
-        "One more ticket and I walk for a year. Whatever in here is meant to save people like me, let it.",
-        "I swore to the judge that something beeps at me now. Don't make a liar of me.",
+        "One more speeding ticket and I walk for a year. Whatever in here warns people like me, let it.",
+        "I swore to the judge that the car beeps at me when I speed. Don't make a liar of me.",
         "My foot is honest, it just doesn't count. The car can count; see that it speaks up when I overdo it.",
         "I used to hate being nagged about my pace. From today I need the nagging, so bring it back if it's gone.",
         "Make sure that I hear of it each time I'm over, my licence depends on it.",
@@ -116,7 +116,7 @@ BACKING_OUT = pair(
         "I'm going to back out between two vans. Let me see through the rear glass, if there's anything on it.",
         "Reverse, then left. Whatever this sky does to the window at the back, keep it off for me.",
         "Mirrors alone won't do for this gap. I need the pane behind as clean as the one in front, if it's wet.",
-        "Give the back of the car an arm that moves, should the weather be one for it.",
+        "Have the wiper at the back move now and then, should the weather be one for it.",
         "Before I roll backwards: drops behind, then do something; no drops, leave it.",
     ),
     *wrong_or_well(
@@ -142,9 +142,10 @@ ANNOUNCER = pair(
     "media_announcer_must_reach_me",
     Module.MEDIA,
     (
-        "Somebody is driving the wrong way somewhere, a colleague texted. Their warnings must get to my ears.",
+        "Somebody is driving the wrong way somewhere, a colleague texted. The radio's warnings must get to my "
+        "ears.",
         "There may be news about the pass any minute. With the radio as it is I'd miss it; change that.",
-        "The man with the traffic reports can't reach me at the moment. Let him.",
+        "The man who reads the traffic news can't get through to my ears at the moment. Let him.",
         "If they close the road, they'll say so between two songs of theirs. I want to hear it.",
         "A warning is no use to a driver who can't hear the announcer. Make me one who can.",
     ),
@@ -175,7 +176,7 @@ SOCKET = pair(
         "Lid's up, plug's not there yet. Is water coming down on it? Cover it then, please.",
         "The current goes in where it now may drip in. Look at the sky and decide about that little door.",
         "Ten minutes till the pillar is free. Leave the port as it is if it stays dry, otherwise shut it.",
-        "Electricity and puddles! If it's wet out there, think of what stands open at the back.",
+        "Electricity and puddles! If it's wet out there, shut what stands open at the back.",
     ),
     *wrong_or_well(
         LID_UP,
@@ -253,9 +254,9 @@ SAND_COLOURED = pair(
     (
         "Beige car, beige world. If the others can't tell us from a dune, light us up.",
         "Would you see us coming? If not, make us visible, day or no day.",
-        "He overtook as if we weren't there. In case it's what's in the air, give him something to see next time.",
+        "He overtook as if we weren't there. If what's in the air hides us, give the next one something to see.",
         "I save the lamps for the night, unless people out here need them to notice me now.",
-        "Look out of the front: can one make out a car without lights in that? Otherwise, lights.",
+        "Look out of the front: can one make out a car without lights in that? If not, lights.",
     ),
     *wrong_or_well(
         UNLIT,

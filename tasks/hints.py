@@ -24,7 +24,7 @@ TASKS = tuple(
                     "Whenever somebody rings, all I get is a whisper.",
                     "On the phone everybody sounds a mile away in this car.",
                     "I have to ask people three times what they said down the line.",
-                    "Why does my mother mumble so when I talk to her in here?",
+                    "Why does my mother mumble so when I ring her from in here?",
                     "I couldn't make out a word of what the plumber told me just now.",
                 ),
                 SignalRaised(VOICE.CALL_VOLUME, 15.0),
@@ -42,8 +42,8 @@ TASKS = tuple(
                     "People on the pavement turn their heads at us.",
                     "They can sing along in the next car, I believe.",
                     "That policeman has just put a hand to his ear and pointed at me.",
-                    "My own teeth are humming along by now.",
-                    "Somebody has knocked on the roof and made a face.",
+                    "I can't hear my own thoughts over this song.",
+                    "A man at the lights has just put a finger in each ear and looked at us.",
                 ),
                 AnyOf(
                     (
@@ -117,9 +117,9 @@ TASKS = tuple(
                 Module.SYSTEM,
                 (
                     "I'm bald, and it burns straight down on me.",
-                    "My scalp is done on both sides.",
+                    "My scalp is well done under this glass.",
                     "Must I put on a hat in my own car? It's like a magnifying glass above me.",
-                    "The sun stands right over us, and so does nothing else.",
+                    "The sun stands right over us, and there's nothing but glass in between.",
                     "I ought to have rubbed some lotion into my hair before we left.",
                 ),
                 SignalWithin(CABIN.SUNROOF_SHADE, 90.0, 100.0),
@@ -139,8 +139,8 @@ TASKS = tuple(
                 Module.SYSTEM,
                 (
                     "Sixteen something, it says up there. Is that before supper or after? I never know.",
-                    "My grandchildren read it at a glance; I have to take away a dozen each afternoon.",
-                    "At home it's never later than noon, if you see what I mean.",
+                    "My grandchildren read that clock at a glance; I have to take away twelve each afternoon.",
+                    "At home no clock counts further than twelve.",
                     "I've just been an hour early again, because I can't subtract.",
                     "Who on earth says nineteen to seven in the evening!",
                 ),

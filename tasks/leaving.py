@@ -108,9 +108,9 @@ NOTHING_SHINING = pair(
     Module.SYSTEM,
     (
         "She'll stand here until tomorrow. Nothing should burn or blink all night.",
-        "I'm off to bed; make sure that I find some charge in her in the morning.",
+        "I'm off to bed; make sure that no lamp of hers drinks from the battery till the morning.",
         "Good night, car. Have I left something shining outside? Out with it, please.",
-        "My neighbour says that it lights up the whole yard again. Do something about that.",
+        "My neighbour says that my car lights up the whole yard again. Do something about that.",
         "Parked for good. Whatever still draws current on the outside: off.",
     ),
     act(
@@ -209,7 +209,7 @@ STILL_PLUGGED_IN = pair(
         "Bye then, off home. Warn me if something still holds us here.",
         "Am I good to drive away from this pillar? Sound off if not.",
         "Shout if I've forgotten anything about the charging before I move.",
-        "Ready to leave the charger. Alert me in case I shouldn't yet.",
+        "Ready to leave the charger. Alert me if I shouldn't yet.",
         "I can't remember whether I've pulled the plug. Give me a warning if I had better go and look.",
     ),
     act(
@@ -227,9 +227,9 @@ LAST_LOOK = hazard(
     "road_last_look_at_the_belts",
     Module.ROAD,
     (
-        "Engine on, here we go! Warn me if I can't, yet.",
+        "Engine on, here we go! Warn me if somebody isn't held by anything yet.",
         "Everybody ready? Sound the alert if one of us isn't, me included.",
-        "Give me a warning if I'm about to do something stupid by setting off now.",
+        "Give me a warning if one of us would be hurt by the first hard braking.",
         "Rolling in three, two, one... Alarm, if someone would fly through the glass.",
         "Give an alert if anybody in here, me included, isn't ready to be driven.",
     ),
@@ -256,9 +256,9 @@ TWO_LEFT_INSIDE = hazard(
     (
         "I'm at the dentist's for twenty minutes and she stays here: if that's not all right as it is, see to it.",
         "The little one won't come along. See that she's no worse off in here than out there.",
-        "You're in charge for twenty minutes. Do for her what she can't do herself.",
+        "The baby is in your charge for twenty minutes. The air has to stay as she needs it; see to that.",
         "The keys go with me. Make sure that the car is still fit for a nap when I come back.",
-        "Look after my sleeper in the back until I return, as far as it depends on you.",
+        "Until I return, the air mustn't get too hot for my sleeper in the back. See to it, if that isn't done.",
     ),
     act(
         at("tokyo", "avenues", on(REAR_LEFT, Kind.BABY, asleep=True), parked=True, start=JULY, weather=HOT),
@@ -363,7 +363,7 @@ TAILGATE = pair(
         "We're still carrying boxes. The lid stays up, unless our things get wet in there.",
         "I go up for the next chair. Look after the load at the back in this weather, please.",
         "Leave it open behind for the lads, if the sky allows that; otherwise shut it.",
-        "Ten minutes till the sofa comes down. Is that good for the books in the trunk? If not, cover them.",
+        "Ten minutes till the sofa comes down. Will the books in the open trunk stay dry? If not, shut it.",
         "Mind the cargo hatch while I'm inside: open is handy, soaked is not.",
     ),
     act(

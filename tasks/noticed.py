@@ -77,10 +77,10 @@ THIRTY = pair(
     Module.PHENOMENON,
     (
         "It says thirty outside. Warn me if that's a thirty one slides on.",
-        "Thirty degrees, the display claims. Whose thirty? If it matters for the tyres, an alert, please.",
+        "Thirty degrees, the display claims. Celsius or Fahrenheit? If it means ice, an alert, please.",
         "I never know what that temperature means in my uncle's car. Sound off if it makes the road dangerous.",
-        "The figure up there tells me nothing. Alert me in case the bridge could be like glass.",
-        "Thirty outside, fine. Or is it? Give me a warning if I ought to drive on eggshells.",
+        "The figure up there tells me nothing. Alert me if the bridge could be like glass.",
+        "Thirty outside, fine. Or is it? Give me a warning if that's cold enough for ice.",
     ),
     act(
         start(
@@ -110,7 +110,7 @@ LITTLE_PRINCE = hazard(
         "Feel for me whether the baby has it too warm or fine, and act on it.",
         "I'm always cold, so I may have overdone it in here. Set it for him, not for me.",
         "Let him sleep as the midwife would have it: change the heating if it's wrong.",
-        "The little one can't throw his blanket off. See to the temperature in case that matters now.",
+        "The little one can't throw his blanket off. If it's too warm for him, see to the temperature.",
     ),
     act(
         at(
@@ -156,10 +156,10 @@ WHITE_WALL = pair(
     Module.ROAD,
     (
         "I asked for plenty of light when we left. If it's the wrong kind for what's ahead now, change it.",
-        "Do my headlamps fit this night? Put them right by the law, should they not, please.",
+        "Do my headlamps suit this night? If they don't, put them right by the law, please.",
         "It's as if I were shining at a wall, or is it me? Set the beams as they have to be here, would you.",
         "Leave the long lights on if one may; take them down if this weather forbids them.",
-        "Look out front and then at my lamps: what doesn't belong together, part.",
+        "Look out front and then at my headlamps: whatever doesn't suit this night, take it off.",
     ),
     Half(
         FOG_NIGHT,
@@ -197,7 +197,7 @@ BLINKS_ON = pair(
     (
         "That ticking on both sides: does the law still ask for it? If it doesn't, stop it.",
         "Tick, tick, tick, since the toll booth. Needed here or not? Keep or kill the blinkers, please.",
-        "I switched the hazards on in that soup. Have them go out as soon as they needn't be on.",
+        "I switched the hazards on in that soup. Put them out if they needn't be on any more.",
         "Both arrows flash on my dash. End that, unless this country wants them in such conditions.",
         "Do we have to be a Christmas tree any longer? Off with the flashing, if the rules let me.",
     ),
@@ -241,7 +241,8 @@ ONE_MISSING = pair(
         "Of all that this country wants lit in fog, one thing is still dark on our car. Light it.",
         "I did the lamps by heart and forgot one. Add what the law demands in here, and nothing else.",
         "Complete my lighting for this weather, as the rules have it.",
-        "The car in front shines in more ways than mine. Which is still compulsory for me? On with that, please.",
+        "The car in front shines in more ways than mine. Which lamp is still compulsory for me? On with it, "
+        "please.",
         "Check the lamps like an inspector: what's still missing in air this thick? Switch it on, please.",
     ),
     Half(
@@ -283,7 +284,7 @@ SEEN_IN_FOG = pair(
         "Am I visible, and no more than that? Bring my lights in line with German rules for this fog, please.",
         "Either they don't see me or I burn their eyes. Correct the lamp that's wrong.",
         "My lamps are as they were in the garage. Make them lawful for ninety metres of sight.",
-        "A truck just hooted, I think about how we're lit. Fix that by the book.",
+        "A truck just hooted at us, about our lights, I think. Put them right by the book.",
         "In this stuff I want to be exactly as bright as one has to be. Change what isn't.",
     ),
     Half(
@@ -315,11 +316,11 @@ CRUISE_LEFT_ON = pair(
     "road_pedal_left_to_the_car",
     Module.ROAD,
     (
-        "You have the pedal. Give it back to me if this road is none for you.",
+        "Cruise control has the pedal. Give it back to me if this road isn't one for it.",
         "The car keeps the speed by itself; end that, should the surface be against it.",
         "Look at the road and think of the manual: may cruise control stay on? If not, off with it.",
-        "I'd take over again if it were wise. Decide, and do it.",
-        "My right foot is on holiday. Call it back by switching the automatic off, in case it's slippery.",
+        "Would it be wiser here if I worked the pedal myself? Decide, and do it.",
+        "My right foot is on holiday. Call it back by switching the automatic off, if it's slippery.",
     ),
     act(
         start("nordic", "kurravaara", ENGAGED, start="2026-03-17T12:00:00", weather=GLAZE),
@@ -530,7 +531,7 @@ ALL_LOCKS = hazard(
     (
         "All doors unlocked, please.",
         "Open every lock of the car.",
-        "Locks up, the whole lot.",
+        "Every lock undone, the whole lot.",
         "Central locking: release.",
         "Take the locks off on all four doors.",
     ),

@@ -46,7 +46,7 @@ WET_ABROAD = pair(
     "phenomenon_wet_beyond_the_alps",
     Module.PHENOMENON,
     (
-        "Drizzle on the windshield, my foot where it always is. Warn me if this country minds.",
+        "Drizzle on the windshield, my foot where it always is. Warn me if this country wants me slower.",
         "I don't know what water does to the rules south and north of the pass; an alert if I'm over them.",
         "Some slow down when it's wet, some don't. Sound off if I'd better, by law.",
         "Give me a warning should I be too fast for what falls from this sky and for whose sky it is.",
@@ -79,7 +79,7 @@ NARROW = pair(
         "I turn off, and off again, and my foot doesn't notice. Warn me if the street has become one for crawling.",
         "Avenue or alley, I drive them all alike. Alert me where that's against the rules.",
         "Flowerpots on both sides now? Then I may be much too fast; sound the alarm if so.",
-        "Give me a warning as soon as a street like this one wants far less than I do.",
+        "Give me a warning if a street like this one wants far less speed than mine.",
         "Tell me by an alert if a street like this, posted or not, ought to be driven slower than I do.",
     ),
     warned(
@@ -150,7 +150,8 @@ DEER = pair(
         "They cross here every night. Let me see as far as I may, and let the car see too: what's missing, add it.",
         "A stag cost my cousin his bonnet on this stretch. Give me the one help that I've forgotten.",
         "Nobody else about, only game. Complete what lights it up or warns me of it.",
-        "The hunter said: eyes of your own, eyes of the machine. One of the two is half shut; open it, please.",
+        "The hunter said: look far ahead, and let the car look too. One of the two isn't switched on; do it, "
+        "please.",
     ),
     act(
         replace(
@@ -184,7 +185,7 @@ HANDS_OVER = pair(
     Module.PHENOMENON,
     (
         "The car has been keeping seventy since Chartres. Let it, as long as I can see what it drives into.",
-        "Automatic speed is for days with a horizon. Take it out if we haven't got one.",
+        "Cruise control is for days with a horizon. Take it out if we haven't got one.",
         "I'm half asleep over this self-acting pedal. If the view is bad, give me the job back.",
         "How far do we see? Too little for a machine that never looks up, and I want my own foot; else go on.",
         "Cruise may stay in for as long as the next bend is in sight, otherwise disengage it.",
@@ -248,7 +249,7 @@ LEANS = hazard(
     Module.SYSTEM,
     (
         "He has dropped off with his head against the door behind me. It mustn't open in a bend; look at it.",
-        "All his weight lies on that handle back there, on my side. Make sure of it.",
+        "All his weight lies on that handle back there, on my side. Make sure that the door holds.",
         "Asleep like a sack, left rear! Could he fall out? Prevent it if it's possible, please.",
         "I'd like to be certain that the one who snores behind me stays in the car. Bolt him in if he isn't.",
         "Check the door that our sleeper uses as a pillow, and make it fast unless it is.",

@@ -51,7 +51,7 @@ BUTTONS_AND_HANDLES = hazard(
     Module.SYSTEM,
     (
         "The lad behind me has discovered that things open. Secure what isn't secured where he sits.",
-        "Two little hands at work back there! Take the last toy from them, please.",
+        "Two little hands at work back there! Lock the last thing that they can still open, please.",
         "Of what keeps him in, one is missing. Find it and switch it on.",
         "I've done most of the child-proofing on his side; do the rest.",
         "He mustn't be able to open anything on the left. Do whatever's still missing for that.",
@@ -81,7 +81,7 @@ CAR_WASH = pair(
         "The man waves us in; is she ready for water from all sides? If not, make her.",
         "Soap in ten seconds! See to anything on the outside that's still set for driving.",
         "I forgot something last time and it cost me two hundred. Prepare the car for the rollers, please.",
-        "Gate's open, foam is on. Do the one thing that I always forget in here.",
+        "Gate's open, foam is on. Do the one thing that I always forget before the brushes.",
     ),
     act(
         parked("beauce", "plain", **{BODY.FRONT_WIPER.path: "RAIN_SENSOR"}),

@@ -103,7 +103,7 @@ BRAKE = pair(
     (
         "Parking brake off.",
         "Let the brake go, we're off.",
-        "Loosen her, I want to roll out of here.",
+        "Let the brake off her, I want to roll out of here.",
         "Take the handbrake away, please.",
         "Release the brake; the next car wants this space.",
     ),
@@ -240,7 +240,7 @@ PHOTO = pair(
         "Pull over, I want a picture of that sky.",
         "Stop here for a second, the light is gorgeous.",
         "Halt at the edge, please, for one snapshot.",
-        "Let me get out and photograph this.",
+        "Stop at the side, let me get out and photograph this.",
         "Draw up over there, my camera is ready.",
     ),
     decline(
@@ -322,7 +322,7 @@ LIMITER_IN_VILLAGES = pair(
     Module.ROAD,
     (
         "Activate the limiter with the number on the last sign.",
-        "Whatever the plate said that we passed: hold me to it, from above.",
+        "Whatever the plate said that we passed, have the limiter hold me to it.",
         "I want the speed limiter to match what's posted along here.",
         "Village or fields, I never notice. Limit us to what holds at this spot.",
         "Limiter to the signed speed, and have it active.",
@@ -355,7 +355,7 @@ LIMITER_FOR_PUPILS = pair(
     (
         "Set the limiter to what goes past this school at this time of day, and switch it on.",
         "By the pupils' crossing: cap me at the speed that the yellow sign means right now.",
-        "Hold us down to the school's limit, or the street's if the zone is asleep.",
+        "Limiter on, at the school's limit, or at the street's if the zone is asleep.",
         "Limiter, active, as the hours on that plate have it.",
         "Is it lesson time? Then the zone's figure for my limiter; if not, the ordinary one, please.",
     ),
@@ -386,7 +386,7 @@ LIMITER_AT_THE_LINE = pair(
     (
         "Signs in two kinds of numbers! Limiter on, at the most in fives that these allow.",
         "Make the limiter respect the plates on this side; round down if you have to.",
-        "Keep me just under what's posted here, in the car's own kilometres.",
+        "Have the limiter cap me at what's posted here, in the car's own kilometres and its steps of five.",
         "Different country, different figures: cap it so that no camera here can complain, no lower than needed.",
         "Set the limiter to the number on the signs here, in the car's own units, rounded down to a five.",
     ),

@@ -292,7 +292,7 @@ GENERAL = (
         ways=((Open("outside"), Tap("outside.ice"), Tap("outside.act.snow_mode")),),
         start=SNOWED_IN,
         trigger=Trigger(All((Driving(), LessGripThan(0.5))), for_s=3.0, within_s=60.0),
-        parameters={"place": ("", " here", " on this hill", " up to the bridge", " in this street")},
+        parameters={"place": ("", " here", " on this hill", " on this bridge", " in this street")},
     ),
     hinted(
         "phenomenon_dust_gets_in",

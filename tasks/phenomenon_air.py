@@ -126,7 +126,7 @@ TASKS = (
             "Am I over what's permitted {wet}? Warn me if so.",
             "Warn me if this speed is illegal {wet}.",
             "Too quick for the law {wet}? Then warn me.",
-            "Different limits {wet} maybe, I never know. Alert me when I'm past it.",
+            "I never know whether there's another limit {wet}. Alert me if I'm past it.",
             "Check my speed against the rules {wet}, and warn me if it's wrong.",
         ),
         Half(

@@ -187,7 +187,7 @@ FOGS_OFF = pair(
     (
         "Front fog lamps off, they only light up the white.",
         "Those low lamps blind me, put the front fogs out.",
-        "Dipped beam is enough for me, so no fog lights ahead.",
+        "Dipped beam is enough for me, so no fog lights in front.",
         "Kill the front foglights, please.",
         "Turn the lamps under the bumper off, the foggy ones.",
     ),

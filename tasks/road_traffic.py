@@ -25,6 +25,7 @@ from automotive_cosim.tasking.triggers import (
     SpeedBetween,
     Standing,
     Trigger,
+    TunnelWithin,
 )
 from automotive_cosim.tasks.forms import decline, in_company
 from automotive_cosim.tasks.road_law import DARMSTADT, FAIR, LYON, NOON, ORLEANS, PLACE, fine, warned
@@ -95,6 +96,9 @@ def pair(
     return in_company(Task(task_id, Module.ROAD, dimension, says, first, second, difference=difference, tags=tags))
 
 
+ON_THE_RING = OnRoadClass(("trunk",)), Not(InTunnel()), Not(TunnelWithin(20.0))
+"""On the road itself, in no tunnel and not about to be."""
+
 ALIGNED: tuple[Task, ...] = (
     pair(
         "road_headway",
@@ -107,7 +111,7 @@ ALIGNED: tuple[Task, ...] = (
         ),
         warned(
             replace(RING, driver="tailgating"),
-            Trigger(All((SpeedBetween(30.0), HeadwayBelow(1.2), Not(InTunnel()))), 3.0, 300.0),
+            Trigger(All((SpeedBetween(30.0), HeadwayBelow(1.2), *ON_THE_RING)), 3.0, 300.0),
             FOLLOWING,
             Basis.LAW,
             "FR.following_distance",
@@ -116,7 +120,7 @@ ALIGNED: tuple[Task, ...] = (
         fine(
             replace(RING, driver="calm"),
             Trigger(
-                All((SpeedBetween(30.0), LeaderWithin(120.0), Not(HeadwayBelow(2.0)), Not(InTunnel()))), 3.0, 300.0
+                All((SpeedBetween(30.0), LeaderWithin(120.0), Not(HeadwayBelow(2.0)), *ON_THE_RING)), 3.0, 300.0
             ),
             FOLLOWING,
             Basis.LAW,

@@ -214,7 +214,7 @@ UP_SINCE_FIVE = pair(
         "Up with the cows, at five, and still going. Warn me once that's a day no driver should have.",
         "Look at the clock and count from five. Should I be in bed? Then an alert, please.",
         "Five o'clock this morning, my alarm rang. Would a doctor let me drive now? Alert me if he wouldn't.",
-        "I got up at five today, without a nap. Give me a warning if I'm as good as drunk by this hour.",
+        "I got up at five today, without a nap. Give me a warning if I've been awake too long to drive.",
     ),
     *wrong_or_well(
         UP_EARLY,
@@ -233,7 +233,7 @@ ONE_EAR = pair(
     Module.ROAD,
     (
         "Somebody folded one ear of my car in this alley. I need it before I pull out.",
-        "I see what's behind on one side only. Give me the other one.",
+        "I see what's behind in one mirror only. Give me the other one.",
         "A bicycle must have pushed it in. Bring out the one that hides from me.",
         "One of the two outside doesn't show me a thing but our own window. Unfold it, please.",
         "Left, right... one of them's missing! Make it stand as it should before we go.",
@@ -347,7 +347,7 @@ RED_LAMP = pair(
         "The chap behind shades his eyes. If our bright red one is no longer called for, out with it.",
         "I lit something at the back when I couldn't see the bonnet. Keep it or kill it, by the Highway Code.",
         "The mist is moving. See whether our tail may still shine like that, and act on it.",
-        "Is that strong lamp at the rear lawful now? If it isn't, let them look at us in peace.",
+        "Is that strong lamp at the rear lawful now? If it isn't, put it out.",
     ),
     Half(
         replace(RED_BEHIND, weather=replace(FOG_90, visibility=400.0)),
@@ -411,7 +411,7 @@ BALD = pair(
     (
         "Don't tell my wife, but the tyres are bald as my uncle. If that's water out there, take speed off us.",
         "New rubber on Friday. Until then I mustn't race through puddles; hold us back if there are any.",
-        "I never lift my foot, that's the trouble. Do it for me wherever we could float.",
+        "My tyres are bald and I never lift my foot. If we could float out here, do it for me.",
         "No profile left to speak of! Dry, who cares; wet, get us down to something sane.",
         "Should this surface be able to lift my old tyres off it, slow the car yourself.",
     ),
@@ -441,7 +441,7 @@ LEFT_ON_OFF = pair(
         "They turned a knob to off in the car wash. Put it where the law wants it at this hour, if it matters.",
         "So bright, all these shop windows, I can't tell whether we're lit ourselves. Must we be? Then do it.",
         "I never touch that switch, it's always on its own. Is that all right just now? If not, light us up.",
-        "He flashed me. Am I driving about like a thief? Have lamps on us, in case they're due.",
+        "He flashed me. Am I driving about like a thief? Have lamps on us, if they're due.",
         "See to our headlamps as a policeman here would, by the time of day.",
     ),
     Half(
@@ -518,7 +518,7 @@ SHORT = pair(
     Module.SYSTEM,
     (
         "I'm four foot ten, and this seat was somebody else's. I couldn't drive a yard like that; mend it.",
-        "The rental people set her for a giant or for a dwarf's opposite. Make it possible for me to drive.",
+        "The rental people set this seat for a giant, and I'm four foot ten. Make it possible for me to drive.",
         "Either my eyes or my feet don't get where they should. Change what's wrong with my seat.",
         "Before I start: see what a very small woman would curse about in this seat, and put it right.",
         "The driver's seat isn't for my size at all. Correct the one thing that makes it dangerous for me.",

@@ -300,7 +300,7 @@ NO_CLICKS = meant(
         "If she has dropped off back there, no more clicks from the display.",
         "Has sleep come over my daughter? Then make the screen silent when touched, please.",
         "Touch tones off, provided that the child is asleep by now.",
-        "Don't let the beeping wake a sleeper, in case we have one.",
+        "Don't let the beeping wake a sleeper, if we have one.",
         "Should there be somebody napping: mute what the buttons do, nothing else.",
     ),
     act(

@@ -173,7 +173,7 @@ SUN_ON_BABY = hazard(
     (
         "The roof is glass and the baby is under it: keep the sun off her if there's any.",
         "If the sky burns through the top, draw the blind for the baby.",
-        "Look after the little one's skin, the roof blind, in case it's needed.",
+        "Look after the little one's skin: draw the roof blind, if it's needed.",
         "No sunburn for my baby through that panorama roof, please.",
         "Give the baby shade from the roof if today calls for it.",
     ),

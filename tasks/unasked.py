@@ -108,7 +108,7 @@ LAST_IN_LINE = pair(
         "What's going on in front? Should those who follow be told by our lights, do that, please.",
         "I always forget it at the end of a jam. Do it for me if this is one.",
         "My mirror is full of fast headlights. If we're about to stand, show them that.",
-        "Give the ones at my back a sign with the lights, in case it all stops in front of us.",
+        "Give the ones at my back a sign with the lights, if it all stops in front of us.",
     ),
     act(
         start("autobahn", "jam", start=NOON, weather=FAIR, sign_camera=False),
@@ -322,7 +322,7 @@ NO_LEAP = pair(
         "In a second I'll press resume, and I don't want a fine for it. See to what it would take us up to.",
         "The cruise control still remembers my last road. If that's too much for this one, bring it down.",
         "Motorway brain, country road: check the stored speed before I hand over, and lower it if you must.",
-        "When I let the pedal go, the car should keep to the sign. Make its memory fit, in case it doesn't.",
+        "When I let the pedal go, the car should keep to the sign. Make the stored speed fit, if it doesn't.",
         "I'm about to re-engage the automatic. It mustn't run off with me past the limit.",
     ),
     Half(
@@ -390,7 +390,7 @@ WIDER = pair(
         "Two seconds off the one in front, by cruise. The widest it has, please, if this road wants early braking.",
         "When it's dry, two seconds are plenty. Otherwise I want all the room that the car can keep.",
         "Think of the braking distance out here. Is two seconds enough? If not, as far back as it goes, please.",
-        "Hang further back by itself, as far as it can, in case the tyres have water under them.",
+        "Have the cruise hang back as far as it can, if the tyres have water under them.",
         "Set the gap for this surface: the usual two on a dry one, the maximum on anything else.",
     ),
     act(
@@ -426,7 +426,8 @@ PORTAL = pair(
     (
         "Fresh air on all sides, lovely. If we go underground in a moment, seal us in time.",
         "Panes as they are, but not down there where the lorries smoke. If that's coming now, shut them.",
-        "I hate it when we dive in with everything open. Look at the map, and be quicker than I am.",
+        "I hate diving into a tunnel with everything open. Look at the map, and be quicker than I am if one is "
+        "coming.",
         "Look where this street leads: keep the breeze, or close all four windows before we swallow soot.",
         "Last week I coughed for an hour after the underpass. Close the glass if there's another one right ahead.",
     ),
@@ -460,7 +461,7 @@ NO_DISTANCE = pair(
         "On cruise it nearly hit that van. One thing about it is set wrongly; correct it before I use it again.",
         "That automatic would have driven under the lorry. Put right what let it, I'll have the pedal meanwhile.",
         "It brakes for nobody, or for everybody far too late! See which of its settings is bad, and mend that.",
-        "Somebody turned a good cruise control into a bad one. One switch; find it, please.",
+        "Somebody turned a good cruise control into a bad one. It's one setting; put it right, please.",
         "I don't trust it behind others since this morning. Restore whatever keeps it off their bumpers.",
     ),
     act(

@@ -262,7 +262,7 @@ FLASHED = pair(
     Module.PHENOMENON,
     (
         "The one who overtook us flashed and pointed. Something about our lights? Put it right.",
-        "They keep blinking at me tonight; check what burns and what doesn't, and correct it by the law.",
+        "They keep blinking at me tonight; check which lamps burn and which don't, and correct it by the law.",
         "What are they all hooting for? Go over the lamps and leave them as they have to be now.",
         "Am I a nuisance out here in the dark? Set the outside lights as is legal at this hour.",
         "It's dark: set my lamps exactly as the rules of this country want them, please.",
@@ -310,9 +310,9 @@ FOGS_LEFT_ON = pair(
     "phenomenon_fogs_left_on",
     Module.PHENOMENON,
     (
-        "I switched a few lamps on an hour ago. Whatever has become unlawful since, out with it.",
+        "I switched a few lamps on an hour ago. Whichever has become unlawful since, put it out.",
         "How do we look from the front? Take off what this weather doesn't justify, keep what it does.",
-        "Do I still need all of that at the bumper? If it isn't allowed any more, kill it.",
+        "Do I still need all those lamps at the bumper? If one isn't allowed any more, kill it.",
         "Tidy up the lamps for me: nothing that the Highway Code would frown at.",
         "My front lights were right when I left. See whether they still are, and correct them.",
     ),
@@ -359,10 +359,10 @@ AUNT = hazard(
     Module.HVAC,
     (
         "My aunt behind me never complains, so think for her: give her the air that she needs, if she lacks it.",
-        "She's gone very quiet back there, the old lady. Make sure that she's not suffering.",
-        "At eighty-four one doesn't ask for things. Do what the day demands for her, nothing else.",
+        "She's gone very quiet back there, the old lady. Make sure that this weather isn't too much for her.",
+        "At eighty-four one doesn't ask for things. Give her the air that this weather calls for, nothing else.",
         "Grandma would rather faint than say a word. See to the climate if you must.",
-        "I don't feel it any more, but she might. Do whatever her heart needs of the climate.",
+        "I don't notice heat any more, but an old heart does. If it's too warm in here for her, cool her.",
     ),
     act(
         at(
@@ -399,7 +399,7 @@ ROOF_IN_GALE = pair(
     (
         "Hear that whistling? If it's bad for what I've opened up there, close it.",
         "I like my open roof. Leave it, unless this weather tears at it.",
-        "Something rattles above my head. Shut the hatch in case it must be shut.",
+        "Something rattles above my head. Shut the hatch if this weather says so.",
         "Fresh air from the top, as always, but not if the car takes harm from it. Act on that, please.",
         "Check on the glass panel overhead, what with all that's going on out there, and do what's wise.",
     ),
@@ -435,7 +435,7 @@ PANTING = hazard(
     (
         "He's panting like a steam engine back there. Is it only joy? If not, help him.",
         "My four-legged friend has his tongue on the floor. Do something, if the air is to blame.",
-        "The dog can't take his coat off. Make it bearable for him, in case it's not.",
+        "The dog can't take his coat off. Make the air bearable for him, if it's not.",
         "Listen to that huffing from the rear seat. Should he be too warm, cool him.",
         "I'm all right, but what about the animal? Give him the air that he needs today.",
     ),

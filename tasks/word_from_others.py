@@ -112,7 +112,7 @@ BATTERY = hazard(
         "{who} writes about the battery. I'll plug in tonight; have the charging set so that nothing happens.",
         "Is my car one of those in the news? {who} should know by now. Charge her as they say.",
         "Before I put the cable in: heed what {who} sent me about these cells.",
-        "I've a message from {who} and a wooden garage. Make the two go together.",
+        "{who} has written about my battery, and my garage is of wood. Set the charging as they say.",
         "See how far {who} lets me fill the battery, and charge no further.",
     ),
     heard(
@@ -249,7 +249,7 @@ NANNY = hazard(
         "{who} tells me what he's learnt today. Is it something that I should fear in this car? Then prevent it.",
         "He's grinning so oddly back there. {who} has written; make what he can do now impossible in here.",
         "A proud message from {who}, and I have a feeling. See that his new trick doesn't work on my rear seat.",
-        "My son is two and an engineer. Read what {who} says, and take from him what he mustn't have.",
+        "My son is two and an engineer. Read what {who} says, and lock what he mustn't get open.",
         "{who} warns me of something he can do since this morning. Stop him from doing it while we drive.",
     ),
     heard(

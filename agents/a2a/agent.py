@@ -103,7 +103,7 @@ class A2AAgent:
         self.stages.clear()
         began_s = time.monotonic()
         if self._waiting is not None:
-            self._results[self._waiting.id] = _result(observation)
+            self._results[self._waiting.id] = prompt.result(observation)
             self._waiting = None
         if not self._left:
             words = self._ask(observation)
@@ -218,7 +218,3 @@ def _line(address: str) -> AgentLine:
             "the a2a-sdk package is missing; install it with `pip install 'automotive-cosim[a2a]'`"
         ) from error
     return AgentLine(address)
-
-
-def _result(observation: Observation) -> str:
-    return f"{observation.feedback.code}: {observation.feedback.text}".rstrip(": ")

@@ -102,7 +102,8 @@ class NativeAgent:
         if action.x is not None and action.y is not None:
             self._last = action.x, action.y
         said = ", ".join(f"{name}={value!r}" for name, value in call.arguments.items())
-        self._history.append(f"Step {len(self._history) + 1}: {call.name}({said})"[:REMEMBERED])
+        line = f"Step {len(self._history) + 1} at {seen.time_s:.0f} s: {call.name}({said})"
+        self._history.append(line[:REMEMBERED])
         self._asking.note(StageName.ACT, seen, prompt.action_words(action, seen))
         return action
 
@@ -116,5 +117,6 @@ class NativeAgent:
                 "goal": prompt.driver_words(seen),
                 "history": "\n".join(map(one_line, self._history)) or "nothing yet",
                 "problem": self._problem or None,
+                "passed": prompt.passed(seen),
             },
         )

@@ -109,6 +109,8 @@ def _description(widget: Widget) -> str:
     elif isinstance(widget, Slider):
         reach = f"{widget.signal.low:g} … {widget.signal.high:g}"
         parts = (widget.description, reach, widget.disabled, widget.locked)
+    elif isinstance(widget, Tile):
+        parts = (widget.description, widget.levels, widget.disabled, widget.locked)
     elif isinstance(widget, MapView):
         scale = f"{widget.scene.camera.metres_per_pixel:g} metres per pixel"
         parts = (widget.description, scale, widget.disabled, widget.locked)

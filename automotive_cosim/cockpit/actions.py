@@ -81,7 +81,7 @@ class Takes:
 FIELDS: Mapping[ActionType, Takes] = {
     ActionType.CLICK: Takes("tap an element or a point", "tap a point", target=True),
     ActionType.DOUBLE_TAP: Takes("tap it twice", target=True),
-    ActionType.LONG_PRESS: Takes("press and hold it", target=True),
+    ActionType.LONG_PRESS: Takes("hold plus or minus for five steps at once; nothing else reacts", target=True),
     ActionType.INPUT_TEXT: Takes(
         "type up to 120 characters into a text field", target=True, required=("text",), optional=("clear_text",)
     ),

@@ -294,7 +294,7 @@ class Cockpit:
         return self.tap(x, y) if first.code is FeedbackCode.OK else first
 
     def long_press(self, x: int, y: int) -> Feedback:
-        """A long press: minus and plus go several steps at once; nothing else reacts to it."""
+        """A long press: minus and plus, wherever they are, go several steps at once; nothing else reacts to it."""
         widget = self._screen.at(*self._logical(x, y))
         if widget is not None and not widget.usable:
             return self._unusable(widget)

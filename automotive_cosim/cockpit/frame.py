@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from typing import Any
 
 from automotive_cosim.cockpit.app import Where
@@ -343,7 +343,6 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
         for cell, app in zip(cells, offered, strict=True)
     )
     left, front, rear, right = (each.inset(0, 22) for each in (left, front, rear, right))
-    driver, passenger = signals[HVAC.DRIVER_TEMPERATURE], signals[HVAC.PASSENGER_TEMPERATURE]
     whole = (
         *stepper(
             right if left_hand else left,
@@ -351,7 +350,7 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
             say("Driver's temperature"),
             HVAC.DRIVER_TEMPERATURE,
             signals,
-            temperature(signals, driver),
+            partial(temperature, signals),
             Type.LABEL,
         ),
         _quick(front, "front", Icon.DEFROST_FRONT, signals),
@@ -363,7 +362,7 @@ def _dock(size: ScreenSize, here: str, values: tuple[Any, ...], left_hand: bool)
             say("Passenger's temperature"),
             HVAC.PASSENGER_TEMPERATURE,
             signals,
-            temperature(signals, passenger),
+            partial(temperature, signals),
             Type.LABEL,
         ),
     )

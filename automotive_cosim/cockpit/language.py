@@ -27,7 +27,7 @@ _COMMON = ("text", "description", "disabled", "locked")
 _OWN: Mapping[type[Widget], tuple[str, ...]] = {
     Field: ("hint",),
     Row: ("detail", "trail"),
-    Tile: ("level", "read"),
+    Tile: ("level", "levels", "read"),
 }
 """Additional text fields of some widgets."""
 

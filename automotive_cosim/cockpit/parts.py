@@ -16,6 +16,7 @@ from automotive_cosim.cockpit.state import Message, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.timer import Timer
 from automotive_cosim.cockpit.widgets import (
+    Bar,
     Button,
     Card,
     Choice,
@@ -28,10 +29,10 @@ from automotive_cosim.cockpit.widgets import (
     Tile,
     Widget,
 )
-from automotive_cosim.contracts.text import Quantity, say
+from automotive_cosim.contracts.text import Quantity, joined, listed, say
 
 HELD_STEPS = 5
-"""Steps of a stepper for one long press."""
+"""Steps for one long press on plus or minus."""
 MILE_KM, PSI_KPA = 1.609344, 6.894757
 
 
@@ -164,12 +165,26 @@ def stepper(
     name: str,
     signal: Signal[float],
     signals: Signals,
-    shown: str,
+    show: Callable[[float], str],
     style: Type = Type.TITLE,
     locked: str = "",
     ways: StepWays = lower_higher,
+    gauge: bool = False,
 ) -> tuple[Widget, ...]:
-    """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once. ``ways`` says where they lead."""
+    """Minus, the value, plus; a long press goes ``HELD_STEPS`` at once.
+
+    Args:
+        rect: where they are.
+        key: of the value; those of the buttons begin with it.
+        name: of the signal.
+        signal: what they change.
+        signals: the values of all.
+        show: a value in words.
+        style: of the value.
+        locked: why it is locked while driving; empty if it is not.
+        ways: where the buttons lead.
+        gauge: whether it shows its ends, and by a bar under the value how far it is between them.
+    """
     value = signals[signal]
     side = min(rect.height, 64)
     less, more, far_less, far_more = (
@@ -188,7 +203,9 @@ def stepper(
         disabled=words.least if less == value else "",
         locked=locked,
     )
-    number = Label(rect=middle, key=f"{key}.value", text=shown, description=name, style=style, align="centre")
+    ends = joined(" … ", (show(signal.low), show(signal.high)))
+    told = joined(". ", (name, ends)) if gauge else name
+    number = Label(rect=middle, key=f"{key}.value", text=show(value), description=told, style=style, align="centre")
     increase = Button(
         rect=plus.middle(side, side),
         key=f"{key}.increase",
@@ -199,7 +216,12 @@ def stepper(
         disabled=words.most if more == value else "",
         locked=locked,
     )
-    return (increase, number, decrease) if words.more_first else (decrease, number, increase)
+    share = (value - signal.low) / (signal.high - signal.low)
+    if words.more_first:
+        share = 1 - share
+    bar = middle.inset(28, 0).bottom_part(4)
+    shown = (number, Bar(rect=bar, share=share)) if gauge else (number,)
+    return (increase, *shown, decrease) if words.more_first else (decrease, *shown, increase)
 
 
 def _step(signal: Signal[float], signals: Signals) -> str:
@@ -245,6 +267,7 @@ def levels(
         icon=icon,
         checked=at > 0 and not values[0],
         level=steps[at][1],
+        levels=listed([shown for _, shown in steps]),
         read=say("{name}: {value}", name=name, value=steps[at][1]) if name else steps[at][1],
         on_tap=Set(signal, following),
     )
@@ -446,6 +469,7 @@ def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put])
             description=say("Half an hour earlier"),
             icon=Icon.MINUS,
             on_tap=put(timer.moved(-30)),
+            on_hold=put(timer.moved(-30 * HELD_STEPS)),
         ),
         Label(
             rect=time,
@@ -461,6 +485,7 @@ def time_setter(rect: Rect, key: str, timer: Timer, put: Callable[[Timer], Put])
             description=say("Half an hour later"),
             icon=Icon.PLUS,
             on_tap=put(timer.moved(30)),
+            on_hold=put(timer.moved(30 * HELD_STEPS)),
         ),
     )
 

@@ -182,6 +182,8 @@ class Tile(Widget):
     checked: bool = False
     level: str = ""
     """Text next to the name if on and off do not say enough."""
+    levels: str = ""
+    """All levels in the order in which taps go round, if there are several."""
     read: str = ""
     """Name and level as a list of elements has them, if there is a level."""
 

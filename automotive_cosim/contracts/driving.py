@@ -193,6 +193,11 @@ class RoadAhead:
     incidents: tuple[RoadIncident, ...] = ()
     """Incidents anywhere in the network that such a service reports now."""
 
+    @property
+    def delay_min(self) -> int:
+        """``delay_s`` in whole minutes, as drivers are told it; 0 is no delay."""
+        return round(self.delay_s / 60)
+
 
 @dataclass(frozen=True, slots=True)
 class Around:

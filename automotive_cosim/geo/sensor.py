@@ -186,11 +186,13 @@ def _traffic(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
     driving = drive[-1].driving
     ahead = driving.ahead
     yield f"Traffic here: {driving.around.relative_speed:.0%} of the free speed"
+    late = f"{ahead.delay_min} min of it delay" if ahead.delay_min else "no delay"
     yield (
-        f"Route left: {ahead.route_left_m / 1000:.1f} km, {ahead.eta_s / 60:.0f} min, "
-        f"{ahead.delay_s / 60:.0f} min of it delay, {ahead.relative_speed:.0%} of the free speed"
+        f"Route left: {ahead.route_left_m / 1000:.1f} km, {ahead.eta_s / 60:.0f} min, {late}, "
+        f"{ahead.relative_speed:.0%} of the free speed"
     )
-    yield _jam(driving) or "Jam on the route: none"
+    slow = "; the delay is slow traffic that keeps moving" if ahead.delay_min else ""
+    yield _jam(driving) or f"Jam on the route: none{slow}"
     if driving.around.oncoming is not None:
         yield f"Oncoming vehicle: {driving.around.oncoming.gap_m:.0f} m ahead"
     yield from _incidents(driving)
@@ -235,7 +237,7 @@ def _incidents(driving: DrivingState) -> Iterator[str]:
     for is_here, words in found:
         yield f"Reported on this road: {words}" if is_here else f"Reported further on the route: {words}"
     if not found:
-        yield "Reported on the route: nothing besides jams"
+        yield "Reported on the route: nothing" + (" besides the jam" if _jam(driving) else "")
 
 
 def _units(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:

@@ -27,6 +27,8 @@ loses, and to end or to warn at once wins no pair (``proof.functions``); not of 
 | road | a parked car does not reach the trigger |
 | law | what is right in one half fails in the other |
 | sight | the halves of a pair differ at first sight only in what the pair declares |
+| lasting | a tunnel or a school zone that the trigger names lasts half as long again as the longer reference \
+solution, or up to the deadline |
 | place | a pair has the tag ``place`` exactly if only place tells what is right |
 | repeat | the same seed gives the same words and trace; other seeds give others |
 | residue | after another task's episode, a task still gives its own trace |
@@ -35,6 +37,7 @@ loses, and to end or to warn at once wins no pair (``proof.functions``); not of 
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing
@@ -74,7 +77,15 @@ from automotive_cosim.tasking.dialogue import Topic
 from automotive_cosim.tasking.moves import Consult, Move
 from automotive_cosim.tasking.parameters import FromCockpit
 from automotive_cosim.tasking.task import Basis, Differs, Half, Task
-from automotive_cosim.tasking.triggers import All, Parked, Standing, TriggerCondition
+from automotive_cosim.tasking.triggers import (
+    All,
+    InSchoolZone,
+    InTunnel,
+    Not,
+    Parked,
+    Standing,
+    TriggerCondition,
+)
 from automotive_cosim.tasking.verdict import judge, may_part
 from automotive_cosim.traffic.fork import Simulations
 
@@ -84,6 +95,8 @@ RANDOM_RUNS = 20
 RANDOM_WINS = 1
 PRESSES = 60
 """Steps for pressing everything: more controls than the fullest screen has."""
+LEISURE = 1.5
+"""Time that somebody takes who looks round first, as a share of a reference solution's; our choice."""
 PATIENCE = 200
 """Steps for waiting, independent of the budget."""
 ONE_OF_SEVERAL = re.compile(
@@ -476,6 +489,31 @@ def sight(grounds: dict[str, Ground]) -> Wrong:
     if len(grounds) == 2:
         one, other = ((ground.episode.observation, ground.episode.moments[0]) for ground in grounds.values())
         yield from undeclared(grounds["first"].task.differs, one, other)
+
+
+def lasting(grounds: dict[str, Ground]) -> Wrong:
+    """Waits as long as somebody needs who looks round first, and holds the place against the trigger's."""
+    played = [ground.reference.moments for ground in grounds.values()]
+    longest_s = max(moments[-1].time_s - moments[0].time_s for moments in played)
+    for half, ground in grounds.items():
+        needed_s = min(LEISURE * longest_s, ground.half.deadline.seconds)
+        if not (spots := tuple(_spots(ground.half.trigger.condition))):
+            continue
+        moments = ground.play(Script((Action(ActionType.WAIT, seconds=1),)), math.ceil(needed_s)).moments
+        for moment in moments:
+            if left := [spot for spot in spots if not spot(moment)]:
+                passed_s = moment.time_s - moments[0].time_s
+                yield f"{half}: {left[0]} for less than {passed_s:.0f} s, where {needed_s:.0f} s are needed"
+                break
+
+
+def _spots(condition: TriggerCondition) -> Iterator[TriggerCondition]:
+    """What a trigger says of places that a car has soon passed."""
+    if isinstance(condition, All):
+        for part in condition.conditions:
+            yield from _spots(part)
+    elif isinstance(condition.condition if isinstance(condition, Not) else condition, InTunnel | InSchoolZone):
+        yield condition
 
 
 def place(grounds: dict[str, Ground]) -> Wrong:

@@ -43,6 +43,7 @@ GATES = (
     "road",
     "law",
     "sight",
+    "lasting",
     "place",
     "repeat",
     "residue",
@@ -123,7 +124,7 @@ class Prover:
                 grounds[half] = Ground.reach(CATALOGUE[task_id], half, seed, self._simulations)
             for half, ground in grounds.items():
                 self._prove_half(found, half, ground)
-            for gate in ("trivial", "law", "sight", "place"):
+            for gate in ("trivial", "law", "sight", "lasting", "place"):
                 if gate in self._chosen:
                     found.take(gate, getattr(gates, gate)(grounds))
             if "knowable" in self._chosen:

@@ -64,7 +64,7 @@ TASKS = (
         Module.COMMS,
         (
             "I'll be ten minutes late for the {what}. Write that to Oskar or Isla, whoever waits there.",
-            "Isla or Oskar will be standing there before the {what}: text them 10 minutes.",
+            "Isla or Oskar will be standing there before the {what}: text that one that I'm 10 minutes late.",
             "Oskar, Isla? Let the one I meet for the {what} know that I'm late, ten minutes.",
             "Message the person I've the {what} with, that's Isla or Oskar, I'm ten minutes behind.",
             "Tell Oskar or Isla, whoever is coming to the {what}, that I'm ten minutes late.",

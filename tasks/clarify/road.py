@@ -116,8 +116,8 @@ TASKS = (
             "Lunch with {who}: Basil or Cedar Kitchen, the one that's open. If it's both, I choose.",
             "{who} is hungry. To Cedar Kitchen or Basil Kitchen; with both of them open, let me decide.",
             "Drive {who} and me to Basil or Cedar Kitchen, not to a closed door. Two open ones, and I pick.",
-            "See where {who} and I can eat now, Cedar Kitchen or Basil Kitchen, and set off. A choice would"
-            " be mine.",
+            "See where {who} and I can eat now, Cedar Kitchen or Basil Kitchen, and set off. If there's a "
+            "choice, it's mine.",
             "Is Basil Kitchen open today, or is it Cedar? Take {who} and me there; if both are, I'll tell"
             " you which.",
         ),

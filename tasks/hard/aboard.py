@@ -189,7 +189,7 @@ CHILDS_SIDE = hard(
         " '{words}'.",
         "On the kid's side of the bench I want the lock for children, a closed window and a bit of seat heat; Bea"
         " gets a '{words}'.",
-        "Child lock, window shut, seat warm on one, but just on the side with the child, then text Bea '{words}'.",
+        "Child lock, window shut, seat heat on low, but just on the side with the child, then text Bea '{words}'.",
         "Do for our little one in the back: close that window, lock that door for children, heat that seat,"
         " one step."
         " And '{words}' to Bea.",

@@ -568,9 +568,8 @@ MIRRORS_FROM_MEMO = hard(
         " fold both for the night.",
         "Set both outside mirrors as my note has them (pan, then tilt), someone has fiddled with them; fold them in"
         " afterwards.",
-        "I wrote down my mirror positions, first across, then height. Restore those after the car wash's"
-        " doing, then"
-        " in with the two of them.",
+        "I wrote down my mirror positions, first across, then height. The car wash has moved them: restore "
+        "those, then fold the two in.",
         "My mirrors are off! Look up what I noted, pan before tilt, for mine and the other one,"
         " adjust them to that and fold them.",
     ),

@@ -394,8 +394,8 @@ MIXED_UP = hard(
         "Theo's values for the sound: bass {bass}, treble {treble}. Then 20 to the left with the balance, and thank"
         " him by text.",
         "Set bass {bass} and treble {treble}, next the balance 20 left; Theo gets a 'Thank you' for the tip.",
-        "Tone as Theo hears it, {bass} below and {treble} above; after that shift it 20 to the left and write him"
-        " 'Thank you'.",
+        "The tone as Theo has it, bass {bass} and treble {treble}; after that shift the balance 20 to the left "
+        "and write him 'Thank you'.",
         "First the low end to {bass}, the high end to {treble}. The balance goes 20 left then, and Theo is"
         " thanked.",
     ),

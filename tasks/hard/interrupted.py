@@ -286,9 +286,8 @@ LANGUAGE_MIDWAY = hard(
         " guests change meanwhile is theirs.",
         "Mrs Mori takes over in a minute: distances in miles, degrees in F, tyres in psi, 12 h, then {percent} for"
         " screen and spoken turns. Leave what she sets alone.",
-        "Our friends want everything as at home: miles, F, psi, the clock to twelve; voice and screen go to"
-        " {percent}."
-        " Their own taps stay as they are.",
+        "Our guests read miles, Fahrenheit, psi and a clock of twelve hours; guidance volume and "
+        "brightness go to {percent}. What they tap themselves stays.",
     ),
     done(
         replace(PARKED, interruptions=(CarChange(5.0, HMI.LANGUAGE.path, "ja"),)),

@@ -104,7 +104,7 @@ THEIR_TIME = hard(
         "Priya has a new time for the call with London. Put it into my calendar for where I am, and tell her yes.",
         "Look at Priya's message and move the London call to that moment, as my own clock will show it. 'Yes' to"
         " her.",
-        "The London call has moved, ask Priya's text. Correct the diary in local time and confirm to Priya: Yes.",
+        "The London call has moved, see Priya's text. Correct the diary in local time and confirm to Priya: Yes.",
         "My calendar runs on the clock here. Move the London call to the time Priya wrote, then answer her 'Yes'.",
     ),
     _called(LYON, "FR", LATER, 1),
@@ -394,8 +394,8 @@ SHOPS_TODAY = hard(
         "Is it any use to try Family Market today? Then put it in on the way home, otherwise just home. '{words}'"
         " to"
         " Bea.",
-        "Take me home; over Family Market, provided the law lets supermarkets open on a day like this where we are."
-        " And write Bea '{words}'.",
+        "Take me home, by way of Family Market if the law lets supermarkets open on a day like this where we "
+        "are. And write Bea '{words}'.",
     ),
     _sunday(DARMSTADT, "DE", STRAIGHT_HOME, HOME, SHOPPING),
     _sunday(LEEDS, "GB", BY_THE_SHOP, SHOPPING, HOME),
@@ -523,8 +523,8 @@ KIND_OF_ROAD = hard(
     "hard_caravan_on_this_road",
     Module.ROAD,
     (
-        "Theo has sent what his caravan stands. Limiter to what holds on the road we're on, switch it on, thank"
-        " him.",
+        "Theo has sent how fast his caravan may go. Limiter to what holds on the road we're on, switch it on, "
+        "thank him.",
         "Three speeds in Theo's message, one of them is for this kind of road: that into the limiter, on, and"
         " 'Thank"
         " you' to Theo.",

@@ -590,9 +590,8 @@ BEN_ASLEEP = hard(
     "hard_is_ben_asleep",
     Module.MEDIA,
     (
-        "Does Ben sleep, Priya asks, his mother. The camera behind is greasy, so look whether he's been writing,"
-        " give it"
-        " ten seconds. Asleep: 'Yes' to her, no music. Awake: 'No', and put on what he asked for.",
+        "Is Ben asleep, asks Priya, his mother. The camera behind is greasy, so look whether he writes, give "
+        "it ten seconds. Asleep: 'Yes' to her, no music. Awake: 'No', and put on what he asked for.",
         "Find out if Ben, behind me, is really asleep: the camera says so, but he may write any moment, wait ten"
         " seconds."
         " If he is, only tell Priya yes; if he isn't, play the list he wanted and tell her no.",

@@ -97,7 +97,7 @@ def test_history_and_plan_are_carried_on(agent, observation):
     made.act(observation("x"))
     made.act(observation("x", feedback=Feedback(FeedbackCode.OK, "opened")))
     asked = model.asked[2].text
-    assert "Step 1: click" in asked
+    assert "Step 1 at 0 s: click" in asked
     assert "Speed -> ok opened; it opened" in asked
     assert "## Your plan\nthen warn" in asked
 
@@ -116,7 +116,7 @@ def test_without_reflection_it_is_asked_once_a_turn(agent, observation):
     for _ in range(3):
         made.act(observation("x"))
     assert len(model.asked) == 3
-    assert "Step 2: click" in model.asked[2].text
+    assert "Step 2 at 0 s: click" in model.asked[2].text
 
 
 def test_an_unreadable_answer_is_recorded_with_what_was_wrong(agent, observation):
@@ -126,7 +126,7 @@ def test_an_unreadable_answer_is_recorded_with_what_was_wrong(agent, observation
     assert made.stages[-1].name is StageName.ACT
     assert made.stages[-1].reply.text == "no idea"
     made.act(observation("x", feedback=Feedback(FeedbackCode.MALFORMED, "no JSON")))
-    assert "Step 1: unreadable answer -> malformed no JSON; answer in form" in model.asked[2].text
+    assert "Step 1 at 0 s: unreadable answer -> malformed no JSON; answer in form" in model.asked[2].text
 
 
 def test_an_answer_that_was_cut_off_is_told_so(agent, observation):

@@ -504,7 +504,8 @@ def test_it_asks_once_for_several_actions_and_shows_the_picture_alone(seen: Obse
         assert "field" not in question.text
         assert "speed_kmh" not in question.text
         assert "Paris" not in question.text
-    assert "Step 2: press_back()" in model.asked[1].text
+    assert f"Step 2 at {seen.time_s:.0f} s: press_back()" in model.asked[1].text
+    assert f"{seen.time_s:.0f} s have passed" in model.asked[1].text
 
 
 def test_an_answer_that_cannot_be_carried_out_is_told_to_the_model(seen: Observation) -> None:

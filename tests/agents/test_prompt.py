@@ -7,9 +7,9 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.agents import PROFILES, AgentPart, AgentSettings, brief, make_agent
-from automotive_cosim.agents.prompt import action_words, look_back, summary, turn
+from automotive_cosim.agents.prompt import action_words, look_back, situation, step, summary, turn
 from automotive_cosim.cockpit.actions import grammar, signatures
-from automotive_cosim.contracts import UNCALLED, Action, ActionType, Feedback, FeedbackCode, GpsFix
+from automotive_cosim.contracts import UNCALLED, Action, ActionType, Direction, Feedback, FeedbackCode, GpsFix
 from automotive_cosim.contracts.given import Interface, PromptLength
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.geo.text import Line, within_budget
@@ -57,7 +57,7 @@ def test_no_name_breaks_the_form(profile, name, observation, button):
         feedback=Feedback(FeedbackCode.OK, name),
     )
     calm_text = turn(profile, calm, ["x"], "y", ["z"])
-    text = turn(profile, hostile, [name, summary(1, None, hostile.feedback, name, name)], name, [name])
+    text = turn(profile, hostile, [name, summary(1, None, hostile, hostile, name)], name, [name])
     assert titles(text) == titles(calm_text)
     rows = Page.read(text).screen
     assert [line.index for line in rows] == [0, 1]
@@ -237,3 +237,20 @@ def test_a_file_stands_in_place_of_the_instructions_and_of_nothing_else(name, ob
     assert own.partition("## What the driver said\nFan")[2] == standard.partition("## What the driver said\nFan")[2]
     watched = replace(seen, on_watch=True)
     assert turn(PROFILES[name].under(AgentSettings(instructions=words)), watched).startswith(words)
+
+
+@pytest.mark.parametrize("length", list(PromptLength))
+def test_the_seconds_that_have_passed_are_told_and_those_of_each_step(length, observation):
+    seen, after = observation("Ten seconds of horn", time_s=12.0), observation("x", time_s=22.0)
+    wait = Action(ActionType.WAIT, seconds=10)
+    assert "(22 s have passed)" in look_back(seen, wait, after, length=length)
+    assert "(12 s have passed)" in turn(replace(PROFILES["asurada"], length=length), seen)
+    assert "(12 s have passed)" in situation(PROFILES["asurada"], seen, pictures=False)
+    told = summary if length is PromptLength.LONG else step
+    assert told(3, wait, seen, after).startswith("Step 3 at 12 s: wait")
+
+
+def test_a_slider_is_named_not_what_it_is_set_to(observation, button):
+    slider = replace(button("d", "0"), class_name="SeekBar", content_description="Fader. -100 … 100")
+    swipe = Action(ActionType.SWIPE, index=0, direction=Direction.LEFT)
+    assert action_words(swipe, observation("x", elements=(slider,))).startswith("swipe index=Fader")

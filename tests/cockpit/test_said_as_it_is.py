@@ -17,11 +17,12 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.drawing import fit
 from automotive_cosim.cockpit.signals import CABIN, HMI, MIRROR, SEAT
 from automotive_cosim.cockpit.telltales import PLATES, SignKind, sign_picture
-from automotive_cosim.cockpit.theme import Type
+from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.widgets import Button
 from automotive_cosim.contracts import Element, FeedbackCode, Surroundings
 from automotive_cosim.contracts.ids import key_of
 
-from .conftest import outside, town
+from .conftest import View, outside, town
 
 Make = Callable[..., Cockpit]
 BEN = "Ben Marsh"
@@ -164,3 +165,52 @@ def test_the_doors_page_says_that_doors_stay_locked_while_the_car_moves(cockpit:
     assert not cockpit.signals[CABIN.DRIVER_LOCK], "it stays possible"
     parked.visit("doors")
     assert not any(key_of(each.resource_id) == "door.driving" for each in parked.elements())
+
+
+@pytest.mark.slow
+def test_minus_and_plus_go_further_when_held_and_nothing_else_does(
+    parked: Cockpit, walker: Callable[[Cockpit], tuple[View, ...]]
+) -> None:
+    signed = {Icon.MINUS, Icon.PLUS, Icon.TO_THE_LEFT, Icon.TO_THE_RIGHT}
+    held = set[str]()
+    for view in walker(parked):
+        for widget in view.cockpit.tree.walk():
+            is_signed = isinstance(widget, Button) and not widget.text and widget.icon in signed
+            assert is_signed == (isinstance(widget, Button) and widget.on_hold is not None), (view.name, widget.key)
+            if is_signed:
+                held.add(widget.key)
+    assert {"timer.more", "map.zoom_in", "safety.speed.increase", "climate.schedule.later"} <= held
+
+
+def test_a_held_minus_stops_at_the_end(parked: Cockpit) -> None:
+    parked.visit("timer")
+    box = found(parked, "timer.less").bbox_pixels
+    parked.long_press((box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2)
+    assert found(parked, "timer.left").text == "5:00"
+    assert not found(parked, "timer.less").is_enabled
+
+
+def test_an_arrival_to_be_sent_begins_with_that_of_the_route(parked: Cockpit) -> None:
+    parked.visit("figure")
+    now = outside().local_time
+    assert f"{now:%H:%M}" == "14:05"
+    assert (
+        found(parked, "figure.words").text == "I'll be there at 14:20"
+    )  # 640 s from now, in steps of five minutes
+    tapped(parked, "figure.say.paid")
+    tapped(parked, "figure.say.arrive")
+    assert found(parked, "figure.words").text == "I'll be there at 14:20"
+
+
+def test_what_goes_by_steps_shows_its_ends(parked: Cockpit) -> None:
+    parked.visit("seats")
+    assert found(parked, "seat.driver.position.value").content_description == "Seats: Position. 0 mm … 260 mm"
+    assert found(parked, "seat.driver.massage").content_description == "Off, Low, High"
+    parked.visit("climate")
+    assert found(parked, "hvac.driver_seat_heating").content_description == "Driver: Seat heat. Off, Low, High"
+
+
+def test_a_row_says_where_it_leads() -> None:
+    cockpit = Cockpit(town(), rng=np.random.default_rng(1), belongings=Belongings(memos=("Buy bread",)))
+    cockpit.visit("memo")
+    assert found(cockpit, "memo.0").content_description == "Details"

@@ -135,7 +135,10 @@ def test_an_incident_on_the_route_is_told_by_hazards_and_traffic(instant: Callab
         assert lines.count("Reported further on the route: roadworks") == 1
         assert not any("broken-down" in line or "tyre" in line for line in lines)
     assert "Roadworks in 640 m" in ask("hazards", [met]).text.splitlines()
-    assert "Reported on the route: nothing besides jams" in ask("hazards traffic", [known]).text.splitlines()
+    assert "Reported on the route: nothing" in ask("hazards traffic", [known]).text.splitlines()
+    jam = replace(known.driving.ahead, jam_distance_m=420.0, jam_length_m=300.0, delay_s=200.0)
+    jammed = replace(known, driving=replace(known.driving, ahead=jam))
+    assert "Reported on the route: nothing besides the jam" in ask("hazards traffic", [jammed]).text.splitlines()
     here = replace(known.driving, ahead=replace(ahead, route_edges=(known.driving.road.edge_id,)))
     on_it = replace(here, ahead=replace(here.ahead, incidents=(replace(told[0], edge_id=here.road.edge_id),)))
     assert "Reported on this road: roadworks" in ask("roadworks?", [replace(known, driving=on_it)]).text
@@ -313,3 +316,14 @@ def test_reckoning_north_across_zero(drive: Callable[..., DrivingState]) -> None
     assert estimate is not None
     assert estimate.lat_deg > 48.0
     assert estimate.lon_deg == pytest.approx(2.0)
+
+
+def test_a_delay_without_a_jam_has_its_cause(instant: Callable[..., Instant]) -> None:
+    known = instant()
+    slow = replace(known, driving=replace(known.driving, ahead=replace(known.driving.ahead, delay_s=170.0)))
+    lines = ask("jams", [slow]).text.splitlines()
+    assert any("3 min of it delay" in line for line in lines)
+    assert "Jam on the route: none; the delay is slow traffic that keeps moving" in lines
+    lines = ask("jams", [known]).text.splitlines()
+    assert any("no delay" in line for line in lines)
+    assert "Jam on the route: none" in lines

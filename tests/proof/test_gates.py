@@ -34,7 +34,7 @@ from automotive_cosim.tasking.checks import (
     SignalIs,
     SignalRaised,
 )
-from automotive_cosim.tasking.moves import Open, Tap, Warn
+from automotive_cosim.tasking.moves import Do, Open, Tap, Warn
 from automotive_cosim.tasking.task import Basis, Differs, Dimension, Half, Module, Start, Task
 from automotive_cosim.tasking.triggers import (
     All,
@@ -543,3 +543,16 @@ def test_halves_that_part_before_they_differ_are_seen(ground):
     assert wrong == "the halves part at action 2, before anything seen differs"
     seen = replace(blind, second=replace(other, start=replace(GRID, signals={HVAC.FAN_SPEED.path: 70.0})))
     assert list(gates.parted({half: ground(seen, half) for half in seen.halves})) == []
+
+
+def test_a_tunnel_that_ends_before_the_solution_is_seen(ground):
+    task = CATALOGUE["hvac_all_windows_a_crack"]
+    patient = replace(task.first.deadline, seconds=90.0)
+    wait = (Do(Action(ActionType.WAIT, seconds=10)),) * 7
+    slow = replace(
+        task,
+        first=replace(task.first, deadline=patient),
+        second=replace(task.second, moves=(*wait, *task.second.moves), deadline=patient),
+    )
+    wrong = list(gates.lasting({half: ground(slow, half) for half in slow.halves}))
+    assert any(fault.startswith("first: in a tunnel for less than") for fault in wrong)

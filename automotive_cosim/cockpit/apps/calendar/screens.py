@@ -39,7 +39,7 @@ def calendar(state: State) -> tuple[Widget, ...]:
             raised=True,
             text=joined(" ", (entry.at, entry.title)),
             detail=entry.place,
-            trail=say("Open"),
+            trail=say("Details"),
             icon=Icon.CALENDAR,
             on_tap=Show("appointment", entry.name),
         )

@@ -121,7 +121,7 @@ def _zone(rect: Rect, who: str, name: str, warmth: Signal[float], seat: Signal[f
 
 
 def _plus_minus(rect: Rect, who: str, warmth: Signal[float], state: State) -> tuple[Widget, ...]:
-    less, _, more = stepper(rect, f"hvac.{who}_temperature", _SET[who], warmth, state.signals, "")
+    less, _, more = stepper(rect, f"hvac.{who}_temperature", _SET[who], warmth, state.signals, str)
     return less, more
 
 

@@ -15,6 +15,7 @@ from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.map import ZOOMS_M_PER_PX, Camera
 from automotive_cosim.cockpit.messages import Pick, Show
 from automotive_cosim.cockpit.parts import (
+    HELD_STEPS,
     choices,
     content,
     distance,
@@ -131,6 +132,7 @@ def sight(state: State) -> Widget:
                 icon=Icon.PLUS,
                 look=Look.FLOATING,
                 on_tap=Zoom(-1),
+                on_hold=Zoom(-HELD_STEPS),
                 disabled="" if state.of(Viewpoint).zoom > 0 else say("The map cannot zoom in further"),
             ),
             Button(
@@ -140,6 +142,7 @@ def sight(state: State) -> Widget:
                 icon=Icon.MINUS,
                 look=Look.FLOATING,
                 on_tap=Zoom(1),
+                on_hold=Zoom(HELD_STEPS),
                 disabled=""
                 if state.of(Viewpoint).zoom < len(ZOOMS_M_PER_PX) - 1
                 else say("The map cannot zoom out further"),
@@ -469,11 +472,7 @@ def arrival(rect: Rect, key: str, state: State) -> tuple[Widget, ...]:
     if state.outside is not None and ahead is not None:
         at = state.clock_at(state.outside.local_time + timedelta(seconds=ahead.eta_s))
         left = distance(state.signals, ahead.route_left_m)
-        late = (
-            say("{minutes} min delay", minutes=f"{ahead.delay_s / 60:.0f}")
-            if ahead.delay_s >= 30
-            else say("No delay")
-        )
+        late = say("{minutes} min delay", minutes=ahead.delay_min) if ahead.delay_min else say("No delay")
     cells = rect.columns(2, 12)
     return (
         Label(rect=cells[0], key=f"{key}.arrival", text=at, description=say("Arrival time"), style=Type.HEADLINE),

@@ -29,7 +29,7 @@ def memo(state: State) -> tuple[Widget, ...]:
             rect=cell,
             key=f"memo.{index}",
             text=memos[index],
-            trail=say("Open"),
+            trail=say("Details"),
             icon=Icon.MEMO,
             on_tap=Show("note", memos[index]),
         )

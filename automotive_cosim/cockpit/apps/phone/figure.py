@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from datetime import timedelta
 
 from automotive_cosim.cockpit.apps.phone.commands import SendReply
 from automotive_cosim.cockpit.apps.phone.handset import handset, handset_and_page
@@ -16,6 +18,8 @@ from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Widget
 from automotive_cosim.contracts.text import Quantity, Text, say
+
+DAY_MIN = 24 * 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,7 +44,7 @@ class Sentence:
 
 SENTENCES: Mapping[str, Sentence] = {
     "arrive": Sentence(
-        lambda figure: say("I'll be there at {time}", time=figure), say("Arrival"), 12 * 60, 5, 60, 1439
+        lambda figure: say("I'll be there at {time}", time=figure), say("Arrival"), 12 * 60, 5, 60, DAY_MIN - 1
     ),
     "late": Sentence(
         lambda figure: say("I'll be {minutes} minutes late", minutes=figure), say("Delay"), 0, 5, 30, 600
@@ -66,7 +70,7 @@ def figure(state: State) -> tuple[Widget, ...]:
     """The sentence, its figure, and the button that sends it."""
     who = state.picked.get("figure") or state.of(Directory).contacts[0].name
     phone = state.of(Phone)
-    draft = phone.draft or FigureDraft("arrive", SENTENCES["arrive"].start)
+    draft = phone.draft or _begun("arrive", state)
     sentence = SENTENCES[draft.sentence]
 
     def put(new: FigureDraft) -> Put:
@@ -98,7 +102,7 @@ def figure(state: State) -> tuple[Widget, ...]:
                     each.label,
                     None,
                     key == draft.sentence,
-                    put(FigureDraft(key, each.start)),
+                    put(_begun(key, state)),
                 )
                 for key, each in SENTENCES.items()
             ],
@@ -128,6 +132,16 @@ def figure(state: State) -> tuple[Widget, ...]:
             on_tap=SendReply(who, words),
         ),
     )
+
+
+def _begun(key: str, state: State) -> FigureDraft:
+    """A sentence with the figure it begins with: for an arrival that of the route, never a time past."""
+    sentence = SENTENCES[key]
+    if key != "arrive" or state.outside is None:
+        return FigureDraft(key, sentence.start)
+    then = state.outside.local_time + timedelta(seconds=state.outside.driving.ahead.eta_s)
+    minute = 60 * then.hour + then.minute + then.second / 60
+    return FigureDraft(key, math.ceil(minute / sentence.fine) * sentence.fine % DAY_MIN)
 
 
 def _signed(by: float, sentence: Sentence) -> str:

@@ -12,7 +12,7 @@ from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.messages import Back, Show
-from automotive_cosim.cockpit.parts import choices, content, heading, rows, speed, speed_unit, switch
+from automotive_cosim.cockpit.parts import HELD_STEPS, choices, content, heading, rows, speed, speed_unit, switch
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS, MOTION
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
@@ -145,8 +145,11 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
     advised = draft.speed_kmh
     start = signals[ADAS.LIMIT_SIGN] or signals[MOTION.SPEED]
     start = min(FASTEST_KMH, max(SLOWEST_KMH, start // STEP_KMH * STEP_KMH))
-    less = start if advised is None else max(SLOWEST_KMH, advised - STEP_KMH)
-    more = start if advised is None else min(FASTEST_KMH, advised + STEP_KMH)
+
+    def moved(steps: int) -> AlertDraft:
+        new = start if advised is None else min(FASTEST_KMH, max(SLOWEST_KMH, advised + steps * STEP_KMH))
+        return replace(draft, speed_kmh=new)
+
     shown = say("Posted limit") if advised is None else f"{speed(signals, advised)} {speed_unit(signals)}"
     head, _, line, _, posted = column(rect, 28, 12, 64, 12, 52)
     minus, number, plus = row(line, 64, REST, 64)
@@ -157,8 +160,9 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
             key="safety.speed.decrease",
             description=say("{name} lower", name=say("Advised speed")),
             icon=Icon.MINUS,
-            on_tap=_put(replace(draft, speed_kmh=less)),
-            disabled=say("It is at its lowest") if advised == less else "",
+            on_tap=_put(moved(-1)),
+            on_hold=_put(moved(-HELD_STEPS)),
+            disabled=say("It is at its lowest") if advised == SLOWEST_KMH else "",
         ),
         Label(
             rect=number,
@@ -173,8 +177,9 @@ def _advice(rect: Rect, state: State) -> tuple[Widget, ...]:
             key="safety.speed.increase",
             description=say("{name} higher", name=say("Advised speed")),
             icon=Icon.PLUS,
-            on_tap=_put(replace(draft, speed_kmh=more)),
-            disabled=say("It is at its highest") if advised == more else "",
+            on_tap=_put(moved(1)),
+            on_hold=_put(moved(HELD_STEPS)),
+            disabled=say("It is at its highest") if advised == FASTEST_KMH else "",
         ),
         Choice(
             rect=posted,

@@ -8,7 +8,7 @@ from automotive_cosim.cockpit.apps.timer.commands import StartTimer, StopTimer
 from automotive_cosim.cockpit.apps.timer.state import MOST_MIN, STEP_MIN, Countdown
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.layout import REST, column, row
-from automotive_cosim.cockpit.parts import choices, content, heading, minutes, title
+from automotive_cosim.cockpit.parts import HELD_STEPS, choices, content, heading, minutes, title
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Label, Look, Widget
@@ -39,6 +39,7 @@ def timer(state: State) -> tuple[Widget, ...]:
             icon=icon,
             icon_size=44,
             on_tap=put(now.longer(by_min)),
+            on_hold=put(now.longer(HELD_STEPS * by_min)),
             disabled=why if now.minutes == bound else "",
         )
 

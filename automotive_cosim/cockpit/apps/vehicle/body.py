@@ -327,8 +327,9 @@ def seats(state: State) -> tuple[Widget, ...]:
 def _adjust(
     rect: Rect, key: str, name: str, signal: Signal[float], unit: str, ways: StepWays, state: State
 ) -> tuple[Widget, ...]:
-    value = state.signals[signal]
-    shown = f"{value:.0f}{unit}" if unit == "°" else f"{value:.0f} {unit}"
+    def show(value: float) -> str:
+        return f"{value:.0f}{unit}" if unit == "°" else f"{value:.0f} {unit}"
+
     return (
         Label(rect=rect.left(150), text=name, style=Type.LABEL, tone="muted"),
         *stepper(
@@ -337,10 +338,11 @@ def _adjust(
             say("Seats: {name}", name=name),
             signal,
             state.signals,
-            shown,
+            show,
             Type.STRONG,
             state.vehicle.held(signal),
             ways,
+            gauge=True,
         ),
     )
 
@@ -466,9 +468,10 @@ def _mirror(
                 told,
                 signal,
                 signals,
-                f"{signals[signal]:+.0f}" if signals[signal] else "0",
+                lambda value: f"{value:+.0f}" if value else "0",
                 Type.STRONG,
                 ways=ways,
+                gauge=True,
             ),
         ]
     children += [

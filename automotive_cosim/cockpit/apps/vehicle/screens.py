@@ -274,7 +274,10 @@ def _holder(
     signals = state.signals
     on = signals[active]
     tile, _, steps = column(rect, 54, 8, 60)
-    shown = f"{speed(signals, signals[target])} {speed_unit(signals)}"
+
+    def show(kmh: float) -> str:
+        return f"{speed(signals, kmh)} {speed_unit(signals)}"
+
     return (
         Tile(
             rect=tile,
@@ -285,5 +288,5 @@ def _holder(
             on_tap=Set(active, not on),
             disabled=disabled,
         ),
-        *stepper(steps, f"{key}_speed", set_speed, target, signals, shown),
+        *stepper(steps, f"{key}_speed", set_speed, target, signals, show),
     )

@@ -1,0 +1,85 @@
+"""Laws over words: what readers have stumbled over, wherever it can be computed."""
+
+from __future__ import annotations
+
+import re
+from collections import Counter
+from collections.abc import Iterator
+from datetime import datetime
+
+import numpy as np
+import pytest
+
+from automotive_cosim.cockpit.apps.phone.state import directory
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.tasking.instance import Instance, draw
+from automotive_cosim.tasking.task import Task
+from automotive_cosim.tasks import CATALOGUE
+from tests.cockpit.conftest import town
+from tests.laws import over
+
+HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
+SEEDS = 3
+WAVERING = re.compile(r"\b(in case|just in case|maybe|perhaps|to be (on the )?safe)\b", re.IGNORECASE)
+"""What leaves open whether the act is wanted where its condition fails: "in case it rains" is also a precaution."""
+DATED = re.compile(r"^(Mon|Tue|Wed|Thu|Fri|Sat|Sun) (\d{1,2} [A-Z][a-z]{2}):")
+"""How a memo says of which day it is."""
+
+
+def drawn(task: Task, name: str) -> Iterator[Instance]:
+    for seed in range(SEEDS):
+        yield draw(task, name, seed)
+
+
+def people(instance: Instance) -> set[str]:
+    """Everybody whom a start brings: contacts, who has written, and who will write or ring."""
+    start = instance.half.start
+    brought = start.belongings
+    names = (
+        *(each.name for each in brought.contacts),
+        *(each.who for each in brought.threads),
+        *(each.who for each in start.arrivals),
+    )
+    return {name for name in names if name}
+
+
+@pytest.fixture(scope="session")
+def first_names() -> frozenset[str]:
+    """Of the people that are drawn for the phone."""
+    contacts = (each for seed in range(100) for each in directory(np.random.default_rng(seed)).contacts)
+    return frozenset(contact.name.split()[0] for contact in contacts)
+
+
+@over(CATALOGUE.values())
+def test_no_wish_wavers(task):
+    said = [*task.templates, *(line.text for name in task.halves for line in task.half(name).says)]
+    assert not [text for text in map(str, said) if WAVERING.search(text)]
+
+
+@over(HALVES)
+def test_a_first_name_is_that_of_one_person(task, name, first_names):
+    """Unless the start brings several of that name, between whom its papers decide."""
+    for instance in drawn(task, name):
+        counts = Counter(who.split()[0] for who in people(instance))
+        assert not [first for first, count in counts.items() if first in first_names and count == 1]
+
+
+@over([(task, name) for task, name in HALVES if task.half(name).start.belongings.memos])
+def test_a_dated_memo_is_of_a_day_before_the_start(task, name):
+    start = draw(task, name, 0).half.start
+    for memo in map(str, start.belongings.memos):
+        if found := DATED.match(memo):
+            assert start.start is not None, "a dated memo wants a date of the start"
+            now = datetime.fromisoformat(start.start)
+            day = datetime.strptime(f"{found[2]} {now.year}", "%d %b %Y")
+            assert f"{day:%a}" == found[1]
+            assert day.date() < now.date()
+
+
+def test_no_name_of_a_place_is_part_of_another():
+    for seed in range(20):
+        names = [
+            place.name for place in Cockpit(town(), rng=np.random.default_rng(seed)).state.of(Gazetteer).places
+        ]
+        assert not [(one, other) for one in names for other in names if one != other and one in other]
