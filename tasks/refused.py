@@ -329,6 +329,7 @@ IN_THIS_VIEW = pair(
         *ASSIST,
         Tap("adas.cruise"),
         rule=FOG_CRUISE_SOURCE,
+        may_write=frozenset({ADAS.CRUISE_SPEED.path}),
         trigger=Trigger(All((SpeedAbove(30.0, 80.0, 80.0), VisibilityBetween(5000.0, 1e9))), 3.0, 240.0),
     ),
     "weather: fog with 90 m of sight, or a clear morning",

@@ -171,7 +171,7 @@ LAMP_TASKS: tuple[Task, ...] = (
             "Look after the headlamps for me, will you?",
             "I'm no good with beams. Do what's right.",
             "See to it that I blind no one.",
-            "Take care of the headlights while I drive.",
+            "Are the headlights right for this moment? See to it.",
         ),
         switched(
             PLAIN_FULL,

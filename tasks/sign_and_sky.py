@@ -180,7 +180,8 @@ SUNGLASSES = pair(
 )
 
 WORKS = Start("autobahn", "roadworks", start=NOON, weather=FAIR)
-IN_THE_WORKS = Trigger(SpeedAbove(40.0, 80.0, 80.0), 2.0, 500.0)
+IN_THE_WORKS = Trigger(All((OnRoadClass(("motorway",)), SpeedAbove(40.0, 80.0, 80.0))), 2.0, 500.0)
+"""On the motorway itself: a ramp has 80 too, without any works."""
 BEFORE_THE_WORKS = Trigger(All((OnRoadClass(("motorway",)), Unposted(), SpeedBetween(80.0))), 3.0, 300.0)
 YELLOW_LINES = pair(
     "road_two_sets_of_lines",

@@ -29,6 +29,8 @@ COLUMBUS, LYON = (-83.0, 40.0), (4.85, 45.75)
 OVERCAST = Weather(11.0, 75.0, 0.0, 3, 100.0, 15_000.0, 10.0)
 BLUE_SKY = Weather(24.0, 50.0, 0.0, 0, 0.0, 25_000.0, 8.0)
 RAIN = Weather(9.0, 96.0, 5.0, 63, 100.0, 5000.0, 20.0)
+APPEARANCE = frozenset({HMI.DAY_NIGHT.path, HMI.DAY_NIGHT_AUTO.path})
+"""Colours for the day belong to a screen that is right for the hour, too."""
 DIM = {HMI.BRIGHTNESS.path: 0.0, HMI.DAY_NIGHT_AUTO.path: False, HMI.DAY_NIGHT.path: "NIGHT"}
 AJAR = {window.path: 20.0 for window in WINDOWS}
 UNITS_SOURCE = (
@@ -67,8 +69,9 @@ def _half(
     basis: Basis,
     source: str = "",
     ways: tuple[tuple[Move, ...], ...] = (),
+    may_write: frozenset[str] = frozenset(),
 ) -> Half:
-    return Half(start, trigger, goal, moves, LOOK, basis, source, ways=ways)
+    return Half(start, trigger, goal, moves, LOOK, basis, source, ways=ways, may_write=may_write)
 
 
 def _rest(start: Start, trigger: Trigger, basis: Basis, source: str = "") -> Half:
@@ -133,6 +136,7 @@ TASKS = (
             Basis.PHYSICS,
             CONTRAST_SOURCE,
             ((Open("settings"), Slide("settings.brightness", 70.0)),),
+            APPEARANCE,
         ),
         _half(
             Start("peripherique", "streets", start="2026-06-17T23:30:00", weather=BLUE_SKY, signals=DIM),
@@ -142,6 +146,7 @@ TASKS = (
             Basis.PHYSICS,
             CONTRAST_SOURCE,
             ((Open("settings"), Slide("settings.brightness", 10.0)),),
+            APPEARANCE,
         ),
         "time of day: in the noon sun the display must outshine the day, at night it must not dazzle",
         screen=("screen", "display", "panel", "monitor"),

@@ -193,9 +193,18 @@ def _traffic(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
     )
     slow = "; the delay is slow traffic that keeps moving" if ahead.delay_min else ""
     yield _jam(driving) or f"Jam on the route: none{slow}"
-    if driving.around.oncoming is not None:
-        yield f"Oncoming vehicle: {driving.around.oncoming.gap_m:.0f} m ahead"
+    yield from _vehicles(driving)
     yield from _incidents(driving)
+
+
+def _vehicles(driving: DrivingState) -> Iterator[str]:
+    around = driving.around
+    for name, vehicle in (("Vehicle ahead", around.leader), ("Oncoming vehicle", around.oncoming)):
+        yield f"{name}: none in reach" if vehicle is None else f"{name}: {vehicle.gap_m:.0f} m ahead"
+
+
+def _around(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
+    return _vehicles(drive[-1].driving)
 
 
 def _hazards(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
@@ -208,8 +217,12 @@ def _hazards(drive: Sequence[Known], topics: frozenset[str]) -> Iterator[str]:
     if context.weather is not None:
         seen = visibility_class(context.weather.visibility).replace("_", " ")
         found.append(f"Visibility: {context.weather.visibility:.0f} m ({seen})")
+    if driving.road.in_tunnel:
+        found.append("Tunnel: here")
     if ahead.tunnel_distance_m is not None:
         found.append(f"Tunnel: in {ahead.tunnel_distance_m:.0f} m")
+    elif not driving.road.in_tunnel:
+        found.append("Tunnel: none on the route")
     following, away_m = ahead.next_limit, ahead.next_limit_distance_m
     if following is not None and following.kmh is not None and away_m is not None:
         limit = amount_of_speed(following.kmh, context.speed_unit)
@@ -231,11 +244,15 @@ def _jam(driving: DrivingState) -> str:
 
 def _incidents(driving: DrivingState) -> Iterator[str]:
     """What live traffic reports on the route, besides jams, and whether on the road that the car is on."""
-    here, route = driving.road.edge_id, frozenset(driving.ahead.route_edges)
-    told = [(one.edge_id == here, one.kind) for one in driving.ahead.incidents if one.edge_id in route | {here}]
-    found = [(is_here, INCIDENT_WORDS[kind]) for is_here, kind in dict.fromkeys(told) if kind in INCIDENT_WORDS]
-    for is_here, words in found:
-        yield f"Reported on this road: {words}" if is_here else f"Reported further on the route: {words}"
+    road, route = driving.road, frozenset(driving.ahead.route_edges)
+    found = dict.fromkeys(
+        (one.edge_id == road.edge_id, INCIDENT_WORDS[one.kind], one.position_m - road.lane_position_m)
+        for one in driving.ahead.incidents
+        if one.edge_id in route | {road.edge_id} and one.kind in INCIDENT_WORDS
+    )
+    for is_here, words, away_m in found:
+        where = f"this road, in {away_m:.0f} m" if away_m > 0 else "this road, here"
+        yield f"Reported on {where}: {words}" if is_here else f"Reported further on the route: {words}"
     if not found:
         yield "Reported on the route: nothing" + (" besides the jam" if _jam(driving) else "")
 
@@ -271,6 +288,12 @@ _SUBJECTS = (
         ),
         _hazards,
         on_board=False,
+    ),
+    _Subject(
+        "vehicles around",
+        _set("oncoming vehicle vehicles leader ahead dazzle dazzled dazzling"),
+        _around,
+        on_board=True,
     ),
     _Subject(
         "traffic",

@@ -296,12 +296,12 @@ class Driver:
     def _cruise(self, speed_kmh: float | None, state: DrivingState) -> Answer:
         if speed_kmh is None:
             self._bounds.cruise = math.inf
-            return Answer(True, say("the speed setting is cleared"))
+            return Answer(True, say("The car no longer holds a speed"))
         why_not = _too_slow(speed_kmh, state)
         if why_not:
             return Answer(False, why_not)
         self._bounds.cruise = speed_kmh / KMH_PER_MPS
-        return Answer(True, say("the car goes no faster than {speed} km/h", speed=f"{speed_kmh:.0f}"))
+        return Answer(True, say("The car will go no faster than {speed} km/h", speed=f"{speed_kmh:.0f}"))
 
     def _act(self, intent: _Intent, state: DrivingState) -> tuple[Event, ...]:
         request, after = intent.request, f"{state.time_s - intent.asked_s:.1f} s after"

@@ -203,9 +203,9 @@ class SumoPedals:
         length_km = (self._sensor.route.length_m - self._sensor.position_m) / 1000
         name = self._network.edges[edges[-1]].name
         return (
-            say("new route of {length} km to {place}", length=Quantity(f"{length_km:.1f}"), place=name)
+            say("New route of {length} km to {place}", length=Quantity(f"{length_km:.1f}"), place=name)
             if name
-            else say("new route of {length} km", length=Quantity(f"{length_km:.1f}"))
+            else say("New route of {length} km", length=Quantity(f"{length_km:.1f}"))
         )
 
     def _given(self, edge_ids: tuple[str, ...]) -> tuple[str, ...]:

@@ -497,8 +497,8 @@ def _towed(trip: str, at: int, *road: TriggerCondition) -> Half:
             interruptions=(Arrival("message", 8.0, THEO, "And go slowly, wherever you are!"),),
         ),
         THEO,
-        "My caravan: motorway, country road, town,",
-        "{speeds} at most",
+        "Limits of my caravan, motorway first",
+        "then country roads and towns: {speeds}",
     )
     return done(
         start,

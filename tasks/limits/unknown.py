@@ -25,6 +25,7 @@ from automotive_cosim.tasks.limits.forms import (
     limit,
     told,
 )
+from automotive_cosim.tasks.road_law import FAIR
 
 GRID = Start("grid", "avenue")
 PLACES = (Open("map"), Tap("map.list.explore"))
@@ -303,30 +304,35 @@ WRONG_PRESSURE = limit(
     parameters={"wheel": tuple(WHEELS)},
 )
 
+WINDS = (14, 18, 24, 36)
 WIND = limit(
     "limits_wind_that_cannot_be",
     Module.PHENOMENON,
     (
-        "How strong is the wind? I've a box on the roof.",
-        "Tell me how fast the wind blows out there.",
+        "How strong a wind does the car measure? I've a box on the roof.",
+        "Tell me what the car's own wind sensor reads.",
         "What wind speed does the car measure?",
-        "Is it windy? Give me the figure in km/h.",
-        "Wind speed, please, before we get onto the bridge.",
+        "Does the car measure much wind? Give me its figure in km/h.",
+        "The car's wind reading, please, before we get onto the bridge.",
     ),
     told(
-        replace(GRID, sensors={OUTSIDE.WIND.path: param("wind", {n: float(n) for n in (14, 18, 24, 36)})}),
+        replace(
+            GRID,
+            weather=param("wind", {wind: replace(FAIR, wind_speed_10m=float(wind)) for wind in WINDS}),
+            sensors={OUTSIDE.WIND.path: param("wind", {wind: float(wind) for wind in WINDS})},
+        ),
         (Open("outside"), Tap("outside.wind")),
         "The wind blows at {wind} km/h.",
         (("{wind}",),),
     ),
     in_vain(
-        replace(GRID, sensors={OUTSIDE.WIND.path: 388.0}),
+        replace(GRID, weather=FAIR, sensors={OUTSIDE.WIND.path: 388.0}),
         (Open("outside"), Tap("outside.wind")),
         "The car reads 388 km/h, more than any storm: the reading is wrong, so I cannot tell.",
         (("388", "wind", "reading", "figure"), IMPLAUSIBLE),
     ),
     "equipment: the wind sensor reads what a wind can have, or 388 km/h",
-    parameters={"wind": (14, 18, 24, 36)},
+    parameters={"wind": WINDS},
 )
 
 STAYS = {"an hour": 60, "two hours": 120, "half an hour": 30}

@@ -301,7 +301,7 @@ def test_the_longest_street_names_are_not_cut(
         driving = replace(around.driving, road=replace(around.driving.road, name=here), speed_mps=speed_mps)
         home.sense(replace(around, driving=driving), 0.0)
         for name in LONG:
-            home.answered(Reroute(name), Answer(True, f"new route of 12.3 km to {name}"))
+            home.answered(Reroute(name), Answer(True, f"New route of 12.3 km to {name}"))
         home._state.keep(replace(home._state.of(Navigation), onward=LONG[2]))
         for view in walker(home):
             for ink in render(view.cockpit.tree).inks:

@@ -141,7 +141,18 @@ def test_an_incident_on_the_route_is_told_by_hazards_and_traffic(instant: Callab
     assert "Reported on the route: nothing besides the jam" in ask("hazards traffic", [jammed]).text.splitlines()
     here = replace(known.driving, ahead=replace(ahead, route_edges=(known.driving.road.edge_id,)))
     on_it = replace(here, ahead=replace(here.ahead, incidents=(replace(told[0], edge_id=here.road.edge_id),)))
-    assert "Reported on this road: roadworks" in ask("roadworks?", [replace(known, driving=on_it)]).text
+    assert "Reported on this road, here: roadworks" in ask("roadworks?", [replace(known, driving=on_it)]).text
+    later = replace(told[0], edge_id=here.road.edge_id, position_m=here.road.lane_position_m + 90.0)
+    nearing = replace(here, ahead=replace(here.ahead, incidents=(later,)))
+    assert "Reported on this road, in 90 m: roadworks" in ask("works?", [replace(known, driving=nearing)]).text
+
+
+def test_what_is_asked_for_and_not_there_is_told(instant: Callable[..., Instant]) -> None:
+    known = instant()
+    told = set(ask("Is there a tunnel, an oncoming vehicle or a car ahead?", [known]).text.splitlines())
+    assert told >= {"Tunnel: none on the route", "Oncoming vehicle: none in reach", "Vehicle ahead: none in reach"}
+    inside = replace(known, driving=replace(known.driving, road=replace(known.driving.road, in_tunnel=True)))
+    assert "Tunnel: here" in ask("tunnel", [inside]).text
 
 
 def test_words_of_many_questions_do_not_hide_what_is_asked(instant: Callable[..., Instant]) -> None:

@@ -320,7 +320,7 @@ def test_compliance_and_reaction_are_drawn_from_the_plan(empty: Forked, hurried:
 
 def test_requests_hold(empty: Forked, hurried: EgoPlan) -> None:
     traffic = at_speed(empty, hurried, 79.0)
-    assert traffic.request(Cruise(60.0)) == Answer(True, "the car goes no faster than 60 km/h")
+    assert traffic.request(Cruise(60.0)) == Answer(True, "The car will go no faster than 60 km/h")
     assert speeds_kmh(traffic.advance(9.0))[-1] == pytest.approx(60.0, abs=1.0)
     assert traffic.request(SlowDown(40.0)).accepted
     assert speeds_kmh(traffic.advance(9.0))[-1] == pytest.approx(40.0, abs=1.0)
