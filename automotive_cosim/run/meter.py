@@ -26,6 +26,14 @@ CLOSE_S = 5.0
 
 
 @dataclass(frozen=True, slots=True)
+class Spent:
+    """What an evaluation has spent on its models."""
+
+    tokens: int = 0
+    usd: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
 class Budget:
     """What an evaluation may spend on its models in total; None means no limit."""
 
@@ -42,13 +50,19 @@ class Budget:
         """Whether there is a limit."""
         return self.tokens is not None or self.usd is not None
 
+    def used(self, spent: Spent) -> float:
+        """The share of it that is spent, 0 to 1; of both, the greater one."""
+        shares = (spent.tokens / self.tokens if self.tokens else 0.0, spent.usd / self.usd if self.usd else 0.0)
+        return min(1.0, max(shares))
 
-@dataclass(frozen=True, slots=True)
-class Spent:
-    """What an evaluation has spent on its models."""
-
-    tokens: int = 0
-    usd: float = 0.0
+    def left_in_words(self, spent: Spent) -> str:
+        """What is left of it, as ``38,000 of 50,000 tokens left``; empty without a limit."""
+        told = []
+        if self.tokens is not None:
+            told.append(f"{max(0, self.tokens - spent.tokens):,} of {self.tokens:,} tokens")
+        if self.usd is not None:
+            told.append(f"${max(0.0, self.usd - spent.usd):,.2f} of ${self.usd:,.2f}")
+        return f"{' and '.join(told)} left" if told else ""
 
 
 class MeterHandle(Protocol):

@@ -25,7 +25,7 @@ from automotive_cosim.run.moments import Judged, judged_file, write_judged, writ
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.road_recorder import RoadRecorder
-from automotive_cosim.run.stage import StageObserver
+from automotive_cosim.run.stage import StageObserver, WatchStageObserver
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
@@ -147,7 +147,7 @@ def _driven(
 ) -> _Kept:
     recorder = DriveRecorder(folder / "pictures" / job.id)
     road = RoadRecorder(recorder.folder, job.setup.about)
-    everyone = (*observers, StageObserver(), *(() if pictures is Pictures.NONE else (recorder, road)))
+    everyone = (*observers, WatchStageObserver(), *(() if pictures is Pictures.NONE else (recorder, road)))
     with closing(recorder), closing(road):
         record = run_drive(job.planned(), job.setup, agent, simulations=simulations, observers=everyone)
 

@@ -27,6 +27,19 @@ def test_who_is_better_is_said_only_if_the_interval_says_it(cells, words):
     assert versus("a", "b", compared(*cells)).startswith(words)
 
 
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        ((0, 2, 0), "a is 100 points ahead of b, but 2 tasks cannot tell agents apart; 5 or more can"),
+        ((0, 0, 1), "b is 100 points ahead of a, but 1 task cannot tell agents apart; 5 or more can"),
+        ((4, 0, 0), "a and b are level, but 4 tasks cannot tell agents apart; 5 or more can"),
+    ],
+)
+def test_few_tasks_give_no_interval(cells, words):
+    assert compared(*cells).interval is None
+    assert versus("a", "b", compared(*cells)) == words
+
+
 def test_one_alone_has_its_rate_and_errors_are_counted(tmp_path):
     told = answer(read_results(write(tmp_path / "a", lost={1}, errors={3})))
     assert told.startswith("asurada, ")
