@@ -153,6 +153,8 @@ class _Drive:
         self._rules = {parse_policy(text).rule for text in job.plan.policies}
         self._most_delay_s = 0.0
         self._way_m = max(1.0, traffic.state.ahead.route_left_m)
+        self._settled = 0.0
+        """The share of the vehicles that has arrived in the future that is farthest."""
 
     def go(self) -> None:
         """Drives and decides until the drive or its decisions are over."""
@@ -174,11 +176,13 @@ class _Drive:
             self._live.driven(point.branches)
 
     def _ended(self, traffic: RemoteTraffic) -> Future:
-        """Waits for a future. All run at the same time, so they end at about the same time."""
+        """Waits for a future. All run at the same time: what one said while another was waited for is past."""
 
         def tell(done: float, total: float) -> None:
-            share = DECIDING + (1 - DECIDING) * (done / total if total else 1.0)
-            doing("driving every future to its end", f"{done:.0f} of {total:.0f} vehicles arrived", share=share)
+            part = done / total if total else 1.0
+            if part >= self._settled:
+                self._settled, amount = part, f"{done:.0f} of {total:.0f} vehicles arrived"
+                doing("driving every future to its end", amount, share=DECIDING + (1 - DECIDING) * part)
 
         return ended(traffic, tell)
 

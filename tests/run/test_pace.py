@@ -14,6 +14,7 @@ import pytest
 from automotive_cosim.cli.batches import time_left
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.meter import Budget, Spent
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.stage import JobStage
 
@@ -226,7 +227,7 @@ def test_after_a_minute_the_time_left_is_right_within_a_factor_of_two(name, work
         (alike(40, 1, 5.0, 3.0), 60.0),
     ],
 )
-def test_jobs_that_tell_how_far_they_are_are_known_from_the_first_minute_on(workers, jobs, known_by_s, monkeypatch):
+def test_jobs_that_tell_how_far_they_are_are_known_from_the_first_minute(workers, jobs, known_by_s, monkeypatch):
     """The first of them may still be running. Of many, nobody knows how long the very last will take."""
     told = play(monkeypatch, jobs, workers, tells=True)
     end_s, last = told[-1][0], 2 * workers if len(jobs) > 2 else 0
@@ -238,6 +239,43 @@ def test_jobs_that_tell_how_far_they_are_are_known_from_the_first_minute_on(work
     assert shown
     right = sum(left_s is not None and true_s / 2 <= left_s <= 2 * true_s for left_s, true_s in shown)
     assert right >= 0.97 * len(shown), shown
+
+
+class SpendingMeter:
+    """Ten tokens a second."""
+
+    def __init__(self, clock: Clocked) -> None:
+        self.clock = clock
+
+    def spent(self) -> Spent:
+        return Spent(tokens=500 + int(10 * self.clock.now_s))
+
+    def refusal(self) -> str:
+        return "spent" if self.spent().tokens >= BUDGET.tokens else ""
+
+
+BUDGET = Budget(tokens=2500)
+
+
+def test_the_time_left_ends_with_the_budget(monkeypatch):
+    """At ten tokens a second, the 2,000 that are left last for 200 s; the jobs would take much longer."""
+    clock = Clocked(1)
+    monkeypatch.setattr(batch, "time", clock)
+    monkeypatch.setattr(batch, "note_spent", lambda store, meter: None)
+    told: list[tuple[float, float | None, str]] = []
+
+    def tell(progress: Progress[JobRow]) -> None:
+        told.append((clock.now_s, progress.left_s, progress.budget))
+
+    jobs = alike(1, 100, 10.0, 0.0)
+    end = run_jobs(
+        jobs, clock, nobody, given_up, executor=clock, limit=SpendingMeter(clock), budget=BUDGET, tell=tell
+    )  # type: ignore[arg-type, misc, call-overload]
+    assert end.stopped == "spent"
+    assert told[0] == (0.0, None, "2,000 of 2,500 tokens left")
+    known = [(now_s, left_s) for now_s, left_s, _ in told if left_s is not None and now_s > 60]
+    assert known
+    assert all(left_s == pytest.approx(200 - now_s, abs=1) for now_s, left_s in known if now_s < 200)
 
 
 def test_nothing_is_said_before_there_is_a_basis(monkeypatch):

@@ -100,8 +100,9 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
                 copy.apply(measure_in(name, "--measure"), job.seed)
             copy.begin(plan.duration_s, INTERVAL_S)
             running.append(copy)
+        tell = _teller()
         for name, copy in zip(names, running, strict=True):
-            summaries = copy.ended(_tell)
+            summaries = copy.ended(tell)
             copy.close()
             assert copy.outputs is not None
             flows = list(read_flows(copy.outputs, begin_s, [each.slowed for each in summaries[1:]]))
@@ -112,11 +113,17 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
     return replace(_planned(job), outcomes=tuple(outcomes))
 
 
-def _tell(done_s: float, total_s: float) -> None:
-    """Says how far a copy is; all run at the same time."""
-    doing(
-        "driving the traffic with and without measures", f"{done_s:.0f} of {total_s:.0f} s", share=done_s / total_s
-    )
+def _teller() -> Callable[[float, float], None]:
+    """Says how far the copies are, which run at the same time: what one said while another was waited for is old."""
+    far_s = 0.0
+
+    def tell(done_s: float, total_s: float) -> None:
+        nonlocal far_s
+        if done_s >= far_s:
+            far_s, amount = done_s, f"{done_s:.0f} of {total_s:.0f} s"
+            doing("driving the traffic with and without measures", amount, share=done_s / total_s)
+
+    return tell
 
 
 def _outcome(

@@ -50,8 +50,8 @@ def lost_map(study: CongestionStudy, network: Network, number: int, width_in: fl
     most = max(map(abs, per_km.values()), default=0.0)
     bounds = [float(f"{share * most:.0e}") for share in SHARES]
     west, south, east, north = network.map.bounds_m
-    narrow = WIDE_IN / width_in
-    height_in = min(9.0, max(3.2 / narrow, 0.9 * width_in * (north - south) / max(1.0, east - west)))
+    is_narrow = width_in < WIDE_IN
+    height_in = min(9.0, width_in * max(1 / 3, 0.9 * (north - south) / max(1.0, east - west)))
 
     def draw(axes: Axes) -> None:
         from matplotlib.collections import LineCollection
@@ -76,15 +76,16 @@ def lost_map(study: CongestionStudy, network: Network, number: int, width_in: fl
                     )
                 )
         if most:
-            _classes(axes, [*bounds, most], is_change=bool(number), is_narrow=narrow > 1)
+            _classes(axes, [*bounds, most], is_change=bool(number), is_narrow=is_narrow)
         _places(axes, study, network, number)
-        _name_streets(axes, network, per_km, narrow)
+        if not is_narrow:  # names would hide it
+            _name_streets(axes, network, per_km)
         _scale(axes, network)
         axes.set_xlim(west - 20, east + 20)
         axes.set_ylim(south - 0.09 * (north - south) - 20, north + 20)
         axes.set_aspect("equal")
         axes.set_axis_off()
-        legend(axes, ncols=1 if narrow > 1 else 2, fontsize=8)
+        legend(axes, ncols=1 if is_narrow else 2, fontsize=8)
 
     return height_in + 1.3, draw
 
@@ -154,15 +155,8 @@ def _places(axes: Axes, study: CongestionStudy, network: Network, number: int) -
                 )
 
 
-def _name_streets(axes: Axes, network: Network, per_km: dict[str, float], narrow: float) -> None:
-    """Names the streets with the greatest values at their worst edge, and then the longest, without overlaps.
-
-    Args:
-        axes: of the map.
-        network: with the streets.
-        per_km: values by edge.
-        narrow: how many times as narrow as a wide page.
-    """
+def _name_streets(axes: Axes, network: Network, per_km: dict[str, float]) -> None:
+    """Names the streets with the greatest values at their worst edge, and then the longest, without overlaps."""
     worst: dict[str, tuple[float, float, str]] = {}
     for name, edge in network.edges.items():
         if edge.name:
@@ -174,12 +168,9 @@ def _name_streets(axes: Axes, network: Network, per_km: dict[str, float], narrow
         shape = network.edges[name].shape_m
         (x1, y1), (x2, y2) = shape[0], shape[-1]
         x, y = (x1 + x2) / 2, (y1 + y2) / 2
-        if len(taken) >= NAMES / narrow:
+        if len(taken) == NAMES:
             break
-        if any(
-            abs(x - a) < 0.2 * narrow * (east - west) and abs(y - b) < 0.07 * narrow * (north - south)
-            for a, b in taken
-        ):
+        if any(abs(x - a) < 0.2 * (east - west) and abs(y - b) < 0.07 * (north - south) for a, b in taken):
             continue
         taken.append((x, y))
         angle = math.degrees(math.atan2(y2 - y1, x2 - x1))
