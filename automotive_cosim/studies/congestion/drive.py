@@ -114,7 +114,7 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
 
 
 def _teller() -> Callable[[float, float], None]:
-    """Says how far the copies are, which run at the same time: what one said while another was waited for is old."""
+    """Says how far the copies are, which run at the same time; what one said while another was awaited is old."""
     far_s = 0.0
 
     def tell(done_s: float, total_s: float) -> None:
