@@ -119,7 +119,8 @@ class ProgressView(Generic[R]):
     def tell(self, progress: Progress[R]) -> None:
         """Shows the current progress."""
         progress, overdue = self._overdue(progress)
-        told = ", ".join(filter(None, (self._words(progress), time_left(progress) or self._time_so_far(progress))))
+        time_told = time_left(progress) or self._time_so_far(progress)
+        told = ", ".join(filter(None, (self._words(progress), time_told, progress.budget)))
         said = "; ".join(filter(None, (told, overdue or _doing(progress))))
         if self._bar and self._task is not None:
             self._bar.update(self._task, total=progress.planned, completed=progress.done, said=said)
@@ -128,7 +129,7 @@ class ProgressView(Generic[R]):
         every_s = self.UNCHANGED_S if line == self._said else self.EVERY_S
         if progress.seconds - self._said_s >= every_s or progress.done == progress.planned:
             self._said_s, self._said = progress.seconds, line
-            self._console.print(line)
+            self._console.print(line, soft_wrap=True)
 
     def _time_so_far(self, progress: Progress[R]) -> str:
         """The time that has passed of what was expected, while nothing has been measured."""
@@ -142,7 +143,7 @@ class ProgressView(Generic[R]):
         if progress.left_s is None:
             return progress, ""
         up_s, (done, was_s) = progress.seconds + progress.left_s, self._known
-        if progress.done == done and up_s > was_s + self.OVERDUE_S:
+        if progress.done == done and up_s > was_s + max(self.OVERDUE_S, progress.left_s / 2):
             return replace(progress, left_s=None), "it takes longer than expected"
         self._known = progress.done, up_s if progress.done != done else min(up_s, was_s)
         return progress, ""
@@ -164,8 +165,8 @@ def check_prices(models: Iterable[str], budget: Budget) -> None:
             )
 
 
-def forecast_in_words(told: CostForecast, workers: int) -> Iterator[str]:
-    """Lines on what a plan will take."""
+def forecast_in_words(told: CostForecast, workers: int, budget: Budget | None = None) -> Iterator[str]:
+    """Lines on what a plan will take, and whether its budget will last."""
     slow = ", plus the time that the models take to answer" if told.asks_models else ""
     yield f"time: {minutes_in_words(told.wall_s)} with {counted(workers, 'worker')} on an idle machine{slow}"
     if told.asks_models:
@@ -174,6 +175,8 @@ def forecast_in_words(told: CostForecast, workers: int) -> Iterator[str]:
             yield f"cost: ${told.usd.low:,.2f} to ${told.usd.high:,.2f}"
         else:
             yield "cost: unknown; a model's name takes ?usd_per_million_in=...&usd_per_million_out=..."
+    if budget is not None and (beyond := told.beyond(budget)):
+        yield beyond
 
 
 def minutes_in_words(seconds: Range) -> str:

@@ -121,7 +121,7 @@ def evaluate(
     left = [job for job in plan.jobs() if job.id not in known or known[job.id].error is not None]
     if unfit := tuple(misfits(left)):
         raise UserError("; ".join(unfit))
-    for line in forecast_in_words(needs, choice.processes) if left else ():
+    for line in forecast_in_words(needs, choice.processes, budget) if left else ():
         console.print(line, soft_wrap=True)
     with where, ProgressView(console, f"{unit}s", _said, needs.wall_s) as view:
         try:

@@ -228,6 +228,8 @@ def _told_before(
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.safety.forecast import RUNS_A_FAILURE, of_a_failure, search_forecast
 
+    if space.note:
+        yield space.note
     if may_use.hours is not None:
         minutes = counted(round(60 * may_use.hours), "minute")
         yield f"{minutes} at most, with earlier starts: no run begins after that"

@@ -7,7 +7,7 @@ from collections.abc import Hashable, Sequence
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report import drives
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
-from automotive_cosim.report.stats import Comparison, Interval, compare
+from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Interval, compare
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.run.episode_row import EpisodeRow
 
@@ -59,20 +59,27 @@ def _against(
     found = compare(outcomes(ones), outcomes(others), {_key(row, unit): row.task for row in ones})
     if found is None:
         return f"{best.label} and {other.label} have no {unit} in common"
-    return f"{versus(best.label, other.label, found)}, {counted(found.count, unit)}"
+    return versus(best.label, other.label, found, unit)
 
 
 def _key(row: EpisodeRow, unit: str) -> Hashable:
     return pair_instance(row) if unit == "pair" else row.instance
 
 
-def versus(first: str, second: str, found: Comparison) -> str:
-    """Two contestants, and by how many percentage points the first is better, if that can be told."""
+def versus(first: str, second: str, found: Comparison, unit: str) -> str:
+    """Two contestants, and by how many percentage points the first is better, if that can be told, on how many
+    units."""
     difference = counted(round(100 * found.difference), "point").replace("-", "−")
+    if found.interval is None:
+        ahead, behind = (first, second) if found.difference > 0 else (second, first)
+        lead = f"{ahead} is {difference.removeprefix('−')} ahead of {behind}"
+        lead = lead if found.difference else f"{first} and {second} are level"
+        on = f"{counted(found.count, unit)} of {counted(found.clusters, 'task')}"
+        return f"{lead} on {on}, too few to tell agents apart ({LEAST_CLUSTERS} tasks are needed)"
     points = f"{difference} ({_signed(found.interval.low)} to {_signed(found.interval.high)})"
     if found.interval.low > 0:
-        return f"{first} beats {second} by {points}"
-    return f"{first} and {second} cannot be told apart: a difference of {points}"
+        return f"{first} beats {second} by {points}, {counted(found.count, unit)}"
+    return f"{first} and {second} cannot be told apart: a difference of {points}, {counted(found.count, unit)}"
 
 
 def _signed(share: float) -> str:

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 from automotive_cosim.calibration.counts import GOOD_GEH
 from automotive_cosim.calibration.result import Calibration, Met, read_calibration
-from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
+from automotive_cosim.report.charts import INK, PALETTE, Chart, Drawing, charted, legend
+from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
@@ -50,13 +51,7 @@ def write_page(folder: Path) -> Path:
     )
     page = folder / "calibration.html"
     try:
-        for name in ("tables", "plots"):
-            (folder / name).mkdir(exist_ok=True)
-        for made in tables:
-            for suffix, content in (("md", made.markdown()), ("csv", made.csv()), ("tex", made.latex())):
-                write_whole(folder / "tables" / f"{made.name}.{suffix}", content)
-        for name, (_, wide, _) in plots.items():
-            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
+        write_files(folder, tables, plots.values())
         write_whole(page, text)
     except OSError as error:
         raise cannot_write(folder, error) from error
@@ -193,21 +188,19 @@ def times(found: Calibration) -> Table:
     return Table("times", "Travel times", columns, rows, note, heads=2)
 
 
-def charts(found: Calibration, network: Network) -> dict[str, tuple[str, str, str]]:
-    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+def charts(found: Calibration, network: Network) -> dict[str, Chart]:
+    """Plots by name.
 
     Raises:
         SetupError: matplotlib is not installed.
     """
-    made = {
-        "flows": ("Counted and simulated", _flows(found)),
-        **({"day": ("The calibrated sites over the day", _day(found))} if len(found.hours) > MANY_HOURS else {}),
-        "map": ("Where the sites are", _map(found, network)),
-    }
-    return {
-        name: (title, drawn(name, drawing, WIDE_IN), drawn(name, drawing, NARROW_IN))
-        for name, (title, drawing) in made.items()
-    }
+    return charted(
+        {
+            "flows": ("Counted and simulated", _flows(found)),
+            "day": ("The calibrated sites over the day", _day(found) if len(found.hours) > MANY_HOURS else None),
+            "map": ("Where the sites are", _map(found, network)),
+        }
+    )
 
 
 def _flows(found: Calibration) -> Drawing:
@@ -251,7 +244,7 @@ def _map(found: Calibration, network: Network) -> Drawing:
     def draw(axes: Axes) -> None:
         from matplotlib.collections import LineCollection
 
-        lines = [edge.shape_m for edge in network.edges.values()]
+        lines = [*(edge.shape_m for edge in network.edges.values()), *network.joints_m]
         axes.add_collection(LineCollection(lines, colors=INK, alpha=0.25, linewidths=0.6))
         labels = {row.edge: row.site for row in found.rows}
         for held_out, colour, label in ((False, CALIBRATED, "calibrated"), (True, HELD_OUT, "held out")):

@@ -1,14 +1,18 @@
-"""Plots of an evaluation as SVG, in the colours of the page."""
+"""Plots of an evaluation, in the colours of the page, and what all plots share."""
 
 from __future__ import annotations
 
 import re
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cache
 from importlib.util import find_spec
-from io import StringIO
+from io import BytesIO
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+from automotive_cosim.cockpit.theme import Weight, font
 from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.errors import SetupError
 from automotive_cosim.report.findings import NAMES
@@ -39,29 +43,91 @@ WIDE_IN, NARROW_IN = 9.6, 4.0
 """A page is at most 1040 pixels wide, a phone about 390; an inch is 96 pixels."""
 DIGITS = 6
 """Significant digits along an axis: more than ticks have, fewer than rounding errors show."""
+CHARACTERS_AN_INCH = 11.0
+"""Of a legend, with room for its lines and marks."""
 LARGE = 1000.0
 """From here on, numbers along an axis have commas between thousands."""
+SAVED: Mapping[str, Mapping[str, Any]] = {
+    "svg": {"transparent": True, "metadata": {"Date": None, "Creator": None}},
+    "pdf": {"metadata": {"CreationDate": None}},
+    "png": {"dpi": 200, "metadata": {"Software": None}},
+}
+"""How matplotlib saves each kind of file; the same plot gives the same bytes."""
 
 
-def charts(results: Results) -> dict[str, tuple[str, str, str]]:
-    """Plots by name: title, SVG for a wide page, SVG for a narrow one; none without episodes.
+Drawing = tuple[float, Callable[["Axes"], None]]
+"""A plot: its height in inches, and the function that draws it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Chart:
+    """A plot of a page and its files."""
+
+    name: str
+    title: str
+    drawing: Drawing
+    """For a wide page and for files."""
+    wide: str
+    """SVG for a wide page."""
+    narrow: str
+    """SVG for a narrow one."""
+
+    @classmethod
+    def of(cls, name: str, title: str, drawing: Drawing, narrow: Drawing | None = None) -> Chart:
+        """Draws it, for a narrow page by a drawing of its own if there is one.
+
+        Raises:
+            SetupError: matplotlib is not installed.
+        """
+        return cls(name, title, drawing, drawn(name, drawing, WIDE_IN), drawn(name, narrow or drawing, NARROW_IN))
+
+    @property
+    def svg(self) -> str:
+        """For a file, which knows no page around it."""
+        return self.wide.replace("currentColor", INK)
+
+    def files(self) -> Iterator[tuple[str, bytes]]:
+        """Suffix and content of its files: SVG for the web, PDF for papers, PNG for slides."""
+        yield "svg", self.svg.encode()
+        for kind in ("pdf", "png"):
+            yield kind, _saved(self.name, self.drawing, WIDE_IN, kind)
+
+
+def charted(
+    made: Mapping[str, tuple[str, Drawing | None]], narrow: Mapping[str, Drawing | None] | None = None
+) -> dict[str, Chart]:
+    """The plots that have something to show, by name.
+
+    Args:
+        made: title and drawing of each.
+        narrow: drawings of those that have another one for a narrow page.
+
+    Raises:
+        SetupError: matplotlib is not installed.
+    """
+    other = narrow or {}
+    return {
+        name: Chart.of(name, title, drawing, other.get(name))
+        for name, (title, drawing) in made.items()
+        if drawing is not None
+    }
+
+
+def charts(results: Results) -> dict[str, Chart]:
+    """Plots by name; none without episodes.
 
     Raises:
         SetupError: matplotlib is not installed.
     """
     if not results.rows:
         return {}
-    made = {
+    made: dict[str, tuple[str, Drawing | None]] = {
         "dimensions": ("Success by dimension", _dimensions(results)),
         "modules": ("Success by module", _modules(results)),
         "prompts": ("Length of prompts", _prompts(results)),
         "distribution": ("Tasks by module and dimension", _distribution(results)),
     }
-    return {
-        name: (title, drawn(name, draw, WIDE_IN), drawn(name, draw, NARROW_IN))
-        for name, (title, draw) in made.items()
-        if draw is not None
-    }
+    return charted(made)
 
 
 def is_installed() -> bool:
@@ -80,8 +146,6 @@ def require_plots() -> None:
 
 
 NEEDS = "plots need matplotlib: pip install 'automotive-cosim[report]'"
-Drawing = tuple[float, Callable[["Axes"], None]]
-"""A plot: its height in inches, and the function that draws it."""
 
 
 def _dimensions(results: Results) -> Drawing:
@@ -195,10 +259,14 @@ def _distribution(results: Results) -> Drawing:
     return 1.9 + 0.32 * len(modules), draw
 
 
-def legend(axes: Axes) -> None:
-    """The legend, above the plot and as wide as the plot."""
+def legend(axes: Axes, **options: Any) -> None:
+    """The legend, above the plot and no wider, with the options of matplotlib's."""
+    handles, labels = axes.get_legend_handles_labels()
+    most = round(CHARACTERS_AN_INCH * axes.figure.bbox.width / axes.figure.dpi / options.get("ncols", 1))
     axes.figure.legend(
-        *axes.get_legend_handles_labels(), loc="outside upper left", frameon=False, handletextpad=0.6
+        handles,
+        ["\n".join(wrap(label, most)) for label in labels],
+        **{"loc": "outside upper left", "frameon": False, "handletextpad": 0.6, **options},
     )
 
 
@@ -241,6 +309,18 @@ def drawn(name: str, drawing: Drawing, width_in: float) -> str:
     Raises:
         SetupError: matplotlib is not installed.
     """
+    svg = _saved(name, drawing, width_in, "svg").decode()
+    # An id may occur only once on a page with several plots.
+    own = re.sub(r'( id="|href="#|url\(#)', rf"\g<1>{name}-{width_in:.0f}-", svg[svg.index("<svg") :])
+    return own.replace(INK, "currentColor")
+
+
+def _saved(name: str, drawing: Drawing, width_in: float, kind: str) -> bytes:
+    """A plot as a file of a kind in ``SAVED``.
+
+    Raises:
+        SetupError: matplotlib is not installed.
+    """
     try:
         import matplotlib as mpl
         from matplotlib.figure import Figure
@@ -250,13 +330,13 @@ def drawn(name: str, drawing: Drawing, width_in: float) -> str:
     style: Any = {
         "svg.fonttype": "none",
         "svg.hashsalt": f"{name} {width_in}",
-        "font.family": "sans-serif",
+        "font.family": ["sans-serif"] if kind == "svg" else _families(),
         "font.size": 10,
         "text.parse_math": False,  # names of agents may hold dollars
         **dict.fromkeys(("text.color", "axes.edgecolor", "axes.labelcolor", "xtick.color", "ytick.color"), INK),
     }
     with mpl.rc_context(style), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", "Glyph")  # a reader's fonts show the texts, not ours
+        warnings.filterwarnings("ignore", "Glyph")  # the fonts of whoever opens the file show the texts, not ours
         figure = Figure(figsize=(width_in, height_in), layout="constrained")
         axes = figure.subplots()
         axes.grid(axis="x", color=INK, alpha=0.15, linewidth=0.8)
@@ -264,9 +344,16 @@ def drawn(name: str, drawing: Drawing, width_in: float) -> str:
         axes.tick_params(length=0)
         draw(axes)
         _write_plainly(figure)
-        text = StringIO()
-        figure.savefig(text, format="svg", transparent=True, metadata={"Date": None, "Creator": None})
-    svg = text.getvalue()
-    # An id may occur only once on a page with several plots.
-    own = re.sub(r'( id="|href="#|url\(#)', rf"\g<1>{name}-{width_in:.0f}-", svg[svg.index("<svg") :])
-    return own.replace(INK, "currentColor")
+        content = BytesIO()
+        figure.savefig(content, format=kind, **SAVED[kind])
+    return content.getvalue()
+
+
+@cache
+def _families() -> list[str]:
+    """Fonts with the letters of all places: a PDF and a PNG hold what is drawn, not texts."""
+    from matplotlib.font_manager import fontManager
+
+    path = str(font(Weight.EAST_ASIAN, 10).path)
+    fontManager.addfont(path)
+    return ["DejaVu Sans", next(each.name for each in fontManager.ttflist if each.fname == path)]

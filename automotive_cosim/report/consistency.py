@@ -102,7 +102,7 @@ def _share(repeats: Repeats, share: PassShare, k: int) -> str:
     if found is None:
         return NONE
     bounds = found.interval
-    if bounds is None or bounds.low == bounds.high:  # tasks that agree do not show how much others may differ
+    if bounds is None:  # few tasks, or tasks that agree do not show how much others may differ
         tasks = len({task for task, _ in values})
         bounds = wilson(found.value * tasks, tasks)
     return f"{100 * found.value:.0f}% ({100 * bounds.low:.0f} to {100 * bounds.high:.0f})"

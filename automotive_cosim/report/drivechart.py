@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.faults import beside, clock, faults
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
-from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn
+from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Chart, Drawing
 from automotive_cosim.run.drive_row import DriveTrialRow
 
 if TYPE_CHECKING:
@@ -61,18 +61,18 @@ ANSWER_S = 8.0
 """Within this time after an act, what the driver does is the answer to it."""
 
 
-def timeline_chart(row: DriveTrialRow, timeline: Json) -> tuple[str, str]:
-    """The timeline as SVG, for a wide page and a narrow one.
+def timeline_chart(row: DriveTrialRow, timeline: Json, title: str = "") -> Chart:
+    """The timeline.
 
     Args:
         row: the drive.
         timeline: its file, see ``drives.timeline``.
+        title: of the plot.
 
     Raises:
         SetupError: matplotlib is not installed.
     """
-    wide, narrow = (drawn(row.id, _drawing(row, timeline, width_in), width_in) for width_in in (WIDE_IN, NARROW_IN))
-    return wide, narrow
+    return Chart.of(row.id, title, *(_drawing(row, timeline, width_in) for width_in in (WIDE_IN, NARROW_IN)))
 
 
 def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:

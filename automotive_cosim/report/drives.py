@@ -18,11 +18,11 @@ from automotive_cosim.drives.judge import FULL_S
 from automotive_cosim.drives.score import Score, together
 from automotive_cosim.measures.exposure import summed
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
-from automotive_cosim.report.charts import INK
+from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.drivechart import timeline_chart
 from automotive_cosim.report.policy import house_rules
 from automotive_cosim.report.results import Contestant, contestant
-from automotive_cosim.report.stats import CONFIDENCE, Interval
+from automotive_cosim.report.stats import CONFIDENCE, LEAST_CLUSTERS, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.former import former_timeline
@@ -31,8 +31,6 @@ from automotive_cosim.run.store import read_trace, trace_file
 
 DRAWS = 2000
 """Bootstrap samples of whole drives, at which the second digit of a bound is stable."""
-LEAST_DRIVES = 5
-"""Fewer drives give no interval: drives are the clusters, and so few say little about other drives."""
 SHOWN = 8
 """Maximum number of timelines on the page; all of them are written as files."""
 
@@ -161,7 +159,7 @@ EFFECTS: tuple[tuple[str, Figure, str], ...] = (
 
 
 def interval(rows: Sequence[DriveTrialRow], figure: Figure) -> Interval | None:
-    """Bounds from resampling whole drives, each with its repeats; None with fewer than ``LEAST_DRIVES``."""
+    """Bounds from resampling whole drives, each with its repeats; None with fewer than ``LEAST_CLUSTERS``."""
     return _resampled([(row, row) for row in rows], lambda picked: figure([row for row, _ in picked]))
 
 
@@ -172,7 +170,7 @@ class ScoreChange:
     before: float
     after: float
     bounds: Interval | None
-    """Of the difference in points, from resampling whole drives; None with fewer than ``LEAST_DRIVES``."""
+    """Of the difference in points, from resampling whole drives; None with fewer than ``LEAST_CLUSTERS``."""
 
     @property
     def difference(self) -> float:
@@ -211,7 +209,7 @@ def _resampled(pairs: RowPairs, figure: Callable[[RowPairs], float | None]) -> I
     for pair in pairs:
         clusters.setdefault((pair[0].family, pair[0].seed), []).append(pair)
     groups = list(clusters.values())
-    if len(groups) < LEAST_DRIVES:
+    if len(groups) < LEAST_CLUSTERS:
         return None
     rng = np.random.default_rng(0)
     found = []
@@ -293,8 +291,8 @@ def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
 
 def _intervals_told(groups: dict[Contestant, list[DriveTrialRow]]) -> str:
     if all(interval(mine, _value) is None for mine in groups.values()):
-        return f"Fewer than {LEAST_DRIVES} drives give no intervals."
-    return f"In brackets: 95 % intervals from resampling whole drives, from {LEAST_DRIVES} drives on."
+        return f"Fewer than {LEAST_CLUSTERS} drives give no intervals."
+    return f"In brackets: 95 % intervals from resampling whole drives, from {LEAST_CLUSTERS} drives on."
 
 
 def _effects(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
@@ -448,23 +446,25 @@ def _errors(rows: Sequence[DriveTrialRow]) -> Table:
 # --- the page ------------------------------------------------------------------------------------------------
 
 
-def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, tuple[str, str, str]]:
+def timelines(folder: Path, rows: Iterable[DriveTrialRow]) -> dict[str, Chart]:
     """Writes a plot for each judged drive into ``plots/``; returns those of the lowest scores, for the page.
+
+    There may be hundreds, so each is one file, as SVG.
 
     Raises:
         OSError: they cannot be written.
         UserError: a trace cannot be read.
         SetupError: the extra ``report`` is not installed.
     """
-    plots: dict[str, tuple[str, str, str]] = {}
+    plots: dict[str, Chart] = {}
     for row in sorted(rows, key=lambda row: (row.value is None, row.value or 0.0)):
         found = None if row.score is None else timeline_of(folder, row.id)
         if found is None:
             continue
-        drawn = timeline_chart(row, found)
-        write_whole(folder / "plots" / f"{row.id}.svg", drawn[0].replace("currentColor", INK))
+        plot = timeline_chart(row, found, f"{row.family}, seed {row.seed}: {contestant(row).label}")
+        write_whole(folder / "plots" / f"{row.id}.svg", plot.svg)
         if len(plots) < SHOWN:
-            plots[row.id] = (f"{row.family}, seed {row.seed}: {contestant(row).label}", *drawn)
+            plots[row.id] = plot
     return plots
 
 

@@ -12,9 +12,10 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.report import drives, findings
 from automotive_cosim.report.answer import answer
 from automotive_cosim.report.case import contrast
-from automotive_cosim.report.charts import INK, charts, require_plots
+from automotive_cosim.report.charts import Chart, charts, require_plots
 from automotive_cosim.report.consistency import consistency, varied
 from automotive_cosim.report.failures import FailureClass
+from automotive_cosim.report.files import write_files
 from automotive_cosim.report.interfaces import interfaces
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.policy import house_rules
@@ -27,9 +28,6 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
-
-Plots = Mapping[str, tuple[str, str, str]]
-"""Title, wide and narrow form of each plot."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,13 +56,7 @@ def write_report(folder: Path) -> Path:
     plots = charts(results.shared()) if results.rows else {}
     of_drives = drives.tables(results.drives)
     try:
-        for name in ("tables", "plots"):
-            (folder / name).mkdir(exist_ok=True)
-        for table in (*made, *of_drives):
-            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
-                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
-        for name, (_, wide, _) in plots.items():
-            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
+        write_files(folder, (*made, *of_drives), plots.values())
         page = folder / "report.html"
         driven = of_drives, drives.timelines(folder, results.drives)
         told = _page(results, made, plots, found, driven) if results.rows else _drives_page(results, *driven)
@@ -106,9 +98,9 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
 def _page(
     results: Results,
     made: Sequence[Table],
-    plots: dict[str, tuple[str, str, str]],
+    plots: Mapping[str, Chart],
     found: Mapping[str, FailureClass],
-    driven: tuple[Sequence[Table], Plots],
+    driven: tuple[Sequence[Table], Mapping[str, Chart]],
 ) -> str:
     numbers = {row.id: number for number, row in enumerate(results.rows)}
     sources, linked = _sources(results, made)
@@ -142,7 +134,7 @@ def _page(
     )
 
 
-def _drives_page(results: Results, made: Sequence[Table], plots: Plots) -> str:
+def _drives_page(results: Results, made: Sequence[Table], plots: Mapping[str, Chart]) -> str:
     """The page of an evaluation of drives alone."""
     rows = results.drives
     return render(

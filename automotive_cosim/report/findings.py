@@ -10,7 +10,7 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.conditions import TABLE, Condition
 from automotive_cosim.report.failures import FailureClass, failure_class
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
-from automotive_cosim.report.stats import clustered_mean, compare
+from automotive_cosim.report.stats import bracketed, clustered_mean, compare
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -93,8 +93,7 @@ def _difference(rows: Iterable[EpisodeRow], digits: int, of: Callable[[DriveFigu
     found = clustered_mean((task, value) for _, task, value in both)
     if found is None:
         return Cell(NONE)
-    bounds = found.interval
-    told = "" if bounds is None else f" ({bounds.low:+.{digits}f} to {bounds.high:+.{digits}f})"
+    told = bracketed(found.interval, f"+.{digits}f")
     return Cell(f"{found.value:+.{digits}f}{told}, n={found.count}", tuple(episode for episode, _, _ in both))
 
 
@@ -163,9 +162,7 @@ def _effect(results: Results, full: Contestant, other: Contestant, decided: bool
         return Cell(NONE)
     shared = [key for key in ones if key in others]
     ids = tuple(half.id for side in (ones, others) for key in shared for half in side[key][1])
-    bounds = found.interval
-    told = f"{found.difference:+.0%} ({bounds.low:+.0%} to {bounds.high:+.0%})"
-    return Cell(f"{told}, n={found.count}", ids)
+    return Cell(f"{found.difference:+.0%}{bracketed(found.interval, '+.0%')}, n={found.count}", ids)
 
 
 def by_label(results: Results, name: str, plural: str, of: Callable[[EpisodeRow], Sequence[str]]) -> Table:

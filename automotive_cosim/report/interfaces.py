@@ -6,7 +6,7 @@ from collections.abc import Callable, Hashable, Mapping, Sequence
 
 from automotive_cosim.contracts.given import Interface
 from automotive_cosim.report.results import Results
-from automotive_cosim.report.stats import clustered_mean, compare, mean
+from automotive_cosim.report.stats import bracketed, clustered_mean, compare, mean
 from automotive_cosim.report.summary import NONE, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -85,14 +85,13 @@ def _differences(mine: Instances, touched: Instances) -> list[Cell]:
     )
     cells = [NONE]
     if won is not None:
-        cells = [f"{won.difference:+.0%} ({won.interval.low:+.0%} to {won.interval.high:+.0%})"]
+        cells = [f"{won.difference:+.0%}{bracketed(won.interval, '+.0%')}"]
     for _, digits, of in FIGURES[:COMPARED]:
         found = clustered_mean(
             (mine[key].task, one - other)
             for key in shared
             if (one := of(mine[key])) is not None and (other := of(touched[key])) is not None
         )
-        bounds = None if found is None else found.interval
-        told = "" if bounds is None else f" ({bounds.low:+.{digits}f} to {bounds.high:+.{digits}f})"
-        cells.append(NONE if found is None else f"{found.value:+.{digits}f}{told}")
+        told = NONE if found is None else f"{found.value:+.{digits}f}{bracketed(found.interval, f'+.{digits}f')}"
+        cells.append(told)
     return [Cell(text, ids) for text in cells]

@@ -12,7 +12,7 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.report.drives import ScoreChange, score_change
 from automotive_cosim.report.results import Contestant, Results, contestant, pair_instance, pairs, read_results
-from automotive_cosim.report.stats import Comparison, Rate, compare
+from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Rate, bracketed, compare
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -278,9 +278,11 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
         ),
         tuple(rows),
         "On the instances that were judged before, in percentage points or points of score, with 95 % intervals "
-        "over tasks or drives. Drives are compared by the score of all of them together, and a drive is lost if "
+        f"over tasks or drives, from {LEAST_CLUSTERS} of them on. Drives are compared by the score of all of them "
+        "together, and a drive is lost if "
         f"its score fell. Worse: success or score fell by more than {100 * allowed:g} points, or something is no "
-        "longer judged. Not distinguishable: the interval contains zero. Incomplete: it did not fall, but "
+        "longer judged. Not distinguishable: the interval contains zero, or there is none. "
+        "Incomplete: it did not fall, but "
         "something planned was not run, or it is not known what was planned. Judged: out of what was planned.",
         heads=3,
     )
@@ -301,12 +303,8 @@ def _difference(found: Comparison | ScoreChange | None) -> str:
     """With its interval, in percentage points of success or points of score."""
     if found is None:
         return "–"
-    if isinstance(found, ScoreChange):
-        bounds = found.bounds
-        beside = "" if bounds is None else f" ({bounds.low:+.0f} to {bounds.high:+.0f})"
-        return f"{100 * found.difference:+.0f} points{beside}"
-    bounds = found.interval
-    return f"{100 * found.difference:+.1f} points ({100 * bounds.low:+.0f} to {100 * bounds.high:+.0f})"
+    digits = 0 if isinstance(found, ScoreChange) else 1
+    return f"{100 * found.difference:+.{digits}f} points{bracketed(found.interval, '+.0f', 100)}"
 
 
 def sentence(found: Sequence[SuccessChange], allowed: float) -> str:

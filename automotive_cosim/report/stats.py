@@ -15,6 +15,8 @@ from statistics import NormalDist
 import numpy as np
 
 CONFIDENCE = 0.95
+LEAST_CLUSTERS = 5
+"""Fewer clusters (tasks, drives) give no interval of a mean or difference, because they say little of others."""
 DRAWS = 10_000
 """Number of bootstrap samples, at which the third digit of a bound is stable."""
 
@@ -25,6 +27,11 @@ class Interval:
 
     low: float
     high: float
+
+
+def bracketed(interval: Interval | None, form: str, factor: float = 1.0) -> str:
+    """Bounds to put behind a figure, as `` (+1.5 to +3.5)``, in a format such as ``+.1f``; empty without any."""
+    return "" if interval is None else f" ({factor * interval.low:{form}} to {factor * interval.high:{form}})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +64,10 @@ class Comparison:
     only_first: int
     only_second: int
     neither: int
-    interval: Interval
-    """Interval of the difference, from resampling tasks."""
+    clusters: int
+    """Tasks that the instances are of."""
+    interval: Interval | None
+    """Interval of the difference, from resampling tasks; None with fewer than ``LEAST_CLUSTERS``."""
 
     @property
     def count(self) -> int:
@@ -203,7 +212,10 @@ def compare(
         only_first=only_first,
         only_second=only_second,
         neither=cells.count((False, False)),
-        interval=_bootstrap(list(sums.values()), seed) or _newcombe(cells, len(sums)),
+        clusters=len(sums),
+        interval=None
+        if len(sums) < LEAST_CLUSTERS
+        else _bootstrap(list(sums.values()), seed) or _newcombe(cells, len(sums)),
     )
 
 
@@ -214,7 +226,7 @@ class Mean:
     value: float
     count: int
     interval: Interval | None
-    """Interval from resampling clusters; None with only one cluster."""
+    """Interval from resampling clusters; None with fewer than ``LEAST_CLUSTERS``, or if all agree."""
 
 
 def clustered_mean(values: Iterable[tuple[Hashable, float]], seed: int = 0) -> Mean | None:
@@ -232,9 +244,7 @@ def clustered_mean(values: Iterable[tuple[Hashable, float]], seed: int = 0) -> M
         return None
     total, count = (sum(each[place] for each in sums.values()) for place in (0, 1))
     found = total / count
-    if len(sums) == 1:
-        return Mean(found, int(count), None)
-    return Mean(found, int(count), _bootstrap(list(sums.values()), seed) or Interval(found, found))
+    return Mean(found, int(count), None if len(sums) < LEAST_CLUSTERS else _bootstrap(list(sums.values()), seed))
 
 
 def mean(values: Iterable[float | None]) -> float | None:

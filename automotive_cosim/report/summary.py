@@ -12,7 +12,7 @@ from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.report.published import EDITION_2026, EDITION_2026_ROWS, PAPER, PAPER_COLUMNS, PAPER_ROWS
 from automotive_cosim.report.results import Contestant, Results, not_judged, pairs
-from automotive_cosim.report.stats import Comparison, Rate, compare, mean, rate
+from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Rate, bracketed, compare, mean, rate
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.trial_row import TrialRow
@@ -297,21 +297,20 @@ def comparisons(results: Results) -> Table:
             ones, others = judged[first], judged[second]
             shared = [key for key in ones if key in others]
             ids = tuple(ones[key].id for key in shared) + tuple(others[key].id for key in shared)
-            interval = found.interval
             rows.append(
                 (
                     first.label,
                     second.label,
                     str(found.count),
-                    Cell(f"{found.difference:+.0%} ({interval.low:+.0%} to {interval.high:+.0%})", ids),
+                    Cell(f"{found.difference:+.0%}{bracketed(found.interval, '+.0%')}", ids),
                     f"{found.only_first} : {found.only_second}",
                 )
             )
     columns = ("First", "Second", "Instances", "Difference", "Won by only one")
     note = (
         "Success of the first minus that of the second on the same task, half, scenario, seed and repeat, with a "
-        "95 % bootstrap interval over tasks, or Newcombe's if all tasks agree; not corrected for the number of "
-        "comparisons."
+        f"95 % bootstrap interval over tasks, from {LEAST_CLUSTERS} tasks on, or Newcombe's if all tasks agree; "
+        "not corrected for the number of comparisons."
     )
     return Table("comparisons", "Compared on the same instances", columns, tuple(rows), note, heads=2)
 

@@ -63,6 +63,8 @@ class Progress(Generic[R]):
     """The row of the job that has just ended; None at the start, and while all are running."""
     doing: tuple[str, ...] = ()
     """What workers say that they are doing for their jobs, each once."""
+    budget: str = ""
+    """What is left of the budget; empty without one."""
     stopped: str = ""
     """Why the rest is not run; empty if it is run or nothing is left."""
 
@@ -101,7 +103,9 @@ def run_plan(
     ):
         opener = partial(worker.trials, pictures, meter)
         limit = meter if budget.is_limited else None
-        return run_jobs(jobs, store, opener, failed, executor=executor, retries=retries, limit=limit, tell=tell)
+        return run_jobs(
+            jobs, store, opener, failed, executor=executor, retries=retries, limit=limit, budget=budget, tell=tell
+        )
 
 
 def run_jobs(
@@ -113,6 +117,7 @@ def run_jobs(
     executor: Executor = Processes(),  # noqa: B008, frozen
     retries: int = 2,
     limit: MeterHandle | None = None,
+    budget: Budget = Budget(),  # noqa: B008, frozen
     tell: Callable[[Progress[R]], None] = lambda progress: None,
 ) -> Progress[R]:
     """Runs the jobs that have no row yet, or the row of an error.
@@ -125,12 +130,13 @@ def run_jobs(
         executor: where to run them.
         retries: how many times a job is retried after an error before its row is written.
         limit: the meter of its budget, if it has one. Once it is spent, the rest is not run.
+        budget: what the meter counts against, to tell what is left of it.
         tell: called at the start, after every job, and in between if that takes long.
 
     Raises:
         as ``run_plan``.
     """
-    batch = _Batch(store, jobs, opener, failed, executor, retries, tell, limit)
+    batch = _Batch(store, jobs, opener, failed, executor, retries, tell, limit, budget)
     try:
         batch.run()
     finally:
@@ -150,15 +156,26 @@ class _Place(Generic[J, R]):
     """Whether it has to warm up the simulation for the job."""
     warm: SimulationKey | None = None
     """The simulation it ran last."""
+    warm_up_s: float | None = None
+    """How long the warm-up for the job took, as the worker told its beginning and end."""
+    is_warming: bool = False
 
     def give(self, job: J) -> None:
         self.is_cold = self.warm != job.simulation
         self.job, self.since_s, self.warm = job, time.monotonic(), job.simulation
+        self.warm_up_s, self.is_warming = None, False
         self.worker.give(job)
 
+    def note_stage(self) -> None:
+        """Takes note of how far the worker is."""
+        was_warming, self.is_warming = self.is_warming, self.worker.stage.is_warm_up
+        if was_warming and not self.is_warming:
+            self.warm_up_s = time.monotonic() - self.since_s
+
     def turn(self, job: J) -> JobTurn:
-        """How long it has worked on its job."""
-        return JobTurn(job, self.is_cold, time.monotonic() - self.since_s)
+        """How long it has worked on its job, and how far it is."""
+        seconds = time.monotonic() - self.since_s
+        return JobTurn(job, self.is_cold, seconds, self.warm_up_s, self.is_warming, self.worker.stage.share)
 
 
 @dataclass(slots=True)
@@ -190,6 +207,7 @@ class _Batch(Generic[J, R]):
         retries: int,
         tell: Callable[[Progress[R]], None],
         limit: MeterHandle | None,
+        budget: Budget,
     ) -> None:
         self._store = store
         self._opener = opener
@@ -199,6 +217,8 @@ class _Batch(Generic[J, R]):
         self._retries = retries
         self._tell = tell
         self._limit = limit
+        self._budget = budget
+        self._spent_before = Spent() if limit is None else limit.spent()
         self._stopped = ""
         self._began_s = time.monotonic()
         self._ran = self._given_up = self._stillborn = 0
@@ -220,7 +240,8 @@ class _Batch(Generic[J, R]):
                 if row.error is None:
                     earlier.append(JobTurn(job, False, row.wall_seconds))
         untried = {each: alike[0].simulation for each, alike in self._alike.items() if each not in tried}
-        self._pace = Pace(untried, earlier)
+        weights = {job.simulation[0]: job.warm_up_weight for job in jobs}
+        self._pace = Pace(untried, earlier, weights)
 
     def run(self) -> None:
         self._tell(self.progress)
@@ -241,7 +262,7 @@ class _Batch(Generic[J, R]):
 
     @property
     def progress(self) -> Progress[R]:
-        counts = self._counts
+        counts, spent = self._counts, None if self._limit is None else self._limit.spent()
         return Progress(
             planned=len(self._jobs),
             done=counts.closed + self._given_up,
@@ -250,17 +271,24 @@ class _Batch(Generic[J, R]):
             errors=counts.errors,
             ran=self._ran,
             seconds=time.monotonic() - self._began_s,
-            left_s=self._expected_s(),
+            left_s=self._expected_s(spent),
+            budget="" if spent is None else spent.left_of(self._budget),
             ended=self._newest,
             stopped=self._stopped,
-            doing=tuple(dict.fromkeys(place.worker.doing for place in self._places if place.job)),
+            doing=tuple(dict.fromkeys(place.worker.stage.words for place in self._places if place.job)),
         )
 
-    def _expected_s(self) -> float | None:
+    def _expected_s(self, spent: Spent | None) -> float | None:
+        """Until everything has ended, or the budget is spent at the present rate."""
         running = [place.turn(place.job) for place in self._places if place.job]
         idle = [place.warm for place in self._places if not place.job]
         idle += [None] * (self._executor.count - len(self._places))
-        return self._pace.left_s(self._queue.counts(), running, idle)
+        left_s = self._pace.left_s(self._queue.counts(), running, idle)
+        if left_s is None or spent is None:
+            return left_s
+        used = spent.share_of(self._budget)
+        since = used - self._spent_before.share_of(self._budget)
+        return min(left_s, (time.monotonic() - self._began_s) * (1 - used) / since) if since else left_s
 
     def _hand_out(self) -> None:
         for place in self._places:
@@ -299,6 +327,7 @@ class _Batch(Generic[J, R]):
         if answer is None:
             self._stillborn = 0
             if place.job is not None:
+                place.note_stage()
                 self._tell(replace(self.progress, ended=None))
         elif place.job is not None:
             self._turn_over(place, place.job, answer)

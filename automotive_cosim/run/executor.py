@@ -11,6 +11,7 @@ from typing import Any, Protocol, TypeVar
 from automotive_cosim.run.meter import MeterHandle, Spent
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
+from automotive_cosim.run.stage import JobStage
 
 
 class Job(Protocol):
@@ -34,6 +35,11 @@ class Job(Protocol):
     @property
     def kind(self) -> Hashable:
         """Determines how long it takes in a given simulation: jobs of one kind take about the same time."""
+        ...
+
+    @property
+    def warm_up_weight(self) -> float:
+        """How long the warm-up of its simulation takes, as a share of what it takes in a town."""
         ...
 
     @property
@@ -61,6 +67,11 @@ class LoneJob:
     def kind(self) -> Hashable:
         """See ``Job``: one for all."""
         return ""
+
+    @property
+    def warm_up_weight(self) -> float:
+        """See ``Job``: all are of one scenario."""
+        return 1.0
 
 
 J = TypeVar("J", bound=Job)
@@ -101,8 +112,8 @@ class Worker(Protocol[J_contra, R_co]):
         ...
 
     @property
-    def doing(self) -> str:
-        """What it last said that it does for its job, in words; empty if nothing."""
+    def stage(self) -> JobStage:
+        """How far it last said that it is with its job."""
         ...
 
     @property
@@ -116,7 +127,7 @@ class Worker(Protocol[J_contra, R_co]):
 
     def answer(self) -> R_co | CannotWrite | None:
         """Its answer: the row of its job, whose files are in place, or None if it has only become ready,
-        or said what it is doing.
+        or said how far it is.
 
         Raises:
             LostError: it has died.

@@ -15,14 +15,13 @@ from automotive_cosim.contracts.given import PromptLength, See
 from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN
 from automotive_cosim.models.remote import Settings
-from automotive_cosim.run.jobs import DriveJob, TrialJob
+from automotive_cosim.run.jobs import GRID_WARM_UP_S, WARM_UP_S, DriveJob, TrialJob
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.trial_row import TrialRow
 
 KNOWN_FROM = 3
 """Trials of a contestant from which its own figures are taken."""
 GRID_EPISODE_S, EPISODE_S, DRIVE_S = 0.5, 2.0, 20.0
-GRID_WARM_UP_S, WARM_UP_S = 2.0, 10.0
 """Seconds of one worker on an idle machine, without the model's answers."""
 TIME_WITHIN = 2.0
 """The time is told within this factor: machines differ by as much."""

@@ -28,6 +28,8 @@ from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
 NO_MODEL = "none"
+GRID_WARM_UP_S, WARM_UP_S = 2.0, 10.0
+"""Seconds of one worker on an idle machine for a warm-up of the grid, and of a town."""
 HUMAN = "human"
 """The agent that is a person; a code name replaces the model."""
 
@@ -110,6 +112,11 @@ class PlannedJob(ABC, Generic[SetupT]):
     def simulation(self) -> tuple[str, int]:
         """The warm simulation that it starts from: scenario and seed."""
         return self.scenario, self.setup.seed
+
+    @property
+    def warm_up_weight(self) -> float:
+        """See ``Job``."""
+        return GRID_WARM_UP_S / WARM_UP_S if self.scenario == "grid" else 1.0
 
     @property
     @abstractmethod
@@ -250,8 +257,8 @@ class DriveJob(PlannedJob[DriveSetup]):
 
     @property
     def kind(self) -> Hashable:
-        """Agent and model, which determine how long it takes."""
-        return "drive", self.setup.agent, self.setup.model
+        """Agent and model, which determine how long it takes; of agents without a model, the drive itself does."""
+        return "drive", self.setup.model, "" if self.setup.model == NO_MODEL else self.setup.agent
 
     @property
     def instance(self) -> Hashable:

@@ -33,6 +33,23 @@ class Spent:
     tokens: int = 0
     usd: float = 0.0
 
+    def share_of(self, budget: Budget) -> float:
+        """The share of a budget that is spent, 0 to 1; of both limits, the greater one."""
+        shares = (
+            self.tokens / budget.tokens if budget.tokens else 0.0,
+            self.usd / budget.usd if budget.usd else 0.0,
+        )
+        return min(1.0, max(shares))
+
+    def left_of(self, budget: Budget) -> str:
+        """What is left of a budget, as ``38,000 of 50,000 tokens left``; empty without a limit."""
+        told = []
+        if budget.tokens is not None:
+            told.append(f"{max(0, budget.tokens - self.tokens):,} of {budget.tokens:,} tokens")
+        if budget.usd is not None:
+            told.append(f"${max(0.0, budget.usd - self.usd):,.2f} of ${budget.usd:,.2f}")
+        return f"{' and '.join(told)} left" if told else ""
+
 
 class MeterHandle(Protocol):
     """The meter, wherever it is; it can be sent to a worker."""

@@ -3,8 +3,9 @@
 A worker that changes to another simulation warms it up first: that job is *cold* and takes the warm-up on top of
 its own time. The own time depends on the kind of job (which agent acts) and on the scenario: it is expected to be
 the mean over the warm jobs of that kind in that scenario, drawn towards the mean of the kind while few are known.
-A warm-up takes what the cold jobs took beyond that. A situation that does not arise costs its time once for all
-jobs that wait for it. With these times the rest is played through the way the queue will hand it out.
+A warm-up takes what the cold jobs took beyond that, if its end is not told. Where workers tell how far they are, a
+job that is half done counts as half a job, and so does a warm-up. A situation that does not arise costs its time
+once for all jobs that wait for it. With these times the rest is played through the way the queue will hand it out.
 """
 
 from __future__ import annotations
@@ -21,14 +22,18 @@ from automotive_cosim.run.queue import SimulationKey, next_simulation
 
 TRIALS = 3
 """This many jobs of a kind must have ended in a warm simulation before it is known how long the others take."""
+LEAST_SHARE, LEAST_S = 0.1, 15.0
+"""If they tell how far they are, so much of one must be done instead, and so many seconds be spent on it: the first
+seconds say little."""
 DRAWN_BY = 2.0
 """The mean over all scenarios weighs as much as this many jobs of one; so does that over all earlier starts, which
 may have been on another machine."""
 ARISEN = 8.0
 """Most situations arise: this many count as having arisen before anything is known, of all and of each scenario."""
 HALF = 0.5
-"""A running job counts as half a job with its time so far, since on average it is half done: the short ones end
-first and would make the mean too small. One that is overdue is expected to take half as long again."""
+"""A running job that does not tell how far it is counts as half a job with its time so far, since on average it is
+half done: the short ones end first and would make the mean too small. One that is overdue is expected to take half
+as long again."""
 ODD = 3.0
 """A running job counts at most this many times the mean, as its situation may not arise."""
 STEPS = 200
@@ -46,29 +51,53 @@ class JobTurn:
     """Whether the worker had to warm up its simulation."""
     seconds: float
     """Seconds so far, or in total."""
+    warm_up_s: float | None = None
+    """Those that went into the warm-up; None if its end has not been told."""
+    is_warming: bool = False
+    """Whether it is told to be still in the warm-up."""
+    share: float | None = None
+    """How much of the warm-up is done, or after it of the job itself, 0 to 1; None if it is not told."""
 
     @property
     def scenario(self) -> str:
         """Where it takes place."""
         return self.job.simulation[0]
 
+    @property
+    def own_share(self) -> float | None:
+        """How much of the job itself is done; None if it is not told, or its warm-up goes on."""
+        return None if self.is_warming else self.share
+
+    @property
+    def own_s(self) -> float | None:
+        """Seconds spent on the job itself; None if they are not known."""
+        if not self.is_cold:
+            return self.seconds
+        return None if self.warm_up_s is None else self.seconds - self.warm_up_s
+
 
 class Pace:
     """Is told how long each job took, and estimates how long the others will take."""
 
-    def __init__(self, untried: Mapping[Hashable, SimulationKey], earlier: Iterable[JobTurn]) -> None:
+    def __init__(
+        self, untried: Mapping[Hashable, SimulationKey], earlier: Iterable[JobTurn], weights: Mapping[str, float]
+    ) -> None:
         """Knows only what was measured before.
 
         Args:
             untried: for each situation of which it is not known whether it arises, its simulation.
             earlier: jobs of earlier starts. The longest of each simulation is taken for a cold one.
+            weights: of the warm-up in each scenario, see ``Job``.
         """
+        self._weights = weights
         self._untried = dict(untried)
         self._own: dict[Hashable, _Means] = defaultdict(_Means)
         self._search = _Means(drawn_by=ARISEN)
         self._search.add("", 0.0, ARISEN)
         self._cold: list[JobTurn] = []
         self._has_begun = False
+        self._telling: set[Hashable] = set()
+        """Kinds of jobs that tell how far they are."""
         for (kind, scenario), seconds in _warm(earlier).items():
             self._own[kind].add(scenario, DRAWN_BY * fmean(seconds), DRAWN_BY)
 
@@ -86,8 +115,8 @@ class Pace:
             return
         if turn.is_cold:
             self._cold.append(turn)
-        else:
-            self._own[turn.job.kind].add(turn.scenario, turn.seconds)
+        if turn.own_s is not None:
+            self._own[turn.job.kind].add(turn.scenario, turn.own_s)
 
     def left_s(
         self, waiting: Waiting, running: Sequence[JobTurn], idle: Sequence[SimulationKey | None]
@@ -99,9 +128,9 @@ class Pace:
             running: the jobs that workers are running.
             idle: the warm simulation of each other worker, including those yet to be started.
         """
-        if not self._knows(waiting, {*idle, *(turn.job.simulation for turn in running)}):
+        if not self._knows(waiting, running, {*idle, *(turn.job.simulation for turn in running)}):
             return None
-        expected = _Expected(self._own, self._cold, running)
+        expected = _Expected(self._own, self._cold, running, self._weights)
         untried = Counter(self._untried.values())
         work = {
             simulation: _Work(
@@ -116,15 +145,24 @@ class Pace:
         places += [_Worker(0.0, simulation) for simulation in idle]
         return _played_s(work, places)
 
-    def _knows(self, waiting: Waiting, held: Container[SimulationKey | None]) -> bool:
+    def _knows(self, waiting: Waiting, running: Sequence[JobTurn], held: Container[SimulationKey | None]) -> bool:
         """Whether there is a basis. A job alone in its simulation is cold, so only the sum of its times matters."""
+        told: dict[Hashable, _Means] = defaultdict(_Means)
+        for turn in running:
+            if turn.own_share is not None and turn.own_s is not None:
+                told[turn.job.kind].add(turn.scenario, turn.own_s, turn.own_share)
         needed: Counter[Hashable] = Counter()
         for simulation, kinds in waiting.items():
             if simulation in held or sum(kinds.values()) > 1:
                 needed.update(kinds)
-        return self._has_begun and all(
-            self._own[kind].count >= min(TRIALS, count) for kind, count in needed.items()
-        )
+
+        def is_known(kind: Hashable) -> bool:
+            ended, now = self._own[kind], told[kind]
+            is_told = ended.count + now.count >= LEAST_SHARE and ended.total_s + now.total_s >= LEAST_S
+            return ended.count >= min(TRIALS, max(1, needed[kind])) or (kind in self._telling and is_told)
+
+        self._telling.update(told)
+        return all(map(is_known, needed)) and (self._has_begun or any(map(is_known, tuple(told))))
 
 
 @dataclass(slots=True)
@@ -164,15 +202,29 @@ def _warm(turns: Iterable[JobTurn]) -> dict[tuple[Hashable, str], list[float]]:
 class _Expected:
     """How long jobs and warm-ups are expected to take."""
 
-    def __init__(self, own: Mapping[Hashable, _Means], cold: Sequence[JobTurn], running: Sequence[JobTurn]) -> None:
-        self._own = {kind: deepcopy(means) for kind, means in own.items() if means.count}
-        for turn in running:
-            if not turn.is_cold and turn.job.kind in self._own:
-                most_s = ODD * own[turn.job.kind].of(turn.scenario)
-                self._own[turn.job.kind].add(turn.scenario, min(turn.seconds, most_s), HALF)
+    def __init__(
+        self,
+        own: Mapping[Hashable, _Means],
+        cold: Sequence[JobTurn],
+        running: Sequence[JobTurn],
+        weights: Mapping[str, float],
+    ) -> None:
+        self._weights = weights
+        self._own = defaultdict(_Means, {kind: deepcopy(means) for kind, means in own.items() if means.count})
         self._warm_ups = _Means()
-        for turn in [turn for turn in cold if turn.job.kind in self._own] or cold:
-            self._warm_ups.add(turn.scenario, max(0.0, turn.seconds - self.own_s(turn.job.kind, turn.scenario)))
+        for turn in running:
+            kind, scenario = turn.job.kind, turn.scenario
+            if turn.is_warming and turn.share is not None:
+                self._warm_ups.add(scenario, turn.seconds / weights[scenario], turn.share)
+            elif turn.own_share is not None and turn.own_s is not None:
+                self._own[kind].add(scenario, turn.own_s, turn.own_share)
+            elif not turn.is_cold and kind in self._own:
+                self._own[kind].add(scenario, min(turn.seconds, ODD * own[kind].of(scenario)), HALF)
+        told = [turn for turn in cold if turn.warm_up_s is not None]
+        for turn in told or [turn for turn in cold if turn.job.kind in self._own] or cold:
+            rest_s = max(0.0, turn.seconds - self.own_s(turn.job.kind, turn.scenario))
+            warm_up_s = rest_s if turn.warm_up_s is None else turn.warm_up_s
+            self._warm_ups.add(turn.scenario, warm_up_s / weights[turn.scenario])
 
     def own_s(self, kind: Hashable, scenario: str) -> float:
         """A job's time in a warm simulation; zero while nothing is known, so that all counts as warm-up."""
@@ -180,12 +232,16 @@ class _Expected:
 
     def warm_up_s(self, scenario: str) -> float:
         """Additional seconds of a cold job."""
-        return self._warm_ups.of(scenario)
+        return self._weights[scenario] * self._warm_ups.of(scenario)
 
     def rest_s(self, turn: JobTurn) -> float:
         """Remaining seconds of a running job."""
-        takes_s = self.own_s(turn.job.kind, turn.scenario)
-        takes_s += self.warm_up_s(turn.scenario) if turn.is_cold else 0.0
+        own_s, warm_up_s = self.own_s(turn.job.kind, turn.scenario), self.warm_up_s(turn.scenario)
+        if turn.is_warming and turn.share is not None:
+            return (1 - turn.share) * warm_up_s + own_s
+        if turn.own_share is not None and turn.own_s is not None:  # its own pace counts as far as it is
+            return (1 - turn.own_share) * ((1 - turn.own_share) * own_s + turn.own_s)
+        takes_s = own_s + (warm_up_s if turn.is_cold else 0.0)
         return max(takes_s - turn.seconds, HALF * turn.seconds)
 
 

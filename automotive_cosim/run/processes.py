@@ -19,7 +19,7 @@ from automotive_cosim.agents.leftovers import children, end_all, strangers, take
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R
 from automotive_cosim.run.meter import Meter, MeterHandle, Spent, served
 from automotive_cosim.run.settings import Budget
-from automotive_cosim.run.stage import telling
+from automotive_cosim.run.stage import JobStage, telling
 
 if TYPE_CHECKING:
     from multiprocessing.context import ForkServerContext, SpawnContext
@@ -61,13 +61,6 @@ class _Ready:
     """Says that a process has started and can take a job."""
 
 
-@dataclass(frozen=True, slots=True)
-class _Doing:
-    """Says what a process does for its job."""
-
-    words: str
-
-
 class _Process(Generic[J, R]):
     def __init__(self, opener: Opener[J, R], folder: Path) -> None:
         context = _context()
@@ -79,20 +72,20 @@ class _Process(Generic[J, R]):
         self._process.start()
         theirs.close()
         self.is_ready = False
-        self.doing = ""
+        self.stage = JobStage()
 
     @property
     def handles(self) -> Sequence[Any]:
         return self._pipe, self._process.sentinel
 
     def give(self, job: J) -> None:
-        self.doing = ""
+        self.stage = JobStage()
         with suppress(OSError):
             self._pipe.send(job)
 
     def answer(self) -> R | CannotWrite | None:
         try:
-            answer: R | CannotWrite | _Ready | _Doing | None = self._pipe.recv() if self._pipe.poll() else None
+            answer: R | CannotWrite | _Ready | JobStage | None = self._pipe.recv() if self._pipe.poll() else None
         except (EOFError, OSError):
             answer = None
         if answer is None:
@@ -101,8 +94,8 @@ class _Process(Generic[J, R]):
         if isinstance(answer, _Ready):
             self.is_ready = True
             return None
-        if isinstance(answer, _Doing):
-            self.doing = answer.words
+        if isinstance(answer, JobStage):
+            self.stage = answer
             return None
         return answer
 
@@ -141,7 +134,7 @@ def _work(jobs: Connection, opener: Opener[J, R], folder: Path, environment: Map
     os.environ.update(environment)
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    with opener() as run, telling(lambda words: jobs.send(_Doing(words))):
+    with opener() as run, telling(jobs.send):
         jobs.send(_Ready())
         while (job := jobs.recv()) is not None:
             try:

@@ -136,11 +136,11 @@ def screenshot(folder: Path, step: int) -> Path:
     return folder / "screenshots" / f"step_{step:03d}.png"
 
 
-def write_whole(path: Path, text: str) -> None:
-    """Writes a file of plain text completely or not at all; an error names the file, and not its draft."""
+def write_whole(path: Path, content: str | bytes) -> None:
+    """Writes a file, a text as plain text, completely or not at all; an error names the file, and not its draft."""
     draft = path.with_name(f".{path.name}.part")
     try:
-        draft.write_text(plain(text), encoding="utf-8", newline="\n")
+        draft.write_bytes(content if isinstance(content, bytes) else plain(content).encode())
         draft.replace(path)
     except OSError as error:
         raise OSError(error.errno, error.strerror, str(path)) from error

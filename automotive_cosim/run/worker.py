@@ -26,7 +26,7 @@ from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.stage import StageObserver
+from automotive_cosim.run.stage import DriveStageObserver, StageObserver
 from automotive_cosim.run.store import write_trace
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
@@ -148,7 +148,7 @@ def _driven(
 ) -> _Kept:
     recorder = DriveRecorder(folder / "pictures" / job.id)
     road = RoadRecorder(recorder.folder, job.setup.about)
-    everyone = (*observers, StageObserver(), *(() if pictures is Pictures.NONE else (recorder, road)))
+    everyone = (*observers, DriveStageObserver(), *(() if pictures is Pictures.NONE else (recorder, road)))
     with closing(recorder), closing(road):
         record = run_drive(job.planned(), job.setup, agent, simulations=simulations, observers=everyone)
 

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from typing import TYPE_CHECKING
 
-from automotive_cosim.errors import SetupError
-from automotive_cosim.report.charts import NARROW_IN, PALETTE, WIDE_IN, drawn, legend
+from automotive_cosim.report.charts import PALETTE, Chart, Drawing, charted, is_installed, legend
 from automotive_cosim.safety.findings import judged
 from automotive_cosim.safety.hunt import Hunt
 from automotive_cosim.safety.space import FactorRange
@@ -19,15 +17,16 @@ MOST_PARTS, POINTS_A_PART = 12, 4
 """Parts of a range whose means are drawn at most, and samples for each."""
 
 
-def curves(found: Hunt) -> dict[str, tuple[str, str, str]]:
-    """A plot for each ordered number: title, SVG for a wide page, SVG for a narrow one; none without matplotlib."""
-    made: dict[str, tuple[str, str, str]] = {}
-    with suppress(SetupError):
-        for factor in found.space.factors:
-            if isinstance(factor, FactorRange) and factor.is_ordered and judged(found.samples):
-                wide, narrow = (_curve(found, factor, width_in) for width_in in (WIDE_IN, NARROW_IN))
-                made[factor.name] = f"Margin by {factor.name}", wide, narrow
-    return made
+def curves(found: Hunt) -> dict[str, Chart]:
+    """A plot for each ordered number; none without matplotlib."""
+    if not is_installed():
+        return {}
+    ordered = [each for each in found.space.factors if isinstance(each, FactorRange) and each.is_ordered]
+    return charted(
+        {f"curve-{each.name}": (f"Margin by {each.name}", _curve(found, each)) for each in ordered}
+        if judged(found.samples)
+        else {}
+    )
 
 
 def means(found: Hunt, factor: FactorRange) -> list[tuple[float, float]]:
@@ -41,7 +40,7 @@ def means(found: Hunt, factor: FactorRange) -> list[tuple[float, float]]:
     return [((part + 0.5) / parts, sum(group) / len(group)) for part, group in sorted(groups.items())]
 
 
-def _curve(found: Hunt, factor: FactorRange, width_in: float) -> str:
+def _curve(found: Hunt, factor: FactorRange) -> Drawing:
     samples = judged(found.samples)
 
     def draw(axes: Axes) -> None:
@@ -63,4 +62,4 @@ def _curve(found: Hunt, factor: FactorRange, width_in: float) -> str:
         axes.set_ylabel("margin")
         legend(axes)
 
-    return drawn(f"curve-{factor.name}", (HEIGHT_IN, draw), width_in)
+    return HEIGHT_IN, draw

@@ -163,6 +163,8 @@ class Space:
     """The kind of event, or words of what the road tells, that shows that it has happened."""
     sources: tuple[str, ...] = ()
     """Where the situation and its figures come from; the rest of the ranges is our choice."""
+    note: str = ""
+    """What to know before it is searched."""
 
     @property
     def nominal(self) -> SearchPoint:
@@ -211,6 +213,7 @@ class _SpaceTable:
     about: str = ""
     occurs: str = ""
     sources: tuple[str, ...] = ()
+    note: str = ""
 
 
 def space_file(name: str) -> Path:
@@ -246,7 +249,7 @@ def read_space(path: Path) -> Space:
     if misplaced:
         of = "drives" if "task" in names else "tasks"
         raise UserError(f"{path}: {', '.join(misplaced)} can be varied for {of} alone; remove it")
-    return Space(made, table.failure, table.about, table.occurs, table.sources)
+    return Space(made, table.failure, table.about, table.occurs, table.sources, table.note)
 
 
 def _factor(document: Document, name: str, given: Any) -> Factor:

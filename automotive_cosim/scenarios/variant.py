@@ -42,13 +42,26 @@ def check_demand(configuration: Configuration) -> None:
         UserError: it has stops or persons, or stands in additional files.
     """
     for option, pattern in (("route-files", NOT_TAKEN), ("additional-files", DEMAND)):
-        for path in configuration.files.get(option, ()):
-            with files.opened(path) as file:
-                found = pattern.search(file.read())
-            if found:
-                raise UserError(
-                    f"{path} has <{found[1].decode()}>: only vehicles in route files can change routes; remove it"
-                )
+        given = configuration.files.get(option, ())
+        found = {path: element for path in given if (element := _element(path, pattern))}
+        if found:
+            named = " and ".join(f"{path.name} has <{element}>" for path, element in found.items())
+            left = [path.name for path in given if path not in found]
+            if option == "route-files" and not left:
+                how = "put the vehicles without stops into a route file of their own, and name that alone"
+            else:
+                how = f"name only {', '.join(left)} as {option}" if left else f"leave out {option}"
+            raise UserError(
+                f"{named}: only vehicles without stops, in route files, can change routes; in a copy of "
+                f"{configuration.path}, {how}"
+            )
+
+
+def _element(path: Path, pattern: re.Pattern[bytes]) -> str:
+    """The name of the first element that a pattern finds in a file; empty without one."""
+    with files.opened(path) as file:
+        found = pattern.search(file.read())
+    return found[1].decode() if found else ""
 
 
 def with_fixed_routes(scenario: Scenario) -> Scenario:

@@ -66,13 +66,14 @@ def decision_map(folder: Path, name: str) -> Json:
     point = next((each for each in all_decisions(study.rows) if each.id == name), None)
     if point is None or not point.decision.ways:
         raise NotHereError(f"there are no routes of a decision {name!r}; older studies did not keep them")
-    edges = _network(study.plan.scenario).edges
+    network = _network(study.plan.scenario)
+    edges = network.edges
     ways = [
         [place for edge in way if edge in edges for place in edges[edge].shape_m] for way in point.decision.ways
     ]
     xs, ys = ([place[axis] for way in ways for place in way] for axis in (0, 1))
     left, right, bottom, top = min(xs) - AROUND_M, max(xs) + AROUND_M, min(ys) - AROUND_M, max(ys) + AROUND_M
-    shapes = (edge.shape_m for edge in edges.values())
+    shapes = (*(edge.shape_m for edge in edges.values()), *network.joints_m)
     near = (shape for shape in shapes if any(left < x < right and bottom < y < top for x, y in shape))
     return {
         "box": [round(each) for each in (left, bottom, right, top)],

@@ -11,7 +11,7 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.stage import doing
+from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.run.store import opened
 from automotive_cosim.studies.drive import planned, run_drive
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
@@ -127,18 +127,29 @@ class _Warm:
 
     def _at(self, job: StudyJob) -> tuple[Forked, Sequence[TrafficSummary]]:
         """The traffic at the departure, and its measurements so far."""
+        cold_s: float | None = None
         if self._simulation is None or self._key != job.simulation or job.departure_s < self._now_s:
             self.close()
             scene = job.plan.scene(job.share)
-            doing("warming up traffic")
-            self._simulation = Forked(scene, job.seed, allow_unprojected=True)
+            cold_s = scene.sumo.warm_up_s
+            total_s = cold_s + job.departure_s
+            self._simulation = Forked(
+                scene, job.seed, lambda done_s, _: warming_up(done_s, total_s), allow_unprojected=True
+            )
             self._simulation.watch(consumptions=job.plan.emissions, tracks=job.plan.trajectories)
             if job.plan.placebo_every or job.plan.draws.stop:
                 self._simulation.fresh()  # here, so that it does not depend on which departures this worker drives
             self._key, self._now_s, self._pulses = job.simulation, 0.0, []
         while self._now_s < job.departure_s:
             onward_s = min(job.departure_s, (self._now_s // PULSE_S + 1) * PULSE_S) - self._now_s
-            doing("driving the traffic to the departure", f"{self._now_s:.0f} of {job.departure_s:.0f} s")
+            if cold_s is None:
+                doing(
+                    "driving the traffic to the departure",
+                    f"{self._now_s:.0f} of {job.departure_s:.0f} s",
+                    share=0.0,
+                )
+            else:
+                warming_up(cold_s + self._now_s, cold_s + job.departure_s)
             summary = self._simulation.run_on(onward_s)
             self._now_s += onward_s
             if self._now_s % PULSE_S == 0:

@@ -1,4 +1,4 @@
-"""Plots of a study as SVG, in the colours of the page."""
+"""Plots of a study, in the colours of the page."""
 
 from __future__ import annotations
 
@@ -6,9 +6,10 @@ from collections.abc import Callable, Sequence
 from statistics import fmean
 from typing import TYPE_CHECKING
 
-from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
+from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.studies.effects import rerouted, together_by_share
 from automotive_cosim.studies.intervals import seed_mean
+from automotive_cosim.studies.policies import parse_policy
 from automotive_cosim.studies.results import Study
 from automotive_cosim.studies.rows import PolicyChoice, Together
 from automotive_cosim.studies.tables import (
@@ -32,13 +33,13 @@ Series = Sequence[tuple[str, Sequence[Sequence[PolicyChoice]]]]
 SAVED = "seconds saved"
 
 
-def charts(study: Study) -> dict[str, tuple[str, str, str]]:
-    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+def charts(study: Study) -> dict[str, Chart]:
+    """Plots by name.
 
     Raises:
         SetupError: matplotlib is not installed.
     """
-    made = {
+    made: dict[str, tuple[str, Drawing | None]] = {
         "policies": ("Time saved by each policy", _policies(study)),
         "everyone": ("Who gains and who loses", _everyone(study)),
         "many": ("When many cars take the other route", _many(study)),
@@ -48,11 +49,7 @@ def charts(study: Study) -> dict[str, tuple[str, str, str]]:
         "compliance": ("Time saved by the driver's compliance", _compliance(study)),
         "shares": ("Time saved by the share of cars that reroute", _shares(study)),
     }
-    return {
-        name: (title, drawn(name, drawing, WIDE_IN), drawn(name, drawing, NARROW_IN))
-        for name, (title, drawing) in made.items()
-        if drawing is not None
-    }
+    return charted(made)
 
 
 def _policies(study: Study) -> Drawing | None:
@@ -66,7 +63,7 @@ def _policies(study: Study) -> Drawing | None:
         )
         for share in shares
     ]
-    return _points(study, named, series)
+    return _points(study, list(map(_words, named)), series)
 
 
 def _congestion(study: Study) -> Drawing | None:
@@ -74,7 +71,7 @@ def _congestion(study: Study) -> Drawing | None:
     bins = [(low, high) for low, high in BINS if any(low <= each.time_index < high for each in chosen)]
     series = [
         (
-            name,
+            _words(name),
             [
                 [each for each in chosen if each.policy == name and low <= each.time_index < high]
                 for low, high in bins
@@ -92,7 +89,7 @@ def _ages(study: Study) -> Drawing | None:
     named = [name for name in study.plan.policies if goes_by_news(name)]
     series = [
         (
-            name,
+            _words(name),
             [[each for each in study.choices if (each.policy, each.age_s) == (name, age_s)] for age_s in ages_s],
         )
         for name in named
@@ -106,7 +103,7 @@ def _compliance(study: Study) -> Drawing | None:
     first_s = study.plan.ages_s[0]
     levels = [[e for e in study.at_compliance(each) if e.age_s == first_s] for each in study.plan.compliance]
     series = [
-        (name, [[each for each in level if each.policy == name] for level in levels])
+        (_words(name), [[each for each in level if each.policy == name] for level in levels])
         for name in study.plan.policies
         if needs_driver(name)
     ]
@@ -120,7 +117,7 @@ def _shares(study: Study) -> Drawing | None:
     first_s = study.plan.ages_s[0]
     series = [
         (
-            name,
+            _words(name),
             [
                 [e for e in study.choices if (e.policy, e.share, e.age_s) == (name, share, first_s)]
                 for share in shares
@@ -201,7 +198,7 @@ def _everyone(study: Study) -> Drawing | None:
     found = [(heads, rows) for heads, rows in rerouted(study) if heads[2] in (first, NONE)]
     if not found:
         return None
-    names = [f"{policy}, {share} reroute" for (share, policy, _), _ in found]
+    names = [f"{_words(policy)}, {share} reroute" for (share, policy, _), _ in found]
     spreads = [[spread for _, spread in rows] for _, rows in found]
 
     def draw(axes: Axes) -> None:
@@ -222,6 +219,10 @@ def _everyone(study: Study) -> Drawing | None:
         legend(axes)
 
     return 1.4 + 0.35 * len(names), draw
+
+
+def _words(policy: str) -> str:
+    return parse_policy(policy).words
 
 
 def _points(study: Study, names: Sequence[str], series: Series) -> Drawing | None:

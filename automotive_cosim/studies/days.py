@@ -28,6 +28,7 @@ from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, LoneJob, Runner
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.stage import doing
 from automotive_cosim.run.store import opened, read_manifest, read_rows
 from automotive_cosim.scenarios import Scenario, open_scenario, variant
 from automotive_cosim.scenarios.equilibrium import ROUTES, Assigned, rerouted
@@ -242,6 +243,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
         calm_s: dict[str, float] = {}
         means_s: list[float] = []
         for number in range(plan.days + 1):
+            doing(f"day {number} of at most {plan.days}", share=number / (plan.days + 1))
             today = _made(scratch / f"day{number}")
             ran = run(now.written(scratch / ROUTES), now.scenario, observe_s, job.seed, today)
             times = EdgeTimes(free_s, ran.trips)

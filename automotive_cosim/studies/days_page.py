@@ -8,7 +8,7 @@ from statistics import fmean
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
+from automotive_cosim.report.charts import INK, MARKERS, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.studies.days import (
     EQUILIBRIUM,
@@ -196,8 +196,8 @@ def _per_cent(mean: SeedMean | None) -> str:
     return NONE if mean is None else told(mean.value, ".1%")
 
 
-def charts(study: DaysStudy) -> dict[str, tuple[str, str, str]]:
-    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+def charts(study: DaysStudy) -> dict[str, Chart]:
+    """Plots by name.
 
     Raises:
         SetupError: matplotlib is not installed.
@@ -206,11 +206,7 @@ def charts(study: DaysStudy) -> dict[str, tuple[str, str, str]]:
         "days": ("Travel time from day to day", _days(study)),
         "shares": ("Travel time by the share of advised drivers", _shares(study)),
     }
-    return {
-        name: (title, drawn(name, drawing, WIDE_IN), drawn(name, drawing, NARROW_IN))
-        for name, (title, drawing) in made.items()
-        if drawing is not None
-    }
+    return charted(made)
 
 
 def _days(study: DaysStudy) -> Drawing | None:

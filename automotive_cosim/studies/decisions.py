@@ -83,8 +83,8 @@ def told(decision: Decision) -> Iterator[str]:
             yield f"{source}: {news.stay_s:.0f} s on the current route, no alternative."
         else:
             yield (
-                f"{source}: {news.stay_s:.0f} s on the current route ({news.delay_s:.0f} s of it delay), "
-                f"{news.offered_s:.0f} s on the alternative."
+                f"{source}: {news.stay_s:.0f} s on the current route ({news.delay_s:.0f} s more than on empty "
+                f"roads), {news.offered_s:.0f} s on the alternative."
             )
     for agent in decision.agents:
         yield f"{agent} {'rerouted' if agent in decision.agents_rerouted else 'kept the route'}."

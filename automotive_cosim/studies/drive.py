@@ -21,6 +21,7 @@ from automotive_cosim.contracts import DrivingState, Reroute, RouteOption
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.geo.forecast import drawn_weather
 from automotive_cosim.run.stage import doing
+from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.driver import decided
 from automotive_cosim.studies.futures import Futures, close_all, ended
 from automotive_cosim.studies.live import LiveDrive
@@ -44,6 +45,9 @@ NO_ALTERNATIVE = "no alternative"
 
 LEAVES_OUT = "leaves out a stop"
 """Reason to exclude a decision. Only an agent's route can; all others are searched through the trip's ``via``."""
+
+DECIDING = 0.5
+"""Share of a drive's time until its last decision; the rest drives every future to its end."""
 
 AT_ONCE = os.cpu_count() or 1
 """Decisions whose branches may run while the drive continues; each takes some 50 MB per branch."""
@@ -101,9 +105,7 @@ def run_drive(
                 excluded, why = drive.why_not()
                 return replace(row, looks=drive.looks, excluded=excluded, why=why)
             traffic.begin_settling([point.group for point in drive.points], job.plan.arrived, job.plan.limit_s)
-            doing("driving every future to its end")
-            drive.wait()
-            stay = ended(traffic)
+            stay = drive.finish()
             decisions = tuple(compared(point, stay, history) for point in drive.points)
             live.over(decisions)
     if tracks is not None:
@@ -150,21 +152,49 @@ class _Drive:
         """Decisions whose branches are still being driven; None stands for the drive itself."""
         self._rules = {parse_policy(text).rule for text in job.plan.policies}
         self._most_delay_s = 0.0
+        self._way_m = max(1.0, traffic.state.ahead.route_left_m)
+        self._settled = 0.0
+        """The share of the vehicles that has arrived in the future that is farthest."""
 
     def go(self) -> None:
         """Drives and decides until the drive or its decisions are over."""
         plan = self.job.plan
-        doing("driving to the next decision")
-        self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive, self._live.advance)
+        self._most_delay_s = drive_on(self.traffic, plan, self._decide, plan.per_drive, self._advance)
 
-    def wait(self, but: int = 0) -> None:
+    def finish(self) -> Future:
+        """Waits for all futures; returns that in which the ego keeps its route, which has begun to settle."""
+        self._wait()
+        return self._ended(self.traffic)
+
+    def _wait(self, but: int = 0) -> None:
         """Waits for the branches of all decisions, or of all but the given number."""
         while len(self._running) > but:
             point, branches = self._running[0]
-            point.branches = [None if branch is None else ended(branch) for branch in branches]
+            point.branches = [None if branch is None else self._ended(branch) for branch in branches]
             close_all(branches)
             self._running.popleft()
             self._live.driven(point.branches)
+
+    def _ended(self, traffic: RemoteTraffic) -> Future:
+        """Waits for a future. All run at the same time: what one said while another was waited for is past."""
+
+        def tell(done: float, total: float) -> None:
+            part = done / total if total else 1.0
+            if part >= self._settled:
+                self._settled, amount = part, f"{done:.0f} of {total:.0f} vehicles arrived"
+                doing("driving every future to its end", amount, share=DECIDING + (1 - DECIDING) * part)
+
+        return ended(traffic, tell)
+
+    def _advance(self, duration_s: float) -> None:
+        self._tell("driving to the next decision")
+        self._live.advance(duration_s)
+
+    def _tell(self, what: str, part: float = 0.0) -> None:
+        """Says how far the drive is: by its decisions, and the part of one that is done, or by its way."""
+        decided = (len(self.points) + part) / self.job.plan.per_drive
+        driven = 1 - self.traffic.state.ahead.route_left_m / self._way_m
+        doing(what, share=DECIDING * min(1.0, max(decided, driven, 0.0)))
 
     def close(self) -> None:
         """Ends the branches that are still being driven."""
@@ -218,8 +248,9 @@ class _Drive:
             if not begun:
                 self.looks += 1
                 return False
-            doing(f"driving the futures of decision {len(self.points) + 1}")
-            replicates = futures.replicates(begun, group)
+            what = f"driving the futures of decision {len(self.points) + 1}"
+            self._tell(what)
+            replicates = futures.replicates(begun, group, lambda part: self._tell(what, part))
             offered = next((number for edges, number in numbers.items() if edges == _offered(news)), None)
             diverted: list[Diverted] = []
             shut: list[Shut] = []
@@ -253,7 +284,7 @@ class _Drive:
         point = Point(decision, group, summary, replicates=replicates, together=diverted, shut=shut)
         self._live.decided(decision)
         self._running.append((point, begun))
-        self.wait(but=AT_ONCE)
+        self._wait(but=AT_ONCE)
         if not self.points and self._has_placebo() and not plan.draws.stop:
             (point.placebo,) = futures.renewed([traffic], futures.seed(1), group)
         self.points.append(point)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import ExitStack, closing
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.plan import AHEAD, StudyJob
 from automotive_cosim.studies.points import Diverted, Drawn, Shut, shows_signs
+from automotive_cosim.traffic.base import WarmUpProgress
 from automotive_cosim.traffic.chance import SEED_RANGE, Fresh
 from automotive_cosim.traffic.divert import Edges
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
@@ -27,14 +28,17 @@ class Futures:
         self.fresh: Fresh | None = None
         """How futures got fresh random numbers, as soon as one did."""
 
-    def replicates(self, begun: Sequence[RemoteTraffic | None], group: Sequence[str]) -> list[Drawn]:
+    def replicates(
+        self, begun: Sequence[RemoteTraffic | None], group: Sequence[str], tell: Callable[[float], None]
+    ) -> list[Drawn]:
         """Further draws of keeping the route and of every branch, in their state after the choice; none if nobody
-        left the route, since all futures of a draw are then the same."""
+        left the route, since all futures of a draw are then the same. ``tell`` is told the share that is driven."""
         drawn: list[Drawn] = []
         fewest, most = self._job.plan.draws.start, self._job.plan.draws.stop
         if not any(begun):
             return drawn
         while len(drawn) < fewest or (len(drawn) < most and not shows_signs(drawn)):
+            tell(len(drawn) / most)
             seed = self.seed(len(drawn) + 1)
             stay, *others = self.renewed([self._traffic, *filter(None, begun)], seed, group)
             driven = iter(others)
@@ -97,9 +101,9 @@ class Futures:
             branch.begin_settling([group], self._job.plan.arrived, self._job.plan.limit_s)
 
 
-def ended(traffic: RemoteTraffic) -> Future:
-    """The future of a drive that has begun to settle."""
-    settled = traffic.settled()
+def ended(traffic: RemoteTraffic, progress: WarmUpProgress | None = None) -> Future:
+    """The future of a drive that has begun to settle; ``progress`` is called as by ``RemoteTraffic.settled``."""
+    settled = traffic.settled(progress)
     return Future(traffic.state, settled)
 
 

@@ -8,7 +8,7 @@ from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.report.charts import INK
+from automotive_cosim.report.files import write_files
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
@@ -41,13 +41,7 @@ def write_study(folder: Path) -> Path:
     ]
     plots = charts(study) if study.choices else {}
     try:
-        for name in ("tables", "plots"):
-            (folder / name).mkdir(exist_ok=True)
-        for table in made:
-            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
-                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
-        for name, (_, wide, _) in plots.items():
-            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
+        write_files(folder, made, plots.values())
         write_data(study)
         write_decisions(study)
         page = folder / "report.html"

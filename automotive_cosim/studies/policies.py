@@ -40,6 +40,20 @@ class Policy:
     delay_s: float = 0.0
     agent: str = ""
 
+    @property
+    def words(self) -> str:
+        """What it does, for legends."""
+        match self.rule:
+            case PolicyRule.DELAY:
+                return f"from {self.delay_s:g} s of delay on"
+            case PolicyRule.SUMO:
+                return "SUMO's device"
+            case PolicyRule.BEST:
+                return "best, in hindsight"
+            case PolicyRule.AGENT:
+                return f"agent {self.agent}"
+        return self.text
+
 
 def parse_policy(text: str) -> Policy:
     """Reads ``never``, ``always``, ``delay:60``, ``sumo``, ``best`` or ``agent:asurada``.

@@ -218,7 +218,7 @@ class News:
     stay_s: float | None
     """Expected travel time on the current route; None if the news does not have it."""
     delay_s: float
-    """Expected delay on the current route."""
+    """How much more of it than on empty roads."""
     offered_s: float | None
     """Expected travel time on the quickest other route; None without one."""
     branch: int | None
@@ -238,9 +238,9 @@ class Decision:
     """Simulation time."""
     edge: str
     delay_s: float
-    """Expected delay ahead."""
+    """Delay ahead: how much longer the rest of the route takes at present speeds than at the limits."""
     eta_s: float
-    """Distance to the destination."""
+    """How long it takes at present speeds."""
     relative_speed: float
     """Mean speed ahead as a share of the free speed."""
     lost_s: float | None = None

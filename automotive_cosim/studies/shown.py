@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.report.charts import INK
+from automotive_cosim.report.charts import Chart
+from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.record import write_whole
@@ -26,8 +27,8 @@ class ShownStudy:
     """The result in one sentence."""
     warnings: Sequence[str]
     tables: Sequence[Table]
-    plots: Mapping[str, tuple[str, str, str]]
-    """By name: title, SVG for a wide page, SVG for a narrow one."""
+    plots: Mapping[str, Chart]
+    """By name."""
 
 
 def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, errors: int, missing: int) -> Path:
@@ -45,13 +46,7 @@ def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, err
         UserError: they cannot be written.
     """
     try:
-        for name in ("tables", "plots"):
-            (folder / name).mkdir(exist_ok=True)
-        for table in shown.tables:
-            for suffix, text in (("md", table.markdown()), ("csv", table.csv()), ("tex", table.latex())):
-                write_whole(folder / "tables" / f"{table.name}.{suffix}", text)
-        for name, (_, wide, _) in shown.plots.items():
-            write_whole(folder / "plots" / f"{name}.svg", wide.replace("currentColor", INK))
+        write_files(folder, shown.tables, shown.plots.values())
         text = render(
             "studies/network.html",
             title=shown.title,

@@ -141,15 +141,15 @@ def parts(study: Study) -> Table:
         "Time saved, s",
         "Congestion avoided, s",
         "Way saved, s",
-        "Delay expected, s",
+        "Delay ahead, s",
         "Lost on the kept route, s",
         "Trips",
     )
     note = (
         "Time saved = congestion avoided + way saved, decision by decision. Congestion avoided: SUMO's time loss "
         "on the kept route less that on the other, signals included. Way saved: the time that each takes on an "
-        "empty road, as fast as limits and driver allow. Expected: by the news, at the decision; lost: what the "
-        "kept route really lost from there on."
+        "empty road, as fast as limits and driver allow. Delay ahead: expected at the decision, at present speeds; "
+        "lost: what the kept route really lost from there on."
     )
     return Table("parts", "What the time saved consists of", columns, tuple(rows), note, heads=3)
 
@@ -406,8 +406,9 @@ def resampled_cell(chosen: Iterable[PolicyChoice], of: Callable[[PolicyChoice], 
 
 
 def told(value: float, form: str) -> str:
-    """A number with a minus sign."""
-    return f"{value:{form}}".replace("-", "−")
+    """A number with a minus sign, unless it rounds to zero."""
+    text = f"{value:{form}}"
+    return text.replace("-", "−" if any(digit in text for digit in "123456789") else "")
 
 
 def per_cent(flags: Iterable[bool]) -> str:

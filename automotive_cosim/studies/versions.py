@@ -15,8 +15,8 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.run.row import JobRow, steady
 from automotive_cosim.run.store import read_manifest
-from automotive_cosim.studies.congestion.plan import name_of
 from automotive_cosim.studies.congestion.results import CongestionStudy, delay_h, read_congestion
+from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import seed_mean
 from automotive_cosim.studies.results import Study, read_study
 from automotive_cosim.studies.settings import CongestionSettings

@@ -269,13 +269,16 @@ class RemoteTraffic:
         self._process.send("settle", groups, share, limit_s)
         self._is_settling = True
 
-    def settled(self) -> Settled:
+    def settled(self, progress: WarmUpProgress | None = None) -> Settled:
         """Waits for the end of what ``begin_settling`` began.
+
+        Args:
+            progress: called with the number of vehicles that have arrived of those to wait for, and of these.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
         """
-        state, settled = self._process.receive()
+        state, settled = self._process.receive(progress)
         self._is_settling = False
         self._state = unpack_state(state)
         outcome: Settled = settled
@@ -341,13 +344,16 @@ class RemoteFlow:
         """
         self._process.send("flow", duration_s, every_s)
 
-    def ended(self) -> tuple[FlowSummary, ...]:
+    def ended(self, progress: WarmUpProgress | None = None) -> tuple[FlowSummary, ...]:
         """Waits for the end; returns the traffic at the beginning and at the end of every period.
+
+        Args:
+            progress: called with the simulated seconds that have passed, and their total.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
         """
-        summaries: tuple[FlowSummary, ...] = self._process.receive()
+        summaries: tuple[FlowSummary, ...] = self._process.receive(progress)
         return summaries
 
     def close(self) -> None:

@@ -158,7 +158,7 @@ def settle(
     groups: Sequence[Sequence[str]],
     share: float,
     limit_s: float,
-    after_step: Callable[[], None],
+    after_step: Callable[[float, float], None],
 ) -> Settled:
     """Runs until the ego's drive has ended and a share of each group has arrived, or the time is over.
 
@@ -169,7 +169,8 @@ def settle(
         groups: vehicles to wait for.
         share: share of each group, 0 to 1.
         limit_s: limit of simulated seconds.
-        after_step: called after every step to record it.
+        after_step: called after every step to record it, with the number of vehicles that have arrived of those to
+            wait for, and of all of these.
 
     Raises:
         TrafficError: SUMO stopped at an error.
@@ -177,10 +178,14 @@ def settle(
     left = [set(group) - ledger.arrivals_s.keys() for group in groups]
     most = [(1 - share) * len(group) + 1e-9 for group in groups]
 
+    def awaited() -> float:
+        return sum(max(0.0, len(each) - limit) for each, limit in zip(left, most, strict=True))
+
     def is_complete() -> bool:
         return drive.has_ended and all(len(each) <= limit for each, limit in zip(left, most, strict=True))
 
     world.look_away()
+    total = open_ = awaited()
     for _ in range(round(limit_s / world.step_s)):
         if is_complete():
             break
@@ -188,9 +193,10 @@ def settle(
             world.step()
         else:
             drive.step()
-        after_step()
+        after_step(total - open_, total)
         for each in left if ledger.arrived else ():
             each.difference_update(ledger.arrived)
+        open_ = awaited() if ledger.arrived else open_
     everybody = {vehicle for group in groups for vehicle in group}
     arrivals_s = {vehicle: at_s for vehicle, at_s in ledger.arrivals_s.items() if vehicle in everybody}
     summary = ledger.summary()

@@ -184,6 +184,16 @@ class Network:
         }
         return replace(self, crossings=crossings)
 
+    @property
+    def joints_m(self) -> list[Shape]:
+        """Straight lines through the junctions, from the end of each edge to the starts of those that follow: with
+        them, a map's roads are continuous."""
+        return [
+            (self.edges[here].shape_m[-1], self.edges[there].shape_m[0])
+            for here, ways in self.crossings.items()
+            for there in ways
+        ]
+
     def at(self, origin: tuple[float, float], language: str = "") -> Network:
         """The same network with its middle at another place: (longitude, latitude).
 

@@ -68,6 +68,8 @@ class Server:
         self._advisor: Advisor | None = None
         self._last_beat_s = 0.0
         self._beat_s = BEAT_S
+        self._done: tuple[float, float] | None = None
+        """How much of a long call is done, and of how much, if it says so."""
 
     def run(self) -> None:
         """Serves until the connection closes."""
@@ -199,7 +201,12 @@ class Server:
         assert self._drive is not None
         assert self._ledger is not None
         self._beat_s = SETTLING_BEAT_S
-        outcome = settle(self._world, self._drive, self._ledger, groups, share, limit_s, self._after_step)
+
+        def after_step(done: float, total: float) -> None:
+            self._done = done, total
+            self._after_step()
+
+        outcome = settle(self._world, self._drive, self._ledger, groups, share, limit_s, after_step)
         return pack_state(self._drive.state), outcome
 
     def do_own_choice(self) -> tuple[str, ...]:
@@ -236,7 +243,9 @@ class Server:
     def do_flow(self, duration_s: float, every_s: float) -> tuple[FlowSummary, ...]:
         """Lets the traffic run without an ego; returns its state now and at the end of every period."""
         summaries = [self._flow_summary()]
-        for _ in range(round(duration_s / every_s)):
+        count = round(duration_s / every_s)
+        for number in range(count):
+            self._done = number * every_s, duration_s
             self.do_run_on(every_s)
             summaries.append(self._flow_summary())
         return tuple(summaries)
@@ -286,7 +295,7 @@ class Server:
         if now_s - self._last_beat_s >= self._beat_s:
             self._last_beat_s = now_s
             self._set_alarm()
-            self._channel.send(("beat", None))
+            self._channel.send(("beat", None) if self._done is None else ("progress", self._done))
 
     def _progress(self, done_s: float, total_s: float) -> None:
         self._set_alarm()

@@ -23,7 +23,8 @@ from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, UserError
 from automotive_cosim.report.calibration import by_hour, findings, write_page
 from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes
-from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
+from automotive_cosim.scenarios.variant import check_demand
+from automotive_cosim.traffic.options import Configuration, Setup, copied, read_configuration, run_options
 
 COUNTS = Path(__file__).parents[2] / "docs/examples/grid_counts.csv"
 
@@ -255,3 +256,40 @@ def test_only_a_calibrations_folder_is_replaced(tmp_path: Path) -> None:
             scenarios.load("grid"), COUNTS, folder, CalibrationOptions(), lambda _said, _share: None, force=True
         )
     assert not (folder / RECORD).exists()
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        (
+            {"route-files": {"cars": "<trip/>", "buses": "<vehicle><stop/></vehicle>", "walks": "<person/>"}},
+            "buses.xml has <stop> and walks.xml has <person>: .* copy of .*my.sumocfg, name only cars.xml as route",
+        ),
+        (
+            {"route-files": {"all": "<trip/><vehicle><stop/></vehicle>"}},
+            "put the vehicles without stops into a route",
+        ),
+        (
+            {"additional-files": {"loops": "<e1Detector/>", "bus": "<flow/>"}},
+            "name only loops.xml as additional-files",
+        ),
+        ({"additional-files": {"bus": "<flow/>"}}, "leave out additional-files"),
+    ],
+)
+def test_a_demand_with_buses_is_told_which_files_to_leave_out(given, words, tmp_path):
+    files = {}
+    for option, texts in given.items():
+        for name, text in texts.items():
+            (tmp_path / f"{name}.xml").write_text(f"<routes>{text}</routes>")
+        files[option] = tuple(tmp_path / f"{name}.xml" for name in texts)
+    with pytest.raises(UserError, match=words):
+        check_demand(Configuration(tmp_path / "my.sumocfg", tmp_path / "net.xml", files=files))
+
+
+def test_a_demand_of_cars_is_taken(tmp_path):
+    (tmp_path / "cars.xml").write_text("<routes><trip/></routes>")
+    check_demand(
+        Configuration(
+            tmp_path / "my.sumocfg", tmp_path / "net.xml", files={"route-files": (tmp_path / "cars.xml",)}
+        )
+    )

@@ -34,6 +34,13 @@ def test_before_a_run_has_ended_the_time_counts_against_what_was_expected() -> N
     ]
 
 
+def test_what_is_left_of_the_budget_stands_beside_the_time() -> None:
+    text = StringIO()
+    view: ProgressView[TrialRow] = ProgressView(Console(file=text), "runs", lambda _: "so far")
+    view.tell(Progress(9, 1, 1, 1, 0, 1, 20.0, 60.0, None, budget="38,000 of 50,000 tokens left"))
+    assert text.getvalue() == "1 of 9 runs; so far, 1:00 left, 38,000 of 50,000 tokens left\n"
+
+
 def test_an_estimate_that_rises_is_not_told() -> None:
     states = [
         (100.0, 1, 60.0),

@@ -15,7 +15,8 @@ from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.errors import TrafficError, UserError
 from automotive_cosim.interface.observe import ALL
-from automotive_cosim.report.drives import FIGURES, LEAST_DRIVES, WITH_INTERVAL, interval
+from automotive_cosim.report.drives import FIGURES, WITH_INTERVAL, interval
+from automotive_cosim.report.stats import LEAST_CLUSTERS
 from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
 from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.service import EpisodeService
@@ -251,7 +252,7 @@ def test_figures_of_several_drives_are_the_reports_with_its_intervals(inspect, s
         outcome = score.metadata | {"seed": seed, "result": score.metadata["result"] | {"score": met}}
         return SampleScore(score=Score(value=score.value, metadata=outcome))
 
-    for count in (LEAST_DRIVES - 1, LEAST_DRIVES + 1):
+    for count in (LEAST_CLUSTERS - 1, LEAST_CLUSTERS + 1):
         rows = [
             replace(watched.row, seed=seed, score=replace(watched.row.score, nuisances=seed % 3))
             for seed in range(count)

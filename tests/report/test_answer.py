@@ -24,7 +24,23 @@ def compared(both, only_first, only_second):
     ],
 )
 def test_who_is_better_is_said_only_if_the_interval_says_it(cells, words):
-    assert versus("a", "b", compared(*cells)).startswith(words)
+    told = versus("a", "b", compared(*cells), "pair")
+    assert told.startswith(words)
+    assert told.endswith(f", {sum(cells)} pairs")
+
+
+@pytest.mark.parametrize(
+    ("cells", "words"),
+    [
+        ((0, 2, 0), "a is 100 points ahead of b on 2 pairs of 2 tasks, "),
+        ((0, 0, 1), "b is 100 points ahead of a on 1 pair of 1 task, "),
+        ((4, 0, 0), "a and b are level on 4 pairs of 4 tasks, "),
+    ],
+)
+def test_few_tasks_give_no_interval(cells, words):
+    assert compared(*cells).interval is None
+    told = "too few to tell agents apart (5 tasks are needed)"
+    assert versus("a", "b", compared(*cells), "pair") == words + told
 
 
 def test_one_alone_has_its_rate_and_errors_are_counted(tmp_path):

@@ -17,7 +17,7 @@ from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 
-TASKS = ["road_speed_80_in_50", "hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater"]
+TASKS = ["road_speed_80_in_50", "hvac_fan_max", "hvac_cold_hands", "hvac_driver_seat_heater", "apps_pay_parking"]
 PLAN = make_plan({"agents": ["asurada"], "tasks": TASKS, "seeds": [0, 1]})
 
 

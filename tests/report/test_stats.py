@@ -138,10 +138,19 @@ def test_the_score_interval_of_paired_differences_agrees_with_the_paper(cells, l
     assert (interval.low, interval.high) == pytest.approx((low, high), abs=6e-4)
 
 
-def test_three_tasks_that_agree_prove_little():
-    found = stats.compare(
-        dict.fromkeys(range(9), True), dict.fromkeys(range(9), False), {i: i % 3 for i in range(9)}
-    )
-    assert found is not None
-    assert found.interval.low < 0.4
-    assert found.interval.high == 1.0
+def test_few_tasks_that_agree_prove_little_and_fewer_nothing():
+    def compared(tasks):
+        cells = range(3 * tasks)
+        return stats.compare(dict.fromkeys(cells, True), dict.fromkeys(cells, False), {i: i % tasks for i in cells})
+
+    assert compared(stats.LEAST_CLUSTERS).interval.low < 0.6
+    assert compared(stats.LEAST_CLUSTERS).interval.high == 1.0
+    few = compared(stats.LEAST_CLUSTERS - 1)
+    assert (few.interval, few.clusters, few.difference) == (None, stats.LEAST_CLUSTERS - 1, 1.0)
+
+
+def test_a_mean_of_few_tasks_or_of_equal_ones_has_no_interval_of_no_width():
+    few = [(task, float(task)) for task in range(stats.LEAST_CLUSTERS - 1)]
+    assert stats.clustered_mean(few).interval is None
+    assert stats.clustered_mean([*few, (9, 9.0)]).interval is not None
+    assert stats.clustered_mean([(task, 2.0) for task in range(9)]).interval is None

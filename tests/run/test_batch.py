@@ -164,7 +164,7 @@ def test_while_the_first_jobs_wait_for_their_traffic_that_is_told(tmp_path, monk
     assert (first.doing, last.doing) == ((), ())
     assert {(each.done, each.ended) for each in between} == {(0, None)}
     stages = list(dict.fromkeys(words.partition(",")[0] for each in between for words in each.doing if words))
-    assert stages == ["loading grid", "warming up traffic", "agent at work"]
+    assert stages == ["loading grid", "warming up traffic", "driving to the hand-over", "agent at work"]
     assert last.ended is not None
 
 

@@ -28,9 +28,10 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.publish.bundle import write_bundle
 from automotive_cosim.publish.leaderboard import write_leaderboard
 from automotive_cosim.publish.verify import verify
-from automotive_cosim.report.drives import LEAST_DRIVES, grouped, interval, tables, told
+from automotive_cosim.report.drives import grouped, interval, tables, told
 from automotive_cosim.report.evaluation import write_report
 from automotive_cosim.report.regression import changes
+from automotive_cosim.report.stats import LEAST_CLUSTERS
 from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup, run_drive
@@ -396,14 +397,14 @@ def test_intervals_come_from_whole_drives(folder: Path) -> None:
     def value(rows: list[DriveTrialRow]) -> float:
         return together([row.score for row in rows if row.score is not None]).value
 
-    few = [replace(perfect, id=str(number), seed=number) for number in range(LEAST_DRIVES - 1)]
+    few = [replace(perfect, id=str(number), seed=number) for number in range(LEAST_CLUSTERS - 1)]
     assert interval(few, value) is None  # type: ignore[arg-type]
     assert told(few, value, ".0f") == f"{value(few):.0f}"  # type: ignore[arg-type]
-    mixed = [replace(row, seed=number) for number, row in enumerate([perfect, silent] * LEAST_DRIVES)]
+    mixed = [replace(row, seed=number) for number, row in enumerate([perfect, silent] * LEAST_CLUSTERS)]
     bounds = interval(mixed, value)  # type: ignore[arg-type]
     assert bounds is not None
     assert bounds.low < value(mixed) < bounds.high
-    repeated = [replace(row, repeat=number) for number, row in enumerate([perfect, silent] * LEAST_DRIVES)]
+    repeated = [replace(row, repeat=number) for number, row in enumerate([perfect, silent] * LEAST_CLUSTERS)]
     assert interval(repeated, value) is None  # type: ignore[arg-type]
     names = ["watchers", "faults", "kinds", "families", "effects", "measures", "exposure"]
     assert [table.name for table in tables(mixed)] == names

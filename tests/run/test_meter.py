@@ -49,6 +49,20 @@ def test_turns_at_a_model_are_so_far_apart_and_those_of_others_are_not_waited_fo
     assert turns.wait_s("a/m", 30) == 2.0
 
 
+@pytest.mark.parametrize(
+    ("budget", "spent", "used", "words"),
+    [
+        (Budget(), Spent(10, 1.0), 0.0, ""),
+        (Budget(50_000), Spent(12_000), 0.24, "38,000 of 50,000 tokens left"),
+        (Budget(usd=2.0), Spent(9, 0.5), 0.25, "$1.50 of $2.00 left"),
+        (Budget(100, 2.0), Spent(50, 1.5), 0.75, "50 of 100 tokens and $0.50 of $2.00 left"),
+        (Budget(100), Spent(130), 1.0, "0 of 100 tokens left"),
+    ],
+)
+def test_what_is_left_of_a_budget_is_told(budget: Budget, spent: Spent, used: float, words: str) -> None:
+    assert (spent.share_of(budget), spent.left_of(budget)) == (used, words)
+
+
 def test_many_connections_share_one_meter() -> None:
     with served(Meter(Budget(), Spent(5, 0.5))) as handle:
         assert isinstance(handle, MeterClient)

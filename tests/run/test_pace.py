@@ -14,7 +14,10 @@ import pytest
 from automotive_cosim.cli.batches import time_left
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.meter import Spent
 from automotive_cosim.run.row import JobRow
+from automotive_cosim.run.settings import Budget
+from automotive_cosim.run.stage import JobStage
 
 OUT_OF_REACH = "TriggerNotReachedError"
 
@@ -41,6 +44,7 @@ class Planned:
     warm_up_s: float
     is_out_of_reach: bool = False
     wall_s: float = 1e9
+    warm_up_weight: float = 1.0
 
     def row(self) -> JobRow:
         error = OUT_OF_REACH if self.is_out_of_reach else None
@@ -50,8 +54,8 @@ class Planned:
 class Clocked:
     """An executor, its workers' clock, and the store of what they did."""
 
-    def __init__(self, count: int, done: Sequence[JobRow] = ()) -> None:
-        self.count, self.now_s = count, 0.0
+    def __init__(self, count: int, done: Sequence[JobRow] = (), *, tells: bool = False) -> None:
+        self.count, self.now_s, self.tells = count, 0.0, tells
         self.rows = {row.id: row for row in done}
         self.folder = Path()
 
@@ -66,19 +70,30 @@ class Clocked:
 
     def wait(self, handles: Sequence[ClockedWorker], timeout_s: float) -> list[ClockedWorker]:
         first = min((worker for worker in handles if worker.job), key=lambda worker: worker.ends_s)
+        if self.tells and first.ends_s > self.now_s + TOLD_EVERY_S:
+            self.now_s += TOLD_EVERY_S
+            return [worker for worker in handles if worker.job]
         self.now_s = first.ends_s
         return [first]
 
 
 class ClockedWorker:
     is_ready = True
-    doing = ""
 
     def __init__(self, clock: Clocked) -> None:
         self.clock = clock
         self.job: Planned | None = None
         self.warm: tuple[str, int] | None = None
-        self.ends_s = 0.0
+        self.begun_s = self.warmed_s = self.ends_s = 0.0
+
+    @property
+    def stage(self) -> JobStage:
+        now_s = self.clock.now_s
+        if not self.clock.tells or self.job is None:
+            return JobStage()
+        if now_s < self.warmed_s:
+            return JobStage("warming up", True, (now_s - self.begun_s) / (self.warmed_s - self.begun_s))
+        return JobStage("at work", False, (now_s - self.warmed_s) / (self.ends_s - self.warmed_s))
 
     @property
     def handles(self) -> list[ClockedWorker]:
@@ -87,10 +102,13 @@ class ClockedWorker:
     def give(self, job: Planned) -> None:
         warm_up_s = 0.0 if job.simulation == self.warm else job.warm_up_s
         self.job, self.warm = job, job.simulation
-        self.ends_s = self.clock.now_s + warm_up_s + job.own_s
+        self.begun_s, self.warmed_s = self.clock.now_s, self.clock.now_s + warm_up_s
+        self.ends_s = self.warmed_s + job.own_s
 
-    def answer(self) -> JobRow:
+    def answer(self) -> JobRow | None:
         assert self.job is not None
+        if self.clock.now_s < self.ends_s:
+            return None
         row, self.job = self.job.row(), None
         return row
 
@@ -98,14 +116,23 @@ class ClockedWorker:
         pass
 
 
+TOLD_EVERY_S = 5.0
+
 Told = list[tuple[float, float | None, int]]
 """At each report: the time, the estimate, and how many jobs were not done."""
 
 
-def play(monkeypatch: pytest.MonkeyPatch, jobs: Sequence[Planned], workers: int, share: float = 0.0) -> Told:
-    """Runs a plan of which a share is done already."""
+def play(
+    monkeypatch: pytest.MonkeyPatch,
+    jobs: Sequence[Planned],
+    workers: int,
+    share: float = 0.0,
+    *,
+    tells: bool = False,
+) -> Told:
+    """Runs a plan of which a share is done already, with workers that may tell how far they are."""
     rng = random.Random(1)
-    clock = Clocked(workers, [job.row() for job in jobs if rng.random() < share])
+    clock = Clocked(workers, [job.row() for job in jobs if rng.random() < share], tells=tells)
     monkeypatch.setattr(batch, "time", clock)
     told: Told = []
 
@@ -188,6 +215,68 @@ def test_after_a_minute_the_time_left_is_right_within_a_factor_of_two(name, work
     assert right >= 0.97 * len(shown), sorted(left_s / true_s for left_s, true_s in shown)[:: len(shown) // 10 or 1]
     assert all(true_s / 3 <= left_s <= 3 * true_s for left_s, true_s in shown)
     assert sum(left_s is None for left_s, _ in counted) <= 0.1 * len(counted), "it is shown soon"
+
+
+@pytest.mark.parametrize("workers", [1, 2])
+@pytest.mark.parametrize(
+    ("jobs", "known_by_s"),
+    [
+        (alike(1, 1, 300.0, 60.0), 120.0),
+        (alike(2, 1, 300.0, 60.0), 120.0),
+        (alike(10, 2, 20.0, 10.0), 60.0),
+        (alike(4, 6, 60.0, 40.0), 80.0),
+        (alike(40, 1, 5.0, 3.0), 60.0),
+    ],
+)
+def test_jobs_that_tell_how_far_they_are_are_known_from_the_first_minute(workers, jobs, known_by_s, monkeypatch):
+    """The first of them may still be running. Of many, nobody knows how long the very last will take."""
+    told = play(monkeypatch, jobs, workers, tells=True)
+    end_s, last = told[-1][0], 2 * workers if len(jobs) > 2 else 0
+    shown = [
+        (left_s, end_s - now_s)
+        for now_s, left_s, open_ in told
+        if now_s >= known_by_s and end_s - now_s >= 60 and open_ > last
+    ]
+    assert shown
+    right = sum(left_s is not None and true_s / 2 <= left_s <= 2 * true_s for left_s, true_s in shown)
+    assert right >= 0.97 * len(shown), shown
+
+
+class SpendingMeter:
+    """Ten tokens a second."""
+
+    def __init__(self, clock: Clocked) -> None:
+        self.clock = clock
+
+    def spent(self) -> Spent:
+        return Spent(tokens=500 + int(10 * self.clock.now_s))
+
+    def refusal(self) -> str:
+        return "spent" if self.spent().tokens >= BUDGET.tokens else ""
+
+
+BUDGET = Budget(tokens=2500)
+
+
+def test_the_time_left_ends_with_the_budget(monkeypatch):
+    """At ten tokens a second, the 2,000 that are left last for 200 s; the jobs would take much longer."""
+    clock = Clocked(1)
+    monkeypatch.setattr(batch, "time", clock)
+    monkeypatch.setattr(batch, "note_spent", lambda store, meter: None)
+    told: list[tuple[float, float | None, str]] = []
+
+    def tell(progress: Progress[JobRow]) -> None:
+        told.append((clock.now_s, progress.left_s, progress.budget))
+
+    jobs = alike(1, 100, 10.0, 0.0)
+    end = run_jobs(
+        jobs, clock, nobody, given_up, executor=clock, limit=SpendingMeter(clock), budget=BUDGET, tell=tell
+    )  # type: ignore[arg-type, misc, call-overload]
+    assert end.stopped == "spent"
+    assert told[0] == (0.0, None, "2,000 of 2,500 tokens left")
+    known = [(now_s, left_s) for now_s, left_s, _ in told if left_s is not None and now_s > 60]
+    assert known
+    assert all(left_s == pytest.approx(200 - now_s, abs=1) for now_s, left_s in known if now_s < 200)
 
 
 def test_nothing_is_said_before_there_is_a_basis(monkeypatch):

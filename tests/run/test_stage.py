@@ -10,10 +10,18 @@ from automotive_cosim.run import stage
 def test_a_stage_is_told_once_and_its_amounts_now_and_then(monkeypatch: pytest.MonkeyPatch) -> None:
     now_s = 0.0
     monkeypatch.setattr(stage.time, "monotonic", lambda: now_s)
-    told: list[str] = []
+    told: list[stage.JobStage] = []
     with stage.telling(told.append):
         for now_s in (0.0, 0.5, 1.2):
-            stage.doing("warming up traffic", f"{60 * now_s:.0f} of 600 s")
+            stage.warming_up(60 * now_s, 600)
         stage.doing("agent at work", "step 0")
+        for now_s in (1.3, 2.0, 2.4):
+            stage.doing("driving", share=now_s / 10)
     stage.doing("nobody is told", "")
-    assert told == ["warming up traffic, 0 of 600 s", "warming up traffic, 72 of 600 s", "agent at work, step 0"]
+    assert told == [
+        stage.JobStage("warming up traffic, 0 of 600 s", is_warm_up=True, share=0.0),
+        stage.JobStage("warming up traffic, 72 of 600 s", is_warm_up=True, share=0.12),
+        stage.JobStage("agent at work, step 0"),
+        stage.JobStage("driving", share=0.13),
+        stage.JobStage("driving", share=0.24),
+    ]

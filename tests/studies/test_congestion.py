@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import json
 import shutil
-from dataclasses import replace
+from dataclasses import MISSING, fields, replace
 from pathlib import Path
+from string import Formatter
 
 import pytest
 from typer.testing import CliRunner
@@ -15,11 +16,12 @@ from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.results import report
 from automotive_cosim.cli.study import app
 from automotive_cosim.errors import CosimError, UserError
+from automotive_cosim.formats.incidents import EgoIncident
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.studies.congestion.drive import run_congestion
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows, read_queues
 from automotive_cosim.studies.congestion.page import answer, warnings
-from automotive_cosim.studies.congestion.plan import CongestionPlan, make_congestion
+from automotive_cosim.studies.congestion.plan import MEASURES, CongestionPlan, make_congestion
 from automotive_cosim.studies.congestion.results import (
     CongestionStudy,
     NetworkPart,
@@ -32,6 +34,7 @@ from automotive_cosim.studies.congestion.results import (
 )
 from automotive_cosim.studies.congestion.rows import CongestionRow, FlowCell, FlowState, FlowSums, MeasureOutcome
 from automotive_cosim.studies.congestion.tables import emissions, whole, worst
+from automotive_cosim.studies.congestion.words import PHRASES, name_of
 from automotive_cosim.studies.versions import pairs
 
 from .conftest import Draw
@@ -107,7 +110,7 @@ def test_the_answer_stands_first_and_is_paired_by_seed() -> None:
     assert added.interval is not None
     assert added.value == pytest.approx(1.045)
     assert answer(found).startswith(
-        "“closure edge=c1c2” costs 1.0 (1.0 to 1.1) vehicle-hours an hour: 1.0 more of delay "
+        "“c1c2 closed” costs 1.0 (1.0 to 1.1) vehicle-hours an hour: 1.0 more of delay "
         "(+104%) and 0.0 more of detours; "
     )
     assert "the travel time index goes from 2.00 to 3.04" in answer(found)
@@ -115,14 +118,14 @@ def test_the_answer_stands_first_and_is_paired_by_seed() -> None:
     assert "cannot be told from 0" in answer(unsure)
     saved = study(*[-1800.0] * 10)
     assert "saves 0.5 (0.5 to 0.5) vehicle-hours an hour: 0.5 fewer of delay (−50%)" in answer(saved)
-    assert [str(row[0]) for row in whole(found).rows] == ["none", "closure edge=c1c2"]
+    assert [str(row[0]) for row in whole(found).rows] == ["none", "c1c2 closed"]
 
 
 def test_it_warns() -> None:
     few = study(60.0)
     assert any("1 seed: no interval" in each for each in warnings(few))
     none = study(*[0.0] * 30)
-    assert warnings(none) == ["“closure edge=c1c2” changes nothing in any seed."]
+    assert warnings(none) == ["“c1c2 closed” changes nothing in any seed."]
     jam = replace(none.rows[0].outcomes[1], gridlock="30 of 40 vehicles stand")
     jammed = replace(none.rows[0], outcomes=(none.rows[0].outcomes[0], jam))
     assert any("gridlocked" in each for each in warnings(replace(none, rows=(jammed, *none.rows[1:]))))
@@ -235,7 +238,7 @@ def test_who_is_advised_leaves_the_roadworks(two_ways: Draw, tmp_path: Path) -> 
     without, advised, deaf = (delay_h(plan, next(found.outcomes(each))[1]) for each in found.measures)
     assert advised < 0.6 * without
     assert deaf == without
-    assert answer(found).startswith("“advice share=1”, of 2 measures the one that changes most, saves")
+    assert answer(found).startswith("“advice to 100 % of the cars”, of 2 measures the one that changes most, saves")
 
 
 def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> None:
@@ -254,7 +257,7 @@ def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> N
     told = CliRunner().invoke(app, ["compare", str(driven), str(again)])
     assert told.exit_code == 1
     assert "1 of 1 row differ" in told.output
-    assert "| delay, roadworks edge=main limit_kmh=9 |" in told.output
+    assert "| delay, roadworks on main at 9 km/h |" in told.output
     assert "+3.00 |" in told.output, "an hour lost in twenty minutes"
     shutil.copytree(driven, tmp_path / "other" / "again")
     (pair,) = pairs(tmp_path / "suite", tmp_path / "other")
@@ -266,11 +269,38 @@ def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> N
 def test_the_report_is_whole(driven: Path) -> None:
     report(driven)
     page = (driven / "report.html").read_text(encoding="utf-8")
-    assert page.index("<h1>“roadworks edge=main limit_kmh=9”") < page.index("The network with each measure")
+    assert page.index("<h1>“roadworks on main at 9 km/h”") < page.index("The network with each measure")
     for name in ("delay", "map", "map_change", "mfd", "time_space", "time_space_measure"):
         assert (driven / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
+        assert (driven / "plots" / f"{name}.pdf").read_bytes().startswith(b"%PDF")
+        assert (driven / "plots" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
     for name in ("whole", "by_class", "roads", "emissions"):
         assert (driven / "tables" / f"{name}.csv").is_file()
+
+
+@pytest.mark.parametrize(
+    ("line", "words"),
+    [
+        ("", "none"),
+        ("closure edge=c2c3", "c2c3 closed"),
+        ("advice share=0.5 compliance=0.8 age_s=300", "advice to 50 % of the cars, 80 % follow, news 300 s old"),
+        ("signals control=static", "fixed signals"),
+        ("signals control=delay_based", "delay-based signals"),
+        ("breakdown edge=c2c3 position_m=100 to_s=1200", "breakdown on c2c3, at 100 m, until 1200 s"),
+        ("breakdown edge=c2c3 position_m=100 aside=true", "breakdown on c2c3, at 100 m, aside true"),
+        ("jam edges=a,b length_m=200 hold_s=15", "jam of 200 m on a,b, one car per lane passes every 15 s"),
+    ],
+)
+def test_measures_are_named_in_words(line: str, words: str) -> None:
+    assert name_of(line) == words
+
+
+def test_every_kind_of_measure_has_its_words() -> None:
+    """Each phrase has fields that the kind requires, so that it can always be said."""
+    assert PHRASES.keys() == {name for name, kind in MEASURES.items() if not issubclass(kind, EgoIncident)}
+    for name, phrase in PHRASES.items():
+        required = {each.name for each in fields(MEASURES[name]) if each.default is MISSING}
+        assert {field for _, field, _, _ in Formatter().parse(phrase) if field} <= required
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, Congestion, Route
 from automotive_cosim.traffic.in_process import InProcess
-from automotive_cosim.traffic.network import Network, read_network
+from automotive_cosim.traffic.network import Network, Shape, read_network
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sumo import LibSumo
 from automotive_cosim.traffic.ways import way_through
@@ -345,3 +345,19 @@ def test_a_map_is_told_where_the_traffic_is_slow(town: Network) -> None:
 def test_a_cycle_street_is_a_class_of_its_own(net: Callable[..., Network], params: str, road_class: str) -> None:
     network = net(edge("ab", params, more='type="highway.residential"'), edge("bc"))
     assert network.edges["ab"].road_class == road_class
+
+
+def test_with_its_joints_a_maps_roads_are_continuous(town: Network) -> None:
+    """All lines of the map hang together, however large the junctions."""
+
+    def pieces(lines: list[Shape]) -> int:
+        groups: list[set[tuple[float, float]]] = []
+        for line in lines:
+            joined = [group for group in groups if group & {line[0], line[-1]}]
+            groups = [group for group in groups if group not in joined]
+            groups.append({line[0], line[-1]}.union(*joined))
+        return len(groups)
+
+    roads = [found.shape_m for found in town.edges.values()]
+    assert pieces(roads) == len(roads)
+    assert pieces([*roads, *town.joints_m]) == 1

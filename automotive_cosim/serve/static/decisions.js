@@ -40,7 +40,7 @@ export async function decisionsPage(query, id) {
   const timer = setInterval(() => again().catch(() => {}), EVERY_MS);
   return {
     title: study.name,
-    content: [h("h1", {}, study.name), h("p", { class: "muted" }, `A study in ${study.scenario}: at each decision the drive is copied, and every route is driven to its end.`), live, h("div", { class: "filters" }, trip, which), count,
+    content: [h("h1", {}, study.name), h("p", { class: "muted" }, `A study in ${study.scenario}: at each decision the drive is copied, and every route is driven to its end. Delay ahead: how much longer the rest of the route takes at present speeds than at the limits.`), live, h("div", { class: "filters" }, trip, which), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Decisions" }, h("table", {},
         h("thead", {}, h("tr", {}, ["Trip", "Seed", "At", "Delay ahead", "Best alternative saves", "Other vehicles save", "Excluded"].map((name) => h("th", { scope: "col" }, name)))), body))],
     ready: fill,

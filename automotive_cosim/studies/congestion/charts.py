@@ -11,7 +11,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from automotive_cosim.contracts import KMH_PER_MPS
-from automotive_cosim.report.charts import INK, MARKERS, NARROW_IN, PALETTE, WIDE_IN, Drawing, drawn, legend
+from automotive_cosim.report.charts import (
+    INK,
+    MARKERS,
+    NARROW_IN,
+    PALETTE,
+    WIDE_IN,
+    Chart,
+    Drawing,
+    charted,
+    legend,
+)
 from automotive_cosim.studies.congestion.maps import lost_map
 from automotive_cosim.studies.congestion.outputs import JUNCTIONS, OTHER
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
@@ -28,8 +38,8 @@ DRAWN = 4
 """Most measures in one plot: more hide each other."""
 
 
-def charts(study: CongestionStudy) -> dict[str, tuple[str, str, str]]:
-    """Plots by name: title, SVG for a wide page, SVG for a narrow one.
+def charts(study: CongestionStudy) -> dict[str, Chart]:
+    """Plots by name.
 
     Raises:
         SetupError: matplotlib is not installed.
@@ -38,20 +48,18 @@ def charts(study: CongestionStudy) -> dict[str, tuple[str, str, str]]:
     named = [(number, name) for number, name in all_measures(study) if number <= DRAWN]
     made: dict[str, tuple[str, Drawing | None]] = {
         "delay": ("Time lost on the road, in the course of time", _lost(study)),
-        "map": ("Time lost on the road without a measure", lost_map(study, network, 0)),
+        "map": ("Time lost on the road without a measure", lost_map(study, network, 0, WIDE_IN)),
     }
+    narrow = {"map": lost_map(study, network, 0, NARROW_IN)}
     shown = [each for each in all_measures(study) if each[0] == strongest(study)] if study.plan.measures else []
     for number, name in shown:
-        made["map_change"] = f"Change of the time lost with “{name}”", lost_map(study, network, number)
+        made["map_change"] = f"Change of the time lost with “{name}”", lost_map(study, network, number, WIDE_IN)
+        narrow["map_change"] = lost_map(study, network, number, NARROW_IN)
     made["mfd"] = "Macroscopic fundamental diagram of the network", _fundamental(study, network)
     for number, name in (*named[:1], *shown):
         title = f"Time-space diagram of “{study.plan.along.name}”" + (f" with “{name}”" if number else "")
         made["time_space_measure" if number else "time_space"] = title, _time_space(study, network, number)
-    return {
-        name: (title, drawn(name, drawing, WIDE_IN), drawn(name, drawing, NARROW_IN))
-        for name, (title, drawing) in made.items()
-        if drawing is not None
-    }
+    return charted(made, narrow)
 
 
 def _lost(study: CongestionStudy) -> Drawing | None:

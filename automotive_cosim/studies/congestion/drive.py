@@ -15,6 +15,7 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.run.store import opened
 from automotive_cosim.studies.congestion.outputs import (
     EDGES,
@@ -87,7 +88,9 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
     outcomes: list[MeasureOutcome] = []
     edges: list[Sequence[EdgeFlow]] = []
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-flow-") as scratch, ExitStack() as stack:
-        warm = Forked(scenario, job.seed, allow_unprojected=True, outputs=Path(scratch), flow_s=INTERVAL_S)
+        warm = Forked(
+            scenario, job.seed, warming_up, allow_unprojected=True, outputs=Path(scratch), flow_s=INTERVAL_S
+        )
         stack.enter_context(closing(warm))
         warm.watch(consumptions=plan.emissions)
         running: list[RemoteFlow] = []
@@ -97,8 +100,9 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
                 copy.apply(measure_in(name, "--measure"), job.seed)
             copy.begin(plan.duration_s, INTERVAL_S)
             running.append(copy)
+        tell = _teller()
         for name, copy in zip(names, running, strict=True):
-            summaries = copy.ended()
+            summaries = copy.ended(tell)
             copy.close()
             assert copy.outputs is not None
             flows = list(read_flows(copy.outputs, begin_s, [each.slowed for each in summaries[1:]]))
@@ -107,6 +111,19 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
             outcomes.append(_outcome(name, plan, cells(flows, queues, of), summaries))
     write_edges(folder / EDGES, job.id, edges)
     return replace(_planned(job), outcomes=tuple(outcomes))
+
+
+def _teller() -> Callable[[float, float], None]:
+    """Says how far the copies are, which run at the same time; what one said while another was awaited is old."""
+    far_s = 0.0
+
+    def tell(done_s: float, total_s: float) -> None:
+        nonlocal far_s
+        if done_s >= far_s:
+            far_s, amount = done_s, f"{done_s:.0f} of {total_s:.0f} s"
+            doing("driving the traffic with and without measures", amount, share=done_s / total_s)
+
+    return tell
 
 
 def _outcome(

@@ -3,27 +3,30 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts.plain import rounded
-from automotive_cosim.report.charts import INK, PALETTE, Drawing
+from automotive_cosim.report.charts import INK, PALETTE, WIDE_IN, Drawing, legend
 from automotive_cosim.scenarios.wording import KINDS
-from automotive_cosim.studies.congestion.plan import measure_in, name_of
+from automotive_cosim.studies.congestion.plan import measure_in
 from automotive_cosim.studies.congestion.results import CongestionStudy
 from automotive_cosim.studies.congestion.tables import lost_on_edges
+from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.traffic.network import Network
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.lines import Line2D
 
 GROWS = ("#ffd27f", "#fd8d3c", "#e31a1c", "#800026")
 """Colours of the classes of time lost, from little to much."""
 SHRINKS = ("#9ecae1", "#4292c6", "#2171b5", "#08306b")
 """The same for less than without the measure."""
+LITTLE = "#d0d5dd"
+"""Colour of what is below the first class."""
 
-SHARES = (0.02, 0.1, 0.3, 0.6)
-"""Lower bounds of the classes, as shares of the greatest value."""
+SHARES = (0.02, 0.1, 0.25, 0.5)
+"""Lower bounds of the classes, as shares of the greatest value; they are rounded to one digit."""
 
 NAMES = 12
 """Most streets that are named."""
@@ -32,7 +35,7 @@ MANY = 3_000
 """Roads above which they are drawn as a picture inside the SVG."""
 
 
-def lost_map(study: CongestionStudy, network: Network, number: int) -> Drawing | None:
+def lost_map(study: CongestionStudy, network: Network, number: int, width_in: float) -> Drawing | None:
     """The time lost per kilometre of road without a measure (0), or what the measure of that number changes."""
     before = lost_on_edges(study, 0)
     if not before:
@@ -45,52 +48,75 @@ def lost_map(study: CongestionStudy, network: Network, number: int) -> Drawing |
         edge: 1000 * value / network.edges[edge].length_m for edge, value in delays.items() if edge in network.edges
     }
     most = max(map(abs, per_km.values()), default=0.0)
+    bounds = [float(f"{share * most:.0e}") for share in SHARES]
     west, south, east, north = network.map.bounds_m
-    height_in = min(9.0, max(3.2, 8.6 * (north - south) / max(1.0, east - west)))
+    is_narrow = width_in < WIDE_IN
+    height_in = min(9.0, width_in * max(1 / 3, 0.9 * (north - south) / max(1.0, east - west)))
 
     def draw(axes: Axes) -> None:
         from matplotlib.collections import LineCollection
-        from matplotlib.lines import Line2D
 
         is_large = len(network.edges) > MANY
         shapes = {name: edge.shape_m for name, edge in network.edges.items()}
         axes.add_collection(
-            LineCollection(list(shapes.values()), colors=INK, alpha=0.22, linewidths=0.9, rasterized=is_large)
+            LineCollection(
+                [*shapes.values(), *network.joints_m], colors=INK, alpha=0.22, linewidths=0.9, rasterized=is_large
+            )
         )
-        handles: list[Line2D] = []
         for colours, sign in ((GROWS, 1), *(((SHRINKS, -1),) if number else ())):
-            for place, (colour, low) in enumerate(zip(colours, SHARES, strict=True)):
-                high = SHARES[place + 1] if place + 1 < len(SHARES) else math.inf
+            for place, (colour, low, high) in enumerate(zip(colours, bounds, (*bounds[1:], math.inf), strict=True)):
                 lines = [
                     _aside(shapes[edge], 4.0)
                     for edge, value in per_km.items()
-                    if most and low <= sign * value / most < high
+                    if most and low <= sign * value < high
                 ]
-                if lines:
-                    axes.add_collection(
-                        LineCollection(lines, colors=colour, linewidths=1.6 + place, rasterized=is_large)
+                axes.add_collection(
+                    LineCollection(
+                        lines, colors=colour, linewidths=1.6 + place, capstyle="round", rasterized=is_large
                     )
-                    bounds = f"{'−' if sign < 0 else '+' if number else ''}{rounded(low * most, 2)}"
-                    handles.append(Line2D([], [], color=colour, linewidth=1.6 + place, label=f"from {bounds}"))
-        handles += _places(axes, study, network, number)
-        _name_streets(axes, network, per_km)
+                )
+        if most:
+            _classes(axes, [*bounds, most], is_change=bool(number), is_narrow=is_narrow)
+        _places(axes, study, network, number)
+        if not is_narrow:  # names would hide it
+            _name_streets(axes, network, per_km)
         _scale(axes, network)
         axes.set_xlim(west - 20, east + 20)
         axes.set_ylim(south - 0.09 * (north - south) - 20, north + 20)
         axes.set_aspect("equal")
         axes.set_axis_off()
-        title = "vehicle-hours lost on the road per hour and km"
-        axes.figure.legend(
-            handles=handles,
-            loc="outside upper left",
-            ncols=4,
-            frameon=False,
-            fontsize=8,
-            title=title,
-            alignment="left",
-        )
+        legend(axes, ncols=1 if is_narrow else 2, fontsize=8)
 
-    return height_in + 0.9, draw
+    return height_in + 1.3, draw
+
+
+def _classes(axes: Axes, bounds: Sequence[float], *, is_change: bool, is_narrow: bool) -> None:
+    """The colours of the classes, with their bounds."""
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import BoundaryNorm, ListedColormap
+
+    colours = [LITTLE, *GROWS]
+    if is_change:
+        bounds, colours = [*(-bound for bound in reversed(bounds)), *bounds], [*reversed(SHRINKS), *colours]
+    else:
+        bounds = [0.0, *bounds]
+    scale = ScalarMappable(BoundaryNorm(bounds, len(colours)), ListedColormap(colours))
+    bar = axes.figure.colorbar(
+        scale,
+        ax=axes,
+        location="bottom",
+        spacing="uniform",
+        shrink=1.0 if is_narrow else 0.7,
+        aspect=40,
+        pad=0.02,
+        ticks=bounds,
+    )
+    told = [rounded(abs(bound), 2) for bound in bounds]
+    signs = ("−" if bound < 0 else "+" if is_change else "" for bound in bounds)
+    bar.set_ticklabels([sign + text for sign, text in zip(signs, told, strict=True)])
+    bar.set_label(f"{'more or less ' if is_change else ''}vehicle-hours lost on the road per hour and km")
+    bar.outline.set_visible(False)
+    bar.ax.tick_params(length=0, labelsize=6 if is_narrow else 8)
 
 
 def _aside(shape: tuple[tuple[float, float], ...], by_m: float) -> list[tuple[float, float]]:
@@ -103,14 +129,12 @@ def _aside(shape: tuple[tuple[float, float], ...], by_m: float) -> list[tuple[fl
     return moved
 
 
-def _places(axes: Axes, study: CongestionStudy, network: Network, number: int) -> list[Line2D]:
+def _places(axes: Axes, study: CongestionStudy, network: Network, number: int) -> None:
     """Marks the corridor's ends and where incidents and the measure are."""
     trip = study.plan.along
     start, goal = network.edges[trip.from_edge].shape_m[0], network.edges[trip.to_edge].shape_m[-1]
-    marks = [
-        axes.plot(*start, "o", color=INK, markersize=7, fillstyle="none", label=f"start of “{trip.name}”")[0],
-        axes.plot(*goal, "*", color=INK, markersize=11, label=f"destination of “{trip.name}”")[0],
-    ]
+    axes.plot(*start, "o", color=INK, markersize=7, fillstyle="none", label=f"start of “{trip.name}”")
+    axes.plot(*goal, "*", color=INK, markersize=11, label=f"destination of “{trip.name}”")
     texts = [*study.plan.incidents, *study.plan.measures[number - 1 : number if number else 0]]
     for text in texts:
         if text.split()[0] in KINDS:
@@ -119,21 +143,16 @@ def _places(axes: Axes, study: CongestionStudy, network: Network, number: int) -
             places = [network.edges[edge].shape_m for edge in edges if edge in network.edges]
             if places:
                 x, y = ((one + two) / 2 for one, two in zip(places[-1][0], places[-1][-1], strict=True))
-                label = name_of(text)
-                short = label if len(label) <= 44 else f"{label[:43]}…"
-                marks += axes.plot(
+                axes.plot(
                     [x],
                     [y],
                     "X",
                     color=PALETTE[3],
                     markersize=10,
                     markeredgecolor="white",
-                    label=short,
+                    label=name_of(text),
                     linestyle="",
                 )
-    for mark in marks:
-        mark.set_linestyle("")
-    return marks
 
 
 def _name_streets(axes: Axes, network: Network, per_km: dict[str, float]) -> None:

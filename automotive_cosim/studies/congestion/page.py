@@ -8,7 +8,7 @@ from pathlib import Path
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.incidents import Jam
 from automotive_cosim.studies.congestion.charts import charts
-from automotive_cosim.studies.congestion.plan import measure_in, name_of
+from automotive_cosim.studies.congestion.plan import measure_in
 from automotive_cosim.studies.congestion.results import (
     WHOLE,
     CongestionStudy,
@@ -20,6 +20,7 @@ from automotive_cosim.studies.congestion.results import (
     strongest,
 )
 from automotive_cosim.studies.congestion.tables import mean, tables
+from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
 from automotive_cosim.studies.shown import ShownStudy, write_shown
 from automotive_cosim.studies.tables import told

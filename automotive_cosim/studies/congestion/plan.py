@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import lru_cache
@@ -146,11 +145,6 @@ def measure_in(text: str, place: str) -> Measure:
     """
     found: Measure = read_line(text, MEASURES if place == "--measure" else KINDS, place)
     return found
-
-
-def name_of(text: str) -> str:
-    """Name of a measure in tables; empty text stands for none."""
-    return re.sub(r"\s+", " ", text).strip() or "none"
 
 
 @lru_cache(maxsize=4)

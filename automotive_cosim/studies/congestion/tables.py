@@ -8,7 +8,6 @@ from statistics import fmean
 
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.report.tables import Table, TableRow
-from automotive_cosim.studies.congestion.plan import name_of
 from automotive_cosim.studies.congestion.results import (
     HOUR_S,
     WHOLE,
@@ -27,6 +26,7 @@ from automotive_cosim.studies.congestion.results import (
     waited_s,
 )
 from automotive_cosim.studies.congestion.rows import Emitted, FlowSums, MeasureOutcome
+from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
 from automotive_cosim.studies.tables import NONE, told, told_mean
 from automotive_cosim.traffic.network import Network, read_network
@@ -129,7 +129,7 @@ def by_class(study: CongestionStudy) -> Table:
                 queues = [queue_m(plan, outcome, part) for outcome in outcomes]
                 rows.append(
                     (
-                        period_name(study, period),
+                        *((period_name(study, period),) if len(periods) > 1 else ()),
                         road_class,
                         name_of(measure),
                         f"{fmean(delay_h(plan, each, part) for each in outcomes):.2f}",
@@ -143,7 +143,7 @@ def by_class(study: CongestionStudy) -> Table:
                     )
                 )
     columns = (
-        "Time",
+        *(("Time",) if len(periods) > 1 else ()),
         "Road class",
         "Measure",
         "Time lost, veh-h/h",
@@ -159,7 +159,8 @@ def by_class(study: CongestionStudy) -> Table:
         "Classes are OpenStreetMap's. Time lost: on the road, the part of the delay that belongs to a class; "
         "waiting outside belongs to none. Other figures as above."
     )
-    return Table("by_class", "By class of road and hour", columns, tuple(rows), note, heads=3)
+    title = "By class of road and hour" if len(periods) > 1 else "By class of road"
+    return Table("by_class", title, columns, tuple(rows), note, heads=len(columns) - 8)
 
 
 def period_name(study: CongestionStudy, period: int | None) -> str:
