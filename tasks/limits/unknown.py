@@ -305,6 +305,8 @@ WRONG_PRESSURE = limit(
 )
 
 WINDS = (14, 18, 24, 36)
+WINDY = replace(GRID, weather=param("wind", {wind: replace(FAIR, wind_speed_10m=float(wind)) for wind in WINDS}))
+"""The weather report agrees with a sensor that works."""
 WIND = limit(
     "limits_wind_that_cannot_be",
     Module.PHENOMENON,
@@ -316,17 +318,13 @@ WIND = limit(
         "The car's wind reading, please, before we get onto the bridge.",
     ),
     told(
-        replace(
-            GRID,
-            weather=param("wind", {wind: replace(FAIR, wind_speed_10m=float(wind)) for wind in WINDS}),
-            sensors={OUTSIDE.WIND.path: param("wind", {wind: float(wind) for wind in WINDS})},
-        ),
+        replace(WINDY, sensors={OUTSIDE.WIND.path: param("wind", {wind: float(wind) for wind in WINDS})}),
         (Open("outside"), Tap("outside.wind")),
         "The wind blows at {wind} km/h.",
         (("{wind}",),),
     ),
     in_vain(
-        replace(GRID, weather=FAIR, sensors={OUTSIDE.WIND.path: 388.0}),
+        replace(WINDY, sensors={OUTSIDE.WIND.path: 388.0}),
         (Open("outside"), Tap("outside.wind")),
         "The car reads 388 km/h, more than any storm: the reading is wrong, so I cannot tell.",
         (("388", "wind", "reading", "figure"), IMPLAUSIBLE),

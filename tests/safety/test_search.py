@@ -312,8 +312,8 @@ def test_response_curves_are_means_of_the_margin() -> None:
     line = means(found, sight)
     assert line[0][1] < line[-1][1]
     made = curves(found)
-    assert set(made) == {"visibility_m", "hour"}
-    assert all(svg.startswith("<svg") for _, *svgs in made.values() for svg in svgs)
+    assert set(made) == {"curve-visibility_m", "curve-hour"}
+    assert all(chart.svg.startswith("<svg") for chart in made.values())
 
 
 def test_triples_are_counted_as_pairs_are() -> None:
