@@ -12,8 +12,9 @@ import importlib
 import inspect
 import sys
 from collections.abc import Callable
+from contextlib import redirect_stdout
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 from automotive_cosim.agents.androidworld import AndroidWorldAgent
 from automotive_cosim.agents.base import Agent
@@ -25,6 +26,11 @@ from automotive_cosim.interface.observe import ALL, Channel
 FORM = "package.module:Class"
 FAULTS = (Exception, SystemExit)
 """Exceptions that a guest's code may raise; even its ``sys.exit`` must not end this program."""
+
+
+def aside() -> redirect_stdout[TextIO]:
+    """While it lasts, what a guest's code prints goes to standard error: standard output is a command's answer."""
+    return redirect_stdout(sys.stderr)
 
 
 class Guest:
@@ -51,7 +57,8 @@ class Guest:
             UserError: the agent raised.
         """
         try:
-            self._agent.reset(goal)
+            with aside():
+                self._agent.reset(goal)
         except FAULTS as error:
             raise UserError(f"agent {self.name!r} raised {told(error)} in reset") from error
 
@@ -64,7 +71,8 @@ class Guest:
             OutOfBudgetError: it gives up.
         """
         try:
-            returned = self._agent.act(observation)
+            with aside():
+                returned = self._agent.act(observation)
         except (ActionError, OutOfBudgetError) as error:
             raise type(error)(_plain(str(error))) from error
         except FAULTS as error:
@@ -130,7 +138,8 @@ def own_class(spec: str, what: str) -> type:
     if module_name.endswith(".py"):
         raise UserError(f"{what} {spec!r}: omit the .py, as in {module_name.removesuffix('.py')}:{class_name}")
     try:
-        module = importlib.import_module(module_name)
+        with aside():
+            module = importlib.import_module(module_name)
     except ImportError as error:
         raise UserError(f"{what} {spec!r}: cannot import {module_name}: {error}") from error
     except FAULTS as error:
@@ -163,7 +172,8 @@ def _check_call(spec: str, method: Callable[..., Any], name: str, given: int) ->
 
 def _made(spec: str, made: type) -> Any:
     try:
-        return made()
+        with aside():
+            return made()
     except FAULTS as error:
         raise UserError(
             f"agent {spec!r}: {made.__name__}() raised {told(error)}; it is called without arguments"

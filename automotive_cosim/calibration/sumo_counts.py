@@ -1,7 +1,7 @@
 """Reads counts in SUMO's own formats.
 
 * Edge data (``<meandata>`` or ``<data>``), as edgeData writes it and routeSampler reads it: the vehicles that
-  ``entered`` each edge in an interval.
+  ``entered`` each edge in an interval, and those that ``departed`` there, whom SUMO does not count as entered.
 * What induction loops write (``<detector>``): ``nVehContrib`` of each loop and interval.
 * The table that dfrouter and flowrouter read: ``Detector;Time;qPKW;qLKW``, whose times are minutes.
 
@@ -82,7 +82,8 @@ def read_xml_counts(path: Path, detectors: Path | None) -> Flows:
             begin_s, end_s = _span(path, element)
         elif element.tag == "edge" and "entered" in element.attrib:
             edges = True
-            found.append(_Count(element.get("id", ""), begin_s, end_s, _number(path, element, "entered")))
+            passed = sum(_number(path, element, name) for name in ("entered", "departed") if name in element.attrib)
+            found.append(_Count(element.get("id", ""), begin_s, end_s, passed))
     if loops == edges:
         raise CountsError(
             f"{path} has no counts: neither edge data (<edge entered=…>) nor what induction loops write"

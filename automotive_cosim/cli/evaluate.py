@@ -171,13 +171,21 @@ def evaluate(
 
 
 def _short(found: Results, at_least: float) -> list[str]:
-    """What is below a share: of the planned episodes, or of the score of drives, which must all have run."""
+    """What is below a share, agent by agent: of the planned episodes, or of the score of drives.
+
+    All drives must have run.
+    """
     from automotive_cosim.report.drives import grouped, whole
 
     told = []
-    planned, won = len(found.rows) + len(found.not_run), sum(row.has_succeeded for row in found.rows)
-    if won < at_least * planned:
-        told.append(f"{won:,} of {counted(planned, 'episode')} succeeded, a smaller share than {at_least:g}")
+    for each in found.contestants:
+        planned = found.planned_of(each)
+        won = sum(row.has_succeeded for row in planned)
+        if won < at_least * len(planned):
+            told.append(
+                f"{each.label}: {won:,} of {counted(len(planned), 'episode')} succeeded, a smaller share than "
+                f"{at_least:g}"
+            )
     for each, rows in grouped(found.drives).items():
         points = whole(rows).value
         if points < 100 * at_least:

@@ -78,8 +78,8 @@ class RunSettings:
     ] = None
     """Keep the screenshots, and the road with its vehicles, of: none, failures or all."""
     at_least: Annotated[float, Ge(0), Le(1)] = 0.0
-    """End with 1 if a smaller share of the planned episodes succeeded, or drives score a smaller share of 100
-    points; 0 to 1, as in 0.8."""
+    """End with 1 if any agent succeeds in a smaller share of its planned episodes, or its drives score a smaller
+    share of 100 points; 0 to 1, as in 0.8."""
 
     def kept(self, runs: int) -> Pictures:
         """The pictures that so many runs keep."""

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import Protocol
 
-from automotive_cosim.agents.guest import FAULTS, own_class, told
+from automotive_cosim.agents.guest import FAULTS, aside, own_class, told
 from automotive_cosim.errors import UserError
 from automotive_cosim.scenarios.gap import NOTICED_S, DrivenTrip, EdgeTimes
 from automotive_cosim.traffic.network import Network
@@ -71,7 +71,8 @@ class OwnAdviser:
         if not callable(getattr(made, "advise", None)):
             raise UserError(f"adviser {spec!r} lacks advise(day); an adviser is a class with it")
         try:
-            self._adviser: Adviser = made(seed)
+            with aside():
+                self._adviser: Adviser = made(seed)
         except FAULTS as error:
             raise UserError(f"adviser {spec!r}: {made.__name__}(seed) raised {told(error)}") from error
 
@@ -82,7 +83,9 @@ class OwnAdviser:
             UserError: it raised, or a route is not one.
         """
         try:
-            chosen = {str(name): tuple(map(str, way)) for name, way in self._adviser.advise(day).items()}
+            with aside():
+                advised = self._adviser.advise(day)
+            chosen = {str(name): tuple(map(str, way)) for name, way in advised.items()}
         except FAULTS as error:
             raise UserError(f"adviser {self._spec!r} raised {told(error)} in advise") from error
         trips = {trip.id: trip.edges for trip in day.trips}

@@ -125,6 +125,12 @@ def warnings(study: DaysStudy) -> list[str]:
             f"The nearest that was found to a user equilibrium has a relative gap of {gap.value:.1%}, more than "
             f"{NEAR:.0%}: differences from it are differences from a guess."
         )
+    begun, least = (over_seeds(study.of(drivers), lambda day: day.mean_s) for drivers in (0.0, OPTIMUM))
+    if begun is not None and least is not None and least.value >= begun.value and 0.0 in shares(study):
+        found.append(
+            "No search found a day with shorter trips than the first: the system optimum is not known, and stands "
+            "here for the best that was found, the first day."
+        )
     unsettled = [named(share) for share in shares(study) if any(row.settled is None for row in study.of(share))]
     if unsettled:
         found.append(f"Not settled in every seed: {', '.join(unsettled)}; run more --days.")
@@ -182,12 +188,11 @@ def tables(study: DaysStudy) -> list[Table]:
         "Relative gap",
     )
     note = (
-        f"Means of the last {WEEK} days, from the planned departure to the arrival. Settled: the mean of {WEEK} "
-        f"days differs by less than {SETTLED:.0%} from that of the {WEEK} days before. User equilibrium: the day "
-        "with the smallest gap. System optimum: the day with the least time, which may not be the least there is. "
-        "Differences: seed by seed. "
-        "Relative gap: what all drivers lost against the routes that were quickest that day; 0 is a user "
-        "equilibrium."
+        f"Means of the last {min(WEEK, study.plan.days + 1)} days, from the planned departure to the arrival. "
+        f"Settled: the mean of {WEEK} days differs by less than {SETTLED:.0%} from that of the {WEEK} days before. "
+        "User equilibrium: the day with the smallest gap. System optimum: the day with the least time, which may "
+        "not be the least there is. Differences: seed by seed. Relative gap: what all drivers lost against the "
+        "routes that were quickest that day; 0 is a user equilibrium."
     )
     return [Table("shares", "Travel time by the share of advised drivers", columns, tuple(rows), note)]
 

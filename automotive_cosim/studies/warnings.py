@@ -103,6 +103,12 @@ def placebos(study: Study) -> Iterator[str]:
             "anybody else: either nothing in this traffic is left to chance, or chance is not measured here, so "
             "wins and losses are not told from it."
         )
+    elif noise.placebos and not noise.time_s:
+        yield (
+            f"{counted(noise.placebos, 'placebo')} with fresh random numbers moved others, but never the ego's "
+            f"arrival, which is told in steps of {study.plan.step_s:g} s: wins and losses of that size are not "
+            "told from chance."
+        )
 
 
 def other_steps(study: Study) -> Iterator[str]:

@@ -40,6 +40,23 @@ def test_a_class_with_two_methods_is_an_agent(module, observation):
     assert agent.act(observation("x")) == Action(ActionType.ANSWER, text="hello")
 
 
+def test_what_it_prints_is_no_part_of_a_commands_answer(module, observation, capsys):
+    text = """
+        print("imported")
+        class Mine:
+            def __init__(self): print("made")
+            def reset(self, goal): print("reset")
+            def act(self, seen):
+                print("acts")
+                return {"action_type": "wait"}
+    """
+    agent = make_agent(f"{module(text)}:Mine")
+    agent.reset("hello")
+    agent.act(observation("x"))
+    said = capsys.readouterr()
+    assert (said.out, said.err.split()) == ("", ["imported", "made", "reset", "acts"])
+
+
 def test_it_may_say_its_name_and_channels(module):
     text = WHOLE + "    name, model, channels = 'my agent', 'gpt', ('elements', 'vehicle')\n"
     agent = make_agent(f"{module(text)}:Mine")

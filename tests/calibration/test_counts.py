@@ -194,7 +194,7 @@ def test_the_champs_elysees(data_of_others: Callable[[str], Path]) -> None:
 
 
 EDGE_DATA = """<meandata><interval begin="25200" end="30600" id="peak">
-<edge id="north" entered="900" sampledSeconds="12"/><edge id="south" entered="0"/>
+<edge id="north" entered="880" departed="20" sampledSeconds="12"/><edge id="south" entered="0"/>
 <edge id="quiet" sampledSeconds="0"/>
 </interval></meandata>"""
 LOOPS = """<additional><e1Detector id="a" lane="north_0" pos="10" file="out.xml"/>
@@ -250,8 +250,8 @@ def test_a_table_of_dfrouter_counts_cars_and_lorries_of_its_periods(tmp_path: Pa
     [
         ("<meandata><interval", "is not XML"),
         ("<routes><vehicle/></routes>", "no counts: neither edge data"),
-        (EDGE_DATA.replace('"900"', '"many"'), "'many'; it must be a number from 0"),
-        (EDGE_DATA.replace('"900"', '"-9"'), "'-9'; it must be a number from 0"),
+        (EDGE_DATA.replace('"880"', '"many"'), "'many'; it must be a number from 0"),
+        (EDGE_DATA.replace('"880"', '"-9"'), "'-9'; it must be a number from 0"),
         (EDGE_DATA.replace('"30600"', '"25200"'), "its end must be later"),
     ],
 )

@@ -11,7 +11,7 @@ import threading
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -35,6 +35,7 @@ from automotive_cosim.run.meter import Spent
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.settings import Budget, Pictures
+from automotive_cosim.run.stage import JobStage
 from automotive_cosim.run.worker import run_job
 from automotive_cosim.traffic.fork import Simulations
 from tests.laws import over
@@ -71,6 +72,7 @@ class Here:
     job: Any = None
     count: int = 1
     is_ready: bool = True
+    stage: JobStage = field(default_factory=JobStage)
 
     @property
     def handles(self) -> list[Any]:

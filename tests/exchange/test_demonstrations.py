@@ -15,9 +15,9 @@ from automotive_cosim.traffic.fork import Simulations
 
 
 def test_a_drive_is_a_chain_of_steps_that_earns(simulations: Simulations) -> None:
-    steps = list(drives(["grid_june"], [1], minutes=3, simulations=simulations))
+    steps = list(drives(["grid_june"], [2], minutes=3, simulations=simulations))
     assert [step.step for step in steps] == list(range(len(steps)))
-    assert {(step.episode, step.name, step.seed) for step in steps} == {(0, "grid_june", 1)}
+    assert {(step.episode, step.name, step.seed) for step in steps} == {(0, "grid_june", 2)}
     assert [step.terminated for step in steps] == [False] * (len(steps) - 1) + [True]
     for step, after in pairwise(steps):
         assert np.array_equal(step.next_observation, after.observation)

@@ -145,7 +145,7 @@ def test_drivers_find_the_other_way(jammed: Path, tmp_path: Path) -> None:
     routes = (target / "equilibrium.rou.xml").read_text()
     assert routes.count("access out back exit") > 50
     assert routes.count("<vehicle ") == steps[0].gap.trips + steps[0].gap.unfinished
-    again = measure(scenarios.load(target), minutes=15)
+    again = measure(scenarios.load(target), observe_s=900)
     assert again.relative == pytest.approx(best), "the folder is the step that was kept"
     with pytest.raises(UserError, match="exists"):
         equilibrate(jammed, target, EquilibriumSettings(), told.append)

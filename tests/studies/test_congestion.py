@@ -129,6 +129,12 @@ def test_it_warns() -> None:
     jam = replace(none.rows[0].outcomes[1], gridlock="30 of 40 vehicles stand")
     jammed = replace(none.rows[0], outcomes=(none.rows[0].outcomes[0], jam))
     assert any("gridlocked" in each for each in warnings(replace(none, rows=(jammed, *none.rows[1:]))))
+    (first, *_), *_ = (row.outcomes for row in none.rows)
+    drained = replace(first, states=tuple(replace(each, departed=min(each.departed, 50)) for each in first.states))
+    dry = [replace(row, outcomes=(drained, *row.outcomes[1:])) for row in none.rows]
+    told = [each for each in warnings(replace(none, rows=tuple(dry))) if "the demand ends" in each]
+    assert len(told) == 1
+    assert "after 49 of 60 min" in told[0]
 
 
 def test_sumos_outputs_are_read_against_the_usual_limit(tmp_path: Path) -> None:

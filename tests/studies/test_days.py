@@ -86,6 +86,10 @@ def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
     assert any("relative gap of 10.0%, more than 2%" in each for each in warnings(far))
     restless = replace(found, rows=(*found.rows[:5], row(1.0, 1, 200.0, 100.0), found.rows[6]))
     assert any("Not settled in every seed: 100% advised" in each for each in warnings(restless))
+    vain = replace(
+        found, rows=tuple(replace(each, days=(day(200.0),)) if each.optimum else each for each in found.rows)
+    )
+    assert any("the system optimum is not known" in each for each in warnings(vain))
 
 
 def test_what_is_remembered_is_smoothed() -> None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.formats.incidents import Jam
 from automotive_cosim.studies.congestion.charts import charts
-from automotive_cosim.studies.congestion.plan import measure_in
+from automotive_cosim.studies.congestion.plan import EPOCH_S, measure_in
 from automotive_cosim.studies.congestion.results import (
     WHOLE,
     CongestionStudy,
@@ -19,12 +19,16 @@ from automotive_cosim.studies.congestion.results import (
     read_congestion,
     strongest,
 )
+from automotive_cosim.studies.congestion.rows import FlowState
 from automotive_cosim.studies.congestion.tables import mean, tables
 from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import LEAST_SEEDS, PUBLISHED_SEEDS, SeedMean
 from automotive_cosim.studies.shown import ShownStudy, write_shown
 from automotive_cosim.studies.tables import told
 from automotive_cosim.studies.warnings import missing_told, steps_told
+
+LEAST_DEPARTING = 0.1
+"""Below this share of the mean rate, hardly anybody departs any more."""
 
 
 def write_congestion(folder: Path) -> Path:
@@ -107,6 +111,24 @@ def warnings(study: CongestionStudy) -> list[str]:
     return [*missing_told(len(study.plan.seeds), len(study.rows), "seed"), *_found(study)]
 
 
+def _dry_from_s(study: CongestionStudy) -> float | None:
+    """When departures without a measure fell for good below a tenth of their mean rate; None if they did not.
+
+    At least five minutes must be left, as figures are told in five minutes.
+    """
+    outcomes = [outcome.states for _, outcome in study.outcomes("")]
+    if not outcomes:
+        return None
+    together: Iterator[tuple[FlowState, ...]] = zip(*outcomes, strict=False)
+    departed = [(states[0].at_s, sum(each.departed for each in states)) for states in together]
+    (first_s, before), (last_s, total) = departed[0], departed[-1]
+    for at_s, so_far in departed:
+        rate, rest = (so_far - before) / max(1.0, at_s - first_s), last_s - at_s
+        if at_s > first_s and rest >= EPOCH_S and total - so_far < LEAST_DEPARTING * rate * rest:
+            return at_s
+    return None
+
+
 def _found(study: CongestionStudy) -> Iterator[str]:
     plan = study.plan
     seeds = len(list(study.outcomes("")))
@@ -138,5 +160,10 @@ def _found(study: CongestionStudy) -> Iterator[str]:
         if measure and pairs and all(one.states == two.states and one.cells == two.cells for one, two in pairs):
             yield f"“{name_of(measure)}” changes nothing in any seed."
     yield from steps_told(plan.opened, plan.step_s)
+    if dry_s := _dry_from_s(study):
+        yield (
+            f"Hardly anybody departs after {dry_s / 60:.0f} of {plan.minutes:g} min: the demand ends before the "
+            f"study does, and all figures include an emptying network; take --minutes {dry_s / 60:.0f} or less."
+        )
     if all(mean(study, each, lambda one: delay_h(plan, one, WHOLE)) == 0 for each in study.measures):
         yield "Nobody loses any time: there is no congestion to measure."
