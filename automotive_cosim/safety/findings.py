@@ -428,4 +428,5 @@ def as_json(found: Hunt) -> Json:
         ],
         "unsteady": [dict(each.point) for each in found.unsteady],
         "not_reduced": [dict(each.point) for each in found.not_reduced],
+        "sampled_trials": [each.outcome.trial for each in found.samples if each.outcome.trial],
     }
