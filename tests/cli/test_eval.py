@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.errors import install_hint
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_trace, write_trace
 
@@ -107,8 +108,9 @@ def test_without_ray_the_command_that_installs_it_is_named(cli, monkeypatch, tmp
     monkeypatch.setitem(sys.modules, "ray", None)
     ran = cli("eval", "--agents", "oracle", *GRID, "--executor", "ray")
     assert (ran.code, ran.err) == (
-        2, "error: the ray package is missing; install it with `pip install 'automotive-cosim[ray]'`\n"
-    )  # fmt: skip
+        2,
+        f"error: the ray package is missing; install it with `{install_hint('ray')}`\n",
+    )
     assert not list(tmp_path.iterdir())
 
 
