@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -75,7 +74,7 @@ def evaluate(
     Rerun the command to resume.
     """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.report.answer import answer
+    from automotive_cosim.report.answer import agents_as_json, answer
     from automotive_cosim.report.charts import is_installed
     from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
@@ -142,7 +141,8 @@ def evaluate(
     size_mb = megabytes(folder)
     if as_json:
         counts = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
-        typer.echo(json.dumps(counts | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
+        counts |= {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}
+        print_json(counts | {"answer": answer(found), "agents": agents_as_json(found)})
     else:
         console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")

@@ -254,6 +254,15 @@ def test_few_drives_have_no_interval(tmp_path):
     assert "-5 points |" in markdown((found,), 0.0)
 
 
+def test_drives_are_told_with_their_score_and_its_interval(tmp_path):
+    from automotive_cosim.report.answer import agents_as_json
+    from automotive_cosim.report.results import read_results
+
+    (told,) = agents_as_json(read_results(scored(tmp_path / "a", [100, 100, 100, 100, 100, -20])))
+    assert (told["agent"], told["drives"], told["score"]) == ("silent", 6, pytest.approx(80))
+    assert told["interval"][0] < 80 < told["interval"][1] <= 100
+
+
 def test_a_share_of_the_score_is_asked_of_drives(tmp_path):
     from automotive_cosim.cli.evaluate import _short
     from automotive_cosim.report.results import read_results

@@ -295,6 +295,7 @@ def test_the_report_is_whole(driven: Path) -> None:
         ("breakdown edge=c2c3 position_m=100 to_s=1200", "breakdown on c2c3, at 100 m, until 1200 s"),
         ("breakdown edge=c2c3 position_m=100 aside=true", "breakdown on c2c3, at 100 m, aside true"),
         ("jam edges=a,b length_m=200 hold_s=15", "jam of 200 m on a,b, one car per lane passes every 15 s"),
+        ("jam edge=a length_m=200", "jam of 200 m on a"),
     ],
 )
 def test_measures_are_named_in_words(line: str, words: str) -> None:
