@@ -10,8 +10,8 @@ from typing import Any
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
-from automotive_cosim.drives.faults import OUTCOMES, times, was
-from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
+from automotive_cosim.drives.faults import OUTCOMES, WHY_VOID, times, was
+from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json, read_json
@@ -404,9 +404,14 @@ def _became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
 def _drive_timeline(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct]) -> list[Json]:
     """Every instant that the page lists, in order."""
     told = []
-    for event in events:
+    is_explained = False
+    for event in sorted(events, key=lambda each: each.observable_s):
         kind = event.kind.replace("_", " ")
-        what = f"{'look-alike of ' if event.lookalike else ''}{kind}: {event.words} ({_became(event, acts)})"
+        became = _became(event, acts)
+        if event.outcome is EventOutcome.VOID and not is_explained:
+            is_explained = True
+            became += f": {WHY_VOID}"
+        what = f"{'look-alike of ' if event.lookalike else ''}{kind}: {event.words} ({became})"
         told.append((event.observable_s, "event", what))
         if event.deadline_s is not None and not event.lookalike:
             told.append((event.deadline_s, "deadline", f"deadline of {kind}"))

@@ -344,8 +344,8 @@ def test_the_reference_of_observations_has_every_field_reading_action_and_number
     assert [re.findall(r"^\| `(\w+)`", part, re.MULTILINE) for part in (seen, car)] == fields_of
     named = re.findall(r"`([^`]+)`", noticed.rpartition("does:")[2])
     assert named == [wake.name for wake in WAKES]
-    alerts = re.findall(r"(\d+) `(\w+)`", drives.partition("There are 256")[0])
-    acts = [(str(number), act.kind) for number, act in enumerate(flat_drive.ACTIONS) if act.kind]
+    alerts = re.findall(r"(\d+)\s`(\w+)`", drives.partition("There are 256")[0])
+    acts = [(str(number), str(act.kind)) for number, act in enumerate(flat_drive.ACTIONS) if act.kind]
     assert alerts == acts
     assert re.findall(r"^\| ([^|`]+) \|", drives, re.MULTILINE)[1:] == list(flat_drive.FEATURES)
     size = len(flat_drive.FEATURES) + sum(flat_drive.SLOTS) + len(WAKES) + len(AlertKind)
