@@ -28,6 +28,7 @@ from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
 from automotive_cosim.run.words import action_in_words
+from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve.decisions import decision_map, decisions, drives_under_way
 from automotive_cosim.serve.records import NotHereError, RecordEntry, RecordFolders
 from automotive_cosim.serve.spectators import Spectators
@@ -139,6 +140,7 @@ class Content:
             "id": entry.id,
             "kind": kind,
             "name": entry.folder.name,
+            "is_search": (entry.folder / PAGE).is_file(),
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
             "running": sorted(
@@ -210,6 +212,7 @@ class Content:
             running = is_being_written(entry.folder / "lock")
             planned = manifest.get("episodes")
             told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
+            told["is_search"] = (entry.folder / PAGE).is_file()
             return {**shared, **told}
         if entry.is_drive:
             drive = self._drive(entry, (), None)
@@ -269,6 +272,7 @@ class Content:
             "id": entry.id,
             "kind": "drives",
             "name": entry.folder.name,
+            "is_search": (entry.folder / PAGE).is_file(),
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
             "rows": self._drive_rows(entry, rows.values()),
