@@ -54,7 +54,7 @@ def _preventable(subject: Subject) -> Claim:
         found = rate((row.task, row.success) for row in subject.episodes)
         bounds = (
             ""
-            if found.interval is None
+            if found.interval is None or subject.findings is not None
             else f", {100 * found.interval.low:.0f} to {100 * found.interval.high:.0f} %"
         )
         status = "supported" if passed == len(subject.episodes) else "contradicted"
