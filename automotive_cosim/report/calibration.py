@@ -250,10 +250,11 @@ SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1))
 
 def label_places(axes: Axes, marked: Sequence[tuple[str, tuple[float, float], str]]) -> None:
     """Names places, each label as near as it overlaps no earlier one; one that has to stand far has a line."""
+    from matplotlib.figure import Figure
     from matplotlib.text import Text
 
     figure = axes.get_figure()
-    assert figure is not None
+    assert isinstance(figure, Figure)
     figure.draw_without_rendering()  # settles the scale
     taken: list[Bbox] = []
     for text, place, colour in sorted(marked):
