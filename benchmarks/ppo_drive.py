@@ -270,8 +270,8 @@ def train(chosen: argparse.Namespace, start: str, bench: Bench, steps: Sequence[
         spent = {"seconds": trained_s, "processor_seconds": busy_s}
         point = {"steps": model.num_timesteps, **spent, **bench.measured(Network.of(model))}
         curve.append(point)
-        print(f"{start:>9}  {point['steps']:7.0f} steps  {told(point)}  {trained_s:.0f} s, {busy_s:.0f} of processors",
-              flush=True)  # fmt: skip
+        took = f"{trained_s:.0f} s, {busy_s:.0f} of processors"
+        print(f"{start:>9}  {point['steps']:7.0f} steps  {told(point)}  {took}", flush=True)
     model.get_env().close()
     if chosen.out:
         arrays = {f"{kind}{at}": each for at, pair in enumerate(Network.of(model).layers)

@@ -9,7 +9,7 @@ import typer
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import TasksFrom, whole_number
-from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.errors import SetupError, UserError, install_hint
 
 
 @takes(ExecutorSettings, only=["workers"])
@@ -29,9 +29,7 @@ def a2a(
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("a2a", "google", "httpx", "starlette", "uvicorn"):
             raise
-        raise SetupError(
-            "the a2a-sdk package is missing; install it with `pip install 'automotive-cosim[a2a]'`"
-        ) from error
+        raise SetupError(f"the a2a-sdk package is missing; install it with `{install_hint('a2a')}`") from error
     url = card_url or f"http://{host}:{port}/"
     typer.echo(url)
     try:

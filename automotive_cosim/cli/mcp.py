@@ -8,7 +8,7 @@ import typer
 
 from automotive_cosim.cli.options import TasksFrom, number, whole_number
 from automotive_cosim.contracts.given import Interface
-from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.errors import SetupError, UserError, install_hint
 
 
 def _address(text: str) -> tuple[str, int]:
@@ -64,9 +64,7 @@ def mcp(
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
             raise
-        raise SetupError(
-            "the mcp package is missing; install it with `pip install 'automotive-cosim[mcp]'`"
-        ) from error
+        raise SetupError(f"the mcp package is missing; install it with `{install_hint('mcp')}`") from error
     from automotive_cosim.service import EpisodeService, ServiceLimits
 
     address = _address(http) if http else None

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.run.row import columns
 from automotive_cosim.run.store import read_manifest, read_rows
 from automotive_cosim.studies.plan import StudyPlan, make_study
@@ -122,7 +122,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
     try:
         import pandas as pd
     except ImportError as error:
-        raise SetupError("load_study requires pandas: pip install 'automotive-cosim[report]'") from error
+        raise SetupError(f"load_study requires pandas: {install_hint('report')}") from error
     return pd.DataFrame([columns(choice) for choice in read_study(Path(folder)).all_choices])
 
 

@@ -172,7 +172,7 @@ class Network:
     def free_s(self) -> dict[str, float]:
         """The time of every edge that a route may contain, at its limit."""
         cars = {name: edge.length_m / max(SLOWEST_MPS, edge.speed_mps) for name, edge in self.edges.items()}
-        return cars | self.closed_free_s
+        return {**cars, **self.closed_free_s}
 
     @property
     def has_hours(self) -> bool:
