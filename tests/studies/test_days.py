@@ -89,7 +89,10 @@ def test_the_answer_compares_with_nobody_and_with_the_equilibrium() -> None:
     vain = replace(
         found, rows=tuple(replace(each, days=(day(200.0),)) if each.optimum else each for each in found.rows)
     )
-    assert any("the system optimum is not known" in each for each in warnings(vain))
+    assert any(
+        "optimum is not known: trips take no longer with 0% advised or with 100%" in each for each in warnings(vain)
+    )
+    assert "optimum" not in answer(vain)
 
 
 def test_what_is_remembered_is_smoothed() -> None:
