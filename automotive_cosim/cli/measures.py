@@ -38,6 +38,7 @@ def measures(
 ) -> None:
     """Print the encounters of a recorded trial with their surrogate measures of safety, as CSV or Parquet."""
     from automotive_cosim.exchange.needs import check_formats
+    from automotive_cosim.exchange.settings import ExportFormats
     from automotive_cosim.exchange.trajectories import write_frame
     from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
     from automotive_cosim.measures.encounters import as_csv, as_frame
@@ -45,7 +46,7 @@ def measures(
     from automotive_cosim.run.road import read_record, road_in
 
     path = record if record.is_file() else road_in(record)
-    check_formats(parquet=out is not None and out.suffix == ".parquet")
+    check_formats(ExportFormats(parquet=out is not None and out.suffix == ".parquet"))
     scenes = [(second.at_s, second.vehicles) for second in read_record(path).seconds]
     thresholds = filled(Thresholds, settings)
     ego = None if everyone else "ego"
