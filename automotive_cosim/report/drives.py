@@ -102,8 +102,8 @@ def _saved(of: Callable[[Any], float]) -> Figure:
 
     def figure(rows: Sequence[DriveTrialRow]) -> float | None:
         pairs = [(row.harm, row.baseline_harm) for row in rows if row.harm and row.baseline_harm]
-        nobodys = sum(of(baseline) for _, baseline in pairs)
-        return 100 * (nobodys - sum(of(mine) for mine, _ in pairs)) / nobodys if nobodys else None
+        before = sum(of(baseline) for _, baseline in pairs)
+        return 100 * (before - sum(of(mine) for mine, _ in pairs)) / before if before else None
 
     return figure
 
