@@ -7,8 +7,6 @@ nothing is known: a value is right to one step.
 
 from __future__ import annotations
 
-import csv
-import io
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
@@ -22,6 +20,7 @@ import numpy as np
 
 from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.errors import SetupError
+from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.measures.formulas import (
     crossing_drac_mps2,
     crossing_time_to_collision_s,
@@ -174,12 +173,8 @@ def encounters(
 
 def as_csv(rows: Iterable[Encounter] | Iterable[PairReading], kind: type[Encounter] | type[PairReading]) -> str:
     """The rows as a table with a column for each field; what is None is empty."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     names = _names(kind)
-    writer.writerow(names)
-    writer.writerows([_plain(getattr(row, name)) for name in names] for row in rows)
-    return text.getvalue()
+    return csv_text(names, ([_plain(getattr(row, name)) for name in names] for row in rows))
 
 
 def _names(kind: type[Encounter] | type[PairReading]) -> list[str]:
