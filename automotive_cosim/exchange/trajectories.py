@@ -12,7 +12,7 @@ from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.errors import SetupError
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.formats.csvs import csv_text
-from automotive_cosim.run.record import write_whole
+from automotive_cosim.formats.files import write_whole
 
 NEEDS = "Parquet needs pandas and pyarrow: pip install 'automotive-cosim[parquet]'"
 COLUMNS = ("at_s", *(entry.name for entry in fields(SeenVehicle)))

@@ -8,6 +8,8 @@ from collections.abc import Iterable
 from io import StringIO
 from pathlib import Path
 
+from automotive_cosim.formats.files import write_whole
+
 
 def csv_text(columns: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
     """A table, the columns' names first; what is None is empty."""
@@ -25,6 +27,4 @@ def write_packed_csv(path: Path, columns: Iterable[object], rows: Iterable[Itera
         OSError: it cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    draft = path.with_name(f".{path.name}.part")
-    draft.write_bytes(gzip.compress(csv_text(columns, rows).encode(), mtime=0))
-    draft.replace(path)
+    write_whole(path, gzip.compress(csv_text(columns, rows).encode(), mtime=0))

@@ -11,7 +11,8 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.drives.faults import beside, clock, faults
+from automotive_cosim.contracts.plain import clock
+from automotive_cosim.drives.faults import beside, faults
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Chart, Drawing
 from automotive_cosim.run.drive_row import DriveTrialRow

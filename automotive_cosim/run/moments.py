@@ -28,7 +28,7 @@ from zoneinfo import ZoneInfo
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.files import read_json, write_whole
 from automotive_cosim.geo.locate import Geo
 
 PACKAGE = "automotive_cosim."
@@ -127,9 +127,7 @@ def write_judged(folder: Path, trial: str, judged: JudgeInput) -> None:
     value = writer.value(judged.packed())
     whole = {"classes": writer.classes, "pool": writer.pool, "value": value}
     text = json.dumps(whole, ensure_ascii=False, separators=(",", ":"))
-    draft = path.with_name(f".{path.name}.part")
-    draft.write_bytes(lzma.compress(text.encode(), preset=PRESET))
-    draft.replace(path)
+    write_whole(path, lzma.compress(text.encode(), preset=PRESET))
 
 
 def read_judged(folder: Path, trial: str, kind: type[J]) -> J:

@@ -17,7 +17,7 @@ from typing import Annotated, Any
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.csvs import csv_text
-from automotive_cosim.run.record import write_whole
+from automotive_cosim.formats.files import drafted, write_whole
 from automotive_cosim.run.row import InColumns, columns
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.policies import chosen, parse_policy
@@ -198,13 +198,12 @@ def choosers(plan: StudyPlan, decision: Decision) -> dict[int | None, str]:
 def _write_parquet(path: Path, rows: Sequence[object]) -> Path:
     import pandas as pd
 
-    draft = path.with_name(f".{path.name}.part")
     made = [columns(row) for row in rows]
     # The declared types, not the narrowest that fit these values, so that files of several studies match.
     dtypes = {name: DTYPES.get(_type(row[name] for row in made), "object") for name in made[0]}
     frame = pd.DataFrame({name: pd.Series([row[name] for row in made], dtype=dtypes[name]) for name in dtypes})
-    frame.to_parquet(draft, index=False)
-    draft.replace(path)
+    with drafted(path) as draft:
+        frame.to_parquet(draft, index=False)
     return path
 
 
