@@ -24,6 +24,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from difflib import get_close_matches
+from pathlib import Path
+
+CHECKOUT = Path(__file__).resolve().parents[1]
+"""The folder with the package: of an editable installation the checkout, which has its constraints."""
 
 CLOSE = 3
 """At most so many names that contain an unknown one are offered for it."""
@@ -137,3 +141,14 @@ class OutOfBudgetError(CosimError):
 
 class AgentError(CosimError):
     """An agent that can act no more, e.g. because its process has ended; this is its own failure."""
+
+
+def install_hint(extra: str = "") -> str:
+    """The command that installs an extra: from the checkout that this runs from, else from an index.
+
+    Args:
+        extra: its name in ``pyproject.toml``; empty for the package alone.
+    """
+    if (CHECKOUT / "constraints.txt").is_file():
+        return "pip install -c constraints.txt -e " + (f"'.[{extra}]'" if extra else ".")
+    return "pip install " + (f"'automotive-cosim[{extra}]'" if extra else "automotive-cosim")

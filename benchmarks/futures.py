@@ -49,8 +49,8 @@ def counted(tally: Tally) -> Iterator[None]:
         begun[traffic] = spent_s(traffic.pid), traffic.state.time_s, traffic.branch()
         begin(traffic, *arguments)
 
-    def end_both(traffic: RemoteTraffic) -> Any:
-        settled = end(traffic)
+    def end_both(traffic: RemoteTraffic, *arguments: Any) -> Any:
+        settled = end(traffic, *arguments)
         before_s, from_s, copy = begun.pop(traffic)
         tally.ours_s += spent_s(traffic.pid) - before_s
         tally.futures += 1

@@ -15,11 +15,10 @@ from __future__ import annotations
 import argparse
 import json
 import multiprocessing
-import os
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from contextlib import closing, suppress
+from contextlib import closing
 from dataclasses import dataclass, field
 from functools import partial
 from itertools import product
@@ -255,40 +254,27 @@ def imitate(model, steps: Sequence[Demonstrated], epochs: int) -> None:
 
 
 def train(chosen: argparse.Namespace, start: str, bench: Bench, steps: Sequence[Demonstrated]) -> list[dict]:
-    """The learning curve: steps, scores, and seconds of training on the wall and of all processors."""
+    """The learning curve: steps, scores and seconds."""
     model = learner(chosen, start)
     if start == "imitation":
         imitate(model, steps, chosen.epochs)
     charging = charges(CHEAP[start], chosen.steps * 2 / 3)
     curve: list[dict] = []
-    trained_s = busy_s = 0.0
+    trained_s = 0.0
     for number in range(chosen.rounds + 1):
         if number:
-            began_s, spent_s = time.monotonic(), processors_s()
+            began_s = time.monotonic()
             model.learn(chosen.steps // chosen.rounds, charging, reset_num_timesteps=False)
-            trained_s, busy_s = trained_s + time.monotonic() - began_s, busy_s + processors_s() - spent_s
-        spent = {"seconds": trained_s, "processor_seconds": busy_s}
-        point = {"steps": model.num_timesteps, **spent, **bench.measured(Network.of(model))}
+            trained_s += time.monotonic() - began_s
+        point = {"steps": model.num_timesteps, "seconds": trained_s, **bench.measured(Network.of(model))}
         curve.append(point)
-        print(f"{start:>9}  {point['steps']:7.0f} steps  {told(point)}  {trained_s:.0f} s, {busy_s:.0f} of processors",
-              flush=True)  # fmt: skip
+        print(f"{start:>9}  {point['steps']:7.0f} steps  {told(point)}  {trained_s:5.0f} s", flush=True)
     model.get_env().close()
     if chosen.out:
         arrays = {f"{kind}{at}": each for at, pair in enumerate(Network.of(model).layers)
                   for kind, each in zip(("weights", "biases"), pair, strict=True)}  # fmt: skip
         np.savez_compressed(chosen.out / f"ppo_drive_{start}.npz", **arrays)
     return curve
-
-
-def processors_s() -> float:
-    """Processor time of this process and of all in its group, ended ones included; Linux."""
-    spent = 0
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError):
-            after_name = stat.read_text().rpartition(")")[2].split()
-            if int(after_name[2]) == os.getpgrp():
-                spent += sum(map(int, after_name[11:15]))
-    return spent / os.sysconf("SC_CLK_TCK")
 
 
 def told(point: dict) -> str:

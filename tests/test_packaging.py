@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 import automotive_cosim
+from automotive_cosim import errors
 from automotive_cosim.traffic.sumo import DEBIAN_PACKAGES
 
 ROOT = Path(__file__).parents[1]
@@ -46,6 +47,26 @@ def test_every_package_is_found(given):
             if not any((ROOT / folder / Path(*inner[:depth])).is_symlink() for depth in range(1, len(inner) + 1)):
                 found.add(".".join((name, *inner)))
     assert found == set(given["packages"])
+
+
+def test_hints_name_an_extra_as_one_installs_it_from_here(monkeypatch, tmp_path):
+    """No index has the package for those who have a checkout; a wheel has no constraints."""
+    extra = "report"
+    assert errors.install_hint(extra) == "pip install -c constraints.txt -e '.[report]'"
+    assert errors.install_hint() in (ROOT / "README.md").read_text(encoding="utf-8").replace("python -m ", "")
+    monkeypatch.setattr(errors, "CHECKOUT", tmp_path)
+    assert errors.install_hint(extra) == "pip install 'automotive-cosim[report]'"
+
+
+def test_every_hint_is_made_in_one_place_and_names_an_extra_that_exists(project):
+    hints = set()
+    for folder in ("automotive_cosim", "agents"):
+        for path in (ROOT / folder).rglob("*.py"):
+            text = path.read_text(encoding="utf-8")
+            assert path.name == "errors.py" or not re.search(r"""["` ]pip install '?automotive-cosim""", text), path
+            hints |= set(re.findall(r"""install_hint\(['"](\w+)['"]\)""", text))
+    assert hints <= set(project["project"]["optional-dependencies"])
+    assert len(hints) > 5
 
 
 def test_the_links_point_to_the_mapped_folders(given):

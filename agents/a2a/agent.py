@@ -21,7 +21,7 @@ from automotive_cosim.agents.base import Stage, StageName
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
 from automotive_cosim.cockpit.actions import TEXT_LIMIT
 from automotive_cosim.contracts import UNCALLED, Action, ActionType, Observation
-from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, SetupError
+from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, SetupError, install_hint
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import action_of, offered
 from automotive_cosim.interface.observe import Channel
@@ -214,7 +214,5 @@ def _line(address: str) -> AgentLine:
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("a2a", "httpx", "google"):
             raise
-        raise SetupError(
-            "the a2a-sdk package is missing; install it with `pip install 'automotive-cosim[a2a]'`"
-        ) from error
+        raise SetupError(f"the a2a-sdk package is missing; install it with `{install_hint('a2a')}`") from error
     return AgentLine(address)

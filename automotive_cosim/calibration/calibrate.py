@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections import Counter, defaultdict
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -36,9 +36,6 @@ FEWEST_TO_HOLD_OUT = 4
 
 ENOUGH_GOOD, ENOUGH_TOTAL = 0.95, 0.03
 """No further round once this share of the calibrated counts has a GEH below 5 and the total is this near."""
-
-OTHER_EDGE_S = 10.0
-"""Time of an edge that is closed to cars, where a bus or a resident drives it."""
 
 COVERED = 0.1
 """An hour whose departures are fewer than this share of the busiest's has no demand of its own."""
@@ -147,15 +144,13 @@ class _Calibration:
             given = drive(self.scenario.config.name, given_options, clock, self.scratch)
         if not given.trips:
             raise ScenarioError(f"{self.scenario.folder} has no demand to begin with; import a map, or add trips")
-        free_s: defaultdict[str, float] = defaultdict(lambda: OTHER_EDGE_S)
-        free_s |= {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
         edges = tuple(network.edges.values())
         world = SearchWorld(
             clock,
             self.configuration.net,
             vehicle_types(self.configuration),
             vehicle_types(self.configuration, ["route-files"]),
-            free_s,
+            network.free_s,
             capacity,
             (tuple(sorted(entries(edges))), tuple(sorted(exits(edges)))),
             known,

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from datetime import datetime, time
 from pathlib import Path
 
-from automotive_cosim.errors import CountsError, SetupError
+from automotive_cosim.errors import CountsError, SetupError, install_hint
 from automotive_cosim.formats.files import opened
 
 MOST_BYTES = 2**28
@@ -154,8 +154,7 @@ def _workbook(path: Path, data: bytes) -> Iterator[Cells]:
         from python_calamine import CalamineError, CalamineWorkbook, SheetVisibleEnum, ZipError
     except ImportError as error:
         raise SetupError(
-            f"{path} is a workbook, which requires python-calamine: pip install 'automotive-cosim[import]', or "
-            "save it as CSV"
+            f"{path} is a workbook, which requires python-calamine: {install_hint('import')}, or save it as CSV"
         ) from error
     try:
         book = CalamineWorkbook.from_filelike(io.BytesIO(data))

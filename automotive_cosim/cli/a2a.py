@@ -10,7 +10,7 @@ from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import TasksFrom
 from automotive_cosim.doors.settings import A2aSettings
-from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.errors import SetupError, UserError, install_hint
 
 
 @takes(A2aSettings)
@@ -22,9 +22,7 @@ def a2a(tasks_from: TasksFrom = None, **settings: Any) -> None:
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("a2a", "google", "httpx", "starlette", "uvicorn"):
             raise
-        raise SetupError(
-            "the a2a-sdk package is missing; install it with `pip install 'automotive-cosim[a2a]'`"
-        ) from error
+        raise SetupError(f"the a2a-sdk package is missing; install it with `{install_hint('a2a')}`") from error
     told = filled(A2aSettings, settings)
     typer.echo(told.url)
     try:

@@ -24,7 +24,9 @@ def compare(
     junit: Annotated[
         Path | None, typer.Option(help="File for a JUnit report with one case per instance.", show_default=False)
     ] = None,
-    markdown: Annotated[Path | None, typer.Option(help="File for the printed summary.", show_default=False)] = None,
+    markdown: Annotated[
+        Path | None, typer.Option(help="File for a summary in Markdown.", show_default=False)
+    ] = None,
     mixed: Annotated[
         bool,
         typer.Option("--mixed-versions", help="Compare even if two minor versions of automotive-cosim ran them."),
@@ -47,13 +49,12 @@ def compare(
         if "study" in read_manifest(folder)["plan"]:
             raise UserError(f"{folder} is a study; `automotive-cosim study compare` compares two of one kind")
     found = regression.changes(before, after, mixed=mixed)
-    summary = regression.markdown(found, threshold / 100)
-    for path, text in ((junit, regression.junit(found)), (markdown, summary)):
+    for path, text in ((junit, regression.junit(found)), (markdown, regression.markdown(found, threshold / 100))):
         if path is not None:
             write_whole(path, text)
     if as_json:
         print_json(regression.as_json(found, threshold / 100))
     else:
-        typer.echo(summary, nl=False)
+        typer.echo(regression.plain(found, threshold / 100), nl=False)
     if not all(each.passes(threshold / 100) for each in found):
         raise typer.Exit(1)

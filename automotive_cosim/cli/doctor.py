@@ -127,15 +127,15 @@ def _sumo() -> Finding:
 
 def _fonts() -> Finding:
     from automotive_cosim.cockpit.theme import Weight, font, sets_right_to_left
-    from automotive_cosim.errors import SetupError
+    from automotive_cosim.errors import SetupError, install_hint
 
     try:
         for weight in set(Weight) - {Weight.RIGHT_TO_LEFT}:
             font(weight, 16)
     except (SetupError, OSError) as error:
-        return Finding("fonts", Health.MISSING, str(error), "pip install --force-reinstall automotive-cosim")
+        return Finding("fonts", Health.MISSING, str(error), f"{install_hint()} --force-reinstall")
     if not sets_right_to_left():
-        fix = "for those: pip install 'automotive-cosim[report]'; on Debian also apt-get install libfribidi0"
+        fix = f"for those: {install_hint('report')}; on Debian also apt-get install libfribidi0"
         return Finding("fonts", Health.OK, "all fonts of the screens, but no Arabic or Hebrew", fix)
     return Finding("fonts", Health.OK, "all fonts of the screens")
 
@@ -201,11 +201,12 @@ def _extras() -> Finding:
 
 
 def _version() -> Finding:
+    from automotive_cosim.errors import install_hint
+
     try:
         return Finding("package", Health.OK, f"automotive-cosim {version('automotive-cosim')}")
     except PackageNotFoundError:
-        fix = "pip install -c constraints.txt -e ."
-        return Finding("package", Health.LIMITED, "runs from a folder, but is not installed", fix)
+        return Finding("package", Health.LIMITED, "runs from a folder, but is not installed", install_hint())
 
 
 CHECKS: tuple[Callable[[], Finding], ...] = (

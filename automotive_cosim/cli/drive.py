@@ -131,12 +131,12 @@ def _tell(console: Console, row: DriveTrialRow) -> None:
         for act in row.acts
         if act.worth is not Worth.NEUTRAL
     ]
+    if key := key_of(row.events):
+        console.print(f"In brackets: {key}", markup=False, soft_wrap=True)
     for time_s, words, came in sorted(lines):
         console.print(
             f"{int(time_s) // 60:3}:{int(time_s) % 60:02}  {words}  [{came}]", markup=False, soft_wrap=True
         )
-    if key := key_of(row.events):
-        console.print(f"In brackets: {key}", markup=False, soft_wrap=True)
     if wrong := faults(row.events, row.acts):
         console.print("Missed, late and needless:", soft_wrap=True)
     for fault in wrong:

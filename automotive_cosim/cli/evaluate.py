@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -30,7 +29,7 @@ from automotive_cosim.cli.options import (
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
-from automotive_cosim.errors import InfrastructureError
+from automotive_cosim.errors import InfrastructureError, UserError, install_hint
 from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
 
 if TYPE_CHECKING:
@@ -75,8 +74,7 @@ def evaluate(
     Rerun the command to resume.
     """
     from automotive_cosim.cli.console import Console
-    from automotive_cosim.errors import UserError
-    from automotive_cosim.report.answer import answer
+    from automotive_cosim.report.answer import agents_as_json, answer
     from automotive_cosim.report.charts import is_installed
     from automotive_cosim.report.drives import standings as drive_standings
     from automotive_cosim.report.results import read_results, standings
@@ -143,7 +141,8 @@ def evaluate(
     size_mb = megabytes(folder)
     if as_json:
         counts = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
-        typer.echo(json.dumps(counts | {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}))
+        counts |= {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}
+        print_json(counts | {"answer": answer(found), "agents": agents_as_json(found)})
     else:
         console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")
@@ -153,7 +152,7 @@ def evaluate(
             console.print(f"  {line}", soft_wrap=True, markup=False)
         for row in errors:
             console.print(f"  error in {row.id}: {row.error_kind}: {row.error}", soft_wrap=True)
-        extra = "" if is_installed() else ", which needs pip install 'automotive-cosim[report]'"
+        extra = "" if is_installed() else f", which needs {install_hint('report')}"
         console.print(
             f"Results in {folder} ({megabytes_in_words(size_mb)}); "
             f"write report.html with `automotive-cosim report {folder}`{extra}",

@@ -9,7 +9,7 @@ import typer
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import TasksFrom
 from automotive_cosim.doors.settings import McpSettings
-from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.errors import SetupError, UserError, install_hint
 
 
 @takes(McpSettings)
@@ -24,9 +24,7 @@ def mcp(tasks_from: TasksFrom = None, **settings: Any) -> None:
     except ImportError as error:
         if (error.name or "").partition(".")[0] not in ("mcp", "mcp_types"):
             raise
-        raise SetupError(
-            "the mcp package is missing; install it with `pip install 'automotive-cosim[mcp]'`"
-        ) from error
+        raise SetupError(f"the mcp package is missing; install it with `{install_hint('mcp')}`") from error
     from automotive_cosim.service import EpisodeService, ServiceLimits
 
     told = filled(McpSettings, settings)

@@ -1,4 +1,4 @@
-"""``automotive-cosim measures``: surrogate measures of safety of a recorded trial, as CSV."""
+"""``automotive-cosim measures``: surrogate measures of safety of recorded trials, as CSV."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ def measures(
     record: Annotated[
         Path,
         typer.Argument(
-            help="Folder of `run` or `drive` with --out, of one trial in pictures/ of `eval`, or a road.jsonl.gz.",
+            help="Folder of `run`, `drive` or `eval`, of one of its trials in pictures/, or a road.jsonl.gz.",
             show_default=False,
         ),
     ],
@@ -36,33 +36,44 @@ def measures(
     ] = None,
     **settings: Any,
 ) -> None:
-    """Print the encounters of a recorded trial with their surrogate measures of safety, as CSV or Parquet."""
+    """Print the encounters of recorded trials with their surrogate measures of safety, as CSV or Parquet.
+
+    Those of an evaluation have a first column with the trial.
+    """
     from automotive_cosim.exchange.needs import check_formats
     from automotive_cosim.exchange.settings import ExportFormats
     from automotive_cosim.exchange.trajectories import write_frame
     from automotive_cosim.formats.files import write_whole
     from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
     from automotive_cosim.measures.encounters import as_csv, as_frame
-    from automotive_cosim.run.road import read_record, road_in
+    from automotive_cosim.run.road import read_record, roads_in
 
-    path = record if record.is_file() else road_in(record)
+    roads = {"": record} if record.is_file() else roads_in(record)
     check_formats(ExportFormats(parquet=out is not None and out.suffix == ".parquet"))
-    scenes = [(second.at_s, second.vehicles) for second in read_record(path).seconds]
     thresholds = filled(Thresholds, settings)
     ego = None if everyone else "ego"
-    kind = PairReading if readings else Encounter
-    rows = list(pair_readings(scenes, ego, thresholds)) if readings else encounters(scenes, ego, thresholds)
+    kind: type[Encounter] | type[PairReading] = PairReading if readings else Encounter
+    rows: list[Any] = []
+    trials: list[str] = []
+    seconds = 0
+    for trial, path in roads.items():
+        scenes = [(second.at_s, second.vehicles) for second in read_record(path).seconds]
+        mine = list((pair_readings if readings else encounters)(scenes, ego, thresholds))
+        rows += mine
+        trials += [trial] * len(mine)
+        seconds += len(scenes)
+    column = None if "" in roads else trials
     if not rows:
         whose = "any two vehicles" if everyone else "the ego and another vehicle (--everyone looks at all pairs)"
         typer.echo(
-            f"no encounters within {thresholds.range_m:g} m in {counted(len(scenes), 'second')}, of {whose}",
+            f"no encounters within {thresholds.range_m:g} m in {counted(seconds, 'second')}, of {whose}",
             err=True,
         )
     if out is None:
-        typer.echo(as_csv(rows, kind), nl=False)
+        typer.echo(as_csv(rows, kind, column), nl=False)
         return
     if out.suffix == ".parquet":
-        write_frame(as_frame(rows, kind), out)
+        write_frame(as_frame(rows, kind, column), out)
     else:
-        write_whole(out, as_csv(rows, kind))
+        write_whole(out, as_csv(rows, kind, column))
     typer.echo(f"{counted(len(rows), 'line')} in {out}")

@@ -13,7 +13,7 @@ from annotated_types import Ge, Le
 from automotive_cosim.cli.derived import number_in
 from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import UserError, install_hint
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 
@@ -56,7 +56,7 @@ def _safety(folder: Path, agent: str) -> None:
     page, pdf = write_dossier(folder, subject.agent)
     beside = f" (--agent takes one of the others: {', '.join(subject.others)})" if subject.others else ""
     typer.echo(f"{page} written, about {subject.agent}{beside}; its data in {page.parent / 'data'}")
-    typer.echo(f"{pdf} written" if pdf else "no PDF: pip install 'automotive-cosim[pdf]'")
+    typer.echo(f"{pdf} written" if pdf else f"no PDF: {install_hint('pdf')}")
 
 
 @reads_results

@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 
 if TYPE_CHECKING:
     from PIL import ImageFont  # takes long to load, and sizes of screens need no font
@@ -225,7 +225,7 @@ def font(weight: Weight, size: int) -> ImageFont.FreeTypeFont:
     package, folder = _HOMES.get(weight, ("font_roboto", "files"))
     spec = find_spec(package)
     if spec is None or not spec.submodule_search_locations:
-        raise SetupError(f"the fonts of {package} are missing; install them with `pip install automotive-cosim`")
+        raise SetupError(f"the fonts of {package} are missing; install them with `{install_hint()}`")
     path = Path(spec.submodule_search_locations[0]) / folder / weight.value
     from PIL import ImageFont
 

@@ -71,12 +71,15 @@ OUTCOMES = {
     EventOutcome.TAKEN: "false alarm",
 }
 """Outcomes in plain words; the others say it by their name."""
+WHY_VOID = "it needed no act, passed by itself, or came too suddenly for anybody"
+"""Why nothing was due."""
 
 
 def key_of(events: Sequence[JudgedEvent]) -> str:
-    """What the outcomes of these events mean: ``void, nothing was due; avoided, rightly left alone``."""
+    """What the outcomes of these events mean: ``late, too late; avoided, rightly left alone``."""
     found = {event.outcome for event in events}
-    return "; ".join(f"{one}, {words}" for one, words in OUTCOMES.items() if one in found)
+    told = OUTCOMES | {EventOutcome.VOID: f"{OUTCOMES[EventOutcome.VOID]} ({WHY_VOID})"}
+    return "; ".join(f"{one}, {words}" for one, words in told.items() if one in found)
 
 
 def became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:

@@ -79,7 +79,7 @@ class Conditions:
         Ge(0),
         Le(600),
         Words(
-            "Latency s", "latency {:g} s", "latency{:g}", "Success over think time",
+            "Latency", "latency {:g} s", "latency{:g}", "Success over think time",
             "Simulated seconds added to every answer before its action.", is_speed=True,
         ),
     ] = 0.0  # fmt: skip

@@ -22,13 +22,13 @@ import numpy as np
 from shapely import LineString, Point, STRtree
 
 from automotive_cosim.contracts import LaneShape, SeenVehicle, SumoSignal, Weather
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.exchange.bodies import GAP_S, REAR_AXLE, WHEEL_M, heading_rad, height_m, place_at
 from automotive_cosim.exchange.openscenario import FULL, KELVIN, OKTAS
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.run.road import Second
 
-NEEDS = "OSI traces need the extra osi: pip install 'automotive-cosim[osi]'"
+NEEDS = f"OSI traces need the extra osi: {install_hint('osi')}"
 AROUND_M = 200.0
 """Lanes and traffic lights within this distance of the car are in a message: our choice, as each repeats them."""
 SHARPEST = 0.25

@@ -9,12 +9,12 @@ from pathlib import Path
 from typing import Any
 
 from automotive_cosim.contracts import SeenVehicle
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.exchange.recording import Recording
 from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.formats.files import write_whole
 
-NEEDS = "Parquet needs pandas and pyarrow: pip install 'automotive-cosim[parquet]'"
+NEEDS = f"Parquet needs pandas and pyarrow: {install_hint('parquet')}"
 COLUMNS = ("at_s", *(entry.name for entry in fields(SeenVehicle)))
 """Those of the tables; times are those of the record: 0 is the hand-over, or a drive's departure."""
 

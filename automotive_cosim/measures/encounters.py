@@ -19,7 +19,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from automotive_cosim.contracts import SeenVehicle
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.measures.formulas import (
     crossing_drac_mps2,
@@ -171,18 +171,40 @@ def encounters(
     return tuple(sorted(found, key=lambda each: (each.begins_s, each.vehicle, each.other)))
 
 
-def as_csv(rows: Iterable[Encounter] | Iterable[PairReading], kind: type[Encounter] | type[PairReading]) -> str:
-    """The rows as a table with a column for each field; what is None is empty."""
+def as_csv(
+    rows: Sequence[Encounter] | Sequence[PairReading],
+    kind: type[Encounter] | type[PairReading],
+    trials: Sequence[str] | None = None,
+) -> str:
+    """The rows as a table with a column for each field; what is None is empty.
+
+    Args:
+        rows: encounters or readings.
+        kind: of what they are.
+        trials: the trial of each row, for a first column; None if they are all of one.
+    """
     names = _names(kind)
-    return csv_text(names, ([_plain(getattr(row, name)) for name in names] for row in rows))
+    lines = (
+        [*(trials or ())[number : number + 1], *(_plain(getattr(row, name)) for name in names)]
+        for number, row in enumerate(rows)
+    )
+    return csv_text([*_heads(trials), *names], lines)
+
+
+def _heads(trials: Sequence[str] | None) -> list[str]:
+    return [] if trials is None else ["trial"]
 
 
 def _names(kind: type[Encounter] | type[PairReading]) -> list[str]:
     return list(PairReading._fields) if kind is PairReading else [entry.name for entry in fields(Encounter)]
 
 
-def as_frame(rows: Iterable[Encounter] | Iterable[PairReading], kind: type[Encounter] | type[PairReading]) -> Any:
-    """The same as a pandas data frame; what is None is missing, and kinds and orders are texts.
+def as_frame(
+    rows: Sequence[Encounter] | Sequence[PairReading],
+    kind: type[Encounter] | type[PairReading],
+    trials: Sequence[str] | None = None,
+) -> Any:
+    """The same as a pandas data frame; what is None is missing, and trials, kinds and orders are texts.
 
     Raises:
         SetupError: pandas is not installed.
@@ -190,15 +212,19 @@ def as_frame(rows: Iterable[Encounter] | Iterable[PairReading], kind: type[Encou
     try:
         import pandas as pd
     except ImportError as missing:
-        raise SetupError("data frames need pandas: pip install 'automotive-cosim[report]'") from missing
+        raise SetupError(f"data frames need pandas: {install_hint('report')}") from missing
     names = _names(kind)
-    texts = [name for name in names if name in ("vehicle", "other", "kind", "order")]
+    texts = {"trial", "vehicle", "other", "kind", "order"}
     table = [
-        [str(value) if isinstance(value := getattr(row, name), StrEnum) else value for name in names]
-        for row in rows
+        [
+            *(trials or ())[number : number + 1],
+            *(str(value) if isinstance(value := getattr(row, name), StrEnum) else value for name in names),
+        ]
+        for number, row in enumerate(rows)
     ]
-    return pd.DataFrame(table, columns=names).astype(
-        {name: "str" if name in texts else "Float64" for name in names}
+    columns = [*_heads(trials), *names]
+    return pd.DataFrame(table, columns=columns).astype(
+        {name: "str" if name in texts else "Float64" for name in columns}
     )
 
 

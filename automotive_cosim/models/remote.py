@@ -19,7 +19,7 @@ from types import NoneType
 from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
 from urllib.parse import parse_qsl, quote
 
-from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError
+from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError, install_hint
 from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply
 from automotive_cosim.models.turns import LocalTurns, Turns
@@ -149,9 +149,7 @@ class _Endpoint:
         try:
             import openai
         except ImportError as error:
-            raise SetupError(
-                "the openai package is missing; install it with `pip install 'automotive-cosim[llm]'`"
-            ) from error
+            raise SetupError(f"the openai package is missing; install it with `{install_hint('llm')}`") from error
         http = openai.DefaultHttpx2Client(follow_redirects=False)  # to whom the question and the key would go
         return openai.OpenAI(
             api_key=self.key, base_url=self.base_url, timeout=timeout_s, max_retries=0, http_client=http

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 
+from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report import drives
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
@@ -29,6 +30,33 @@ def answer(results: Results) -> str:
         f"{errors:,} of {counted(len(trials), 'run')} ended in an error" if errors else "no run ended in an error"
     )
     return "; ".join([*filter(None, told), ended]) + "."
+
+
+def agents_as_json(results: Results) -> list[Json]:
+    """Each agent's rate over its planned episodes, from 0 to 1, or the score of its drives, with 95 % intervals."""
+    told: list[Json] = []
+    for each in results.contestants:
+        found = rate_of(results.planned_of(each))
+        told.append(
+            _who(each)
+            | {"episodes": found.planned, "successes": found.successes, "errors": found.errors}
+            | {"not_run": found.not_run, "rate": found.value, "interval": _ends(found.interval)}
+        )
+    for each, rows in drives.grouped(results.drives).items():
+        told.append(
+            _who(each)
+            | {"drives": len(rows), "score": drives.value_of(rows)}
+            | {"interval": _ends(drives.interval(rows, drives.value_of))}
+        )
+    return told
+
+
+def _who(each: Contestant) -> Json:
+    return {"agent": each.agent, "model": each.model, "label": each.label}
+
+
+def _ends(interval: Interval | None) -> list[float] | None:
+    return None if interval is None else [interval.low, interval.high]
 
 
 def _ranking(results: Results) -> str:

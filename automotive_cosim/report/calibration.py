@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import product
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ from automotive_cosim.traffic.network import Network
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.transforms import Bbox
 
 UNFITTED, CALIBRATED, HELD_OUT = PALETTE[7], PALETTE[0], PALETTE[1]
 
@@ -240,6 +242,44 @@ def _day(found: Calibration) -> Drawing:
     return 3.4, draw
 
 
+ASIDE_PT = (4, 10, 18, 28, 40)
+"""Distances from its place at which a label may stand."""
+SIDES = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1))
+"""Right, left, above, below, and the corners."""
+
+
+def label_places(axes: Axes, marked: Sequence[tuple[str, tuple[float, float], str]]) -> None:
+    """Names places, each label as near as it overlaps no earlier one; one that has to stand far has a line."""
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+
+    figure = axes.get_figure()
+    assert isinstance(figure, Figure)
+    figure.draw_without_rendering()  # settles the scale
+    taken: list[Bbox] = []
+    for text, place, colour in sorted(marked):
+        for aside_pt, (x, y) in product(ASIDE_PT, SIDES):
+            label = axes.annotate(
+                text,
+                place,
+                (x * aside_pt, y * aside_pt),
+                textcoords="offset points",
+                fontsize=6,
+                color=colour,
+                ha=("right", "center", "left")[x + 1],
+                va=("top", "center", "bottom")[y + 1],
+                arrowprops={"arrowstyle": "-", "color": colour, "linewidth": 0.4}
+                if aside_pt > ASIDE_PT[1]
+                else None,
+            )
+            label.get_window_extent()  # brings it to its place
+            box = Text.get_window_extent(label)  # without the line
+            if aside_pt == ASIDE_PT[-1] or not any(box.overlaps(other) for other in taken):
+                taken.append(box)
+                break
+            label.remove()
+
+
 def _map(found: Calibration, network: Network) -> Drawing:
     def draw(axes: Axes) -> None:
         from matplotlib.collections import LineCollection
@@ -247,6 +287,7 @@ def _map(found: Calibration, network: Network) -> Drawing:
         lines = [*(edge.shape_m for edge in network.edges.values()), *network.joints_m]
         axes.add_collection(LineCollection(lines, colors=INK, alpha=0.25, linewidths=0.6))
         labels = {row.edge: row.site for row in found.rows}
+        marked: list[tuple[str, tuple[float, float], str]] = []
         for held_out, colour, label in ((False, CALIBRATED, "calibrated"), (True, HELD_OUT, "held out")):
             edges = [
                 network.edges[edge]
@@ -256,12 +297,11 @@ def _map(found: Calibration, network: Network) -> Drawing:
             if edges:
                 shapes = [edge.shape_m for edge in edges]
                 axes.add_collection(LineCollection(shapes, colors=colour, linewidths=2.4, label=label))
-            for edge in edges:
-                x_m, y_m = edge.shape_m[len(edge.shape_m) // 2]
-                axes.annotate(labels[edge.edge_id], (x_m, y_m), fontsize=6, color=colour)
+            marked += [(labels[edge.edge_id], edge.shape_m[len(edge.shape_m) // 2], colour) for edge in edges]
         axes.autoscale()
         axes.set_aspect("equal")
         axes.set_axis_off()
         legend(axes)
+        label_places(axes, marked)
 
     return 6.0, draw

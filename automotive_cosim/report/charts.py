@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 from automotive_cosim.cockpit.theme import Weight, font
 from automotive_cosim.contracts.plain import rounded
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.report.findings import NAMES
 from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pairs
 from automotive_cosim.report.stats import Rate
@@ -145,7 +145,7 @@ def require_plots() -> None:
         raise SetupError(NEEDS)
 
 
-NEEDS = "plots need matplotlib: pip install 'automotive-cosim[report]'"
+NEEDS = f"plots need matplotlib: {install_hint('report')}"
 
 
 def _dimensions(results: Results) -> Drawing:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import clock
-from automotive_cosim.drives.faults import beside, faults
+from automotive_cosim.drives.faults import WHY_VOID, beside, faults
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Chart, Drawing
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -190,6 +190,7 @@ def _came_to_nothing(act: JudgedAct, events: Sequence[JudgedEvent]) -> bool:
 KEY = (
     "Bars: green met, light blue prevented, amber late, red missed (or a look-alike taken), purple caused or "
     "evaded, grey nothing was due, hatched look-alike; | when due, > deadline, dot the act.",
+    f"Nothing was due: {WHY_VOID}.",
     "Acts: green dot right, amber dot late, grey dot neither, X false alarm, + false alarm while something else "
     "was due, diamond look-alike, amber square repeat.",
 )

@@ -60,7 +60,7 @@ def standings(rows: Iterable[DriveTrialRow]) -> list[str]:
         total = whole(mine)
         recall = "no events" if total.recall is None else f"{total.recall:.0%} of {total.events} events met"
         lines.append(
-            f"{each.label}: score {told(mine, _value, '.0f')}; {recall}, "
+            f"{each.label}: score {told(mine, value_of, '.0f')}; {recall}, "
             f"{total.false_alarms_per_h:.1f} false alarms and {total.nuisances_per_h:.1f} nuisances an hour, "
             f"{counted(len(mine), 'drive')}{_left_alone(mine)}"
         )
@@ -85,7 +85,8 @@ DIVERGE = (
 # --- figures of several drives ----------------------------------------------------------------------------------
 
 
-def _value(rows: Sequence[DriveTrialRow]) -> float | None:
+def value_of(rows: Sequence[DriveTrialRow]) -> float | None:
+    """The score of all drives pooled, in points."""
     return whole(rows).value
 
 
@@ -129,7 +130,7 @@ def _watched_share(rows: Sequence[DriveTrialRow]) -> float | None:
 
 
 FIGURES: tuple[tuple[str, Figure, str], ...] = (
-    ("Score", _value, ".0f"),
+    ("Score", value_of, ".0f"),
     ("Recall %", _share(lambda score: score.recall), ".0f"),
     ("Precision %", _share(lambda score: score.precision), ".0f"),
     ("False alarms/h", lambda rows: whole(rows).false_alarms_per_h, ".1f"),
@@ -290,7 +291,7 @@ def _watchers(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
 
 
 def _intervals_told(groups: dict[Contestant, list[DriveTrialRow]]) -> str:
-    if all(interval(mine, _value) is None for mine in groups.values()):
+    if all(interval(mine, value_of) is None for mine in groups.values()):
         return f"Fewer than {LEAST_CLUSTERS} drives give no intervals."
     return f"In brackets: 95 % intervals from resampling whole drives, from {LEAST_CLUSTERS} drives on."
 
@@ -361,7 +362,7 @@ def _families(groups: dict[Contestant, list[DriveTrialRow]]) -> Table:
     lines = []
     for family in families:
         of = [[row for row in mine if row.family == family] for mine in groups.values()]
-        lines.append((family, *(told(rows, _value, ".0f", bounded=False) if rows else "–" for rows in of)))
+        lines.append((family, *(told(rows, value_of, ".0f", bounded=False) if rows else "–" for rows in of)))
     return Table("families", "Score by family", ("Family", *(each.label for each in groups)), tuple(lines))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Hashable, Iterator, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from xml.etree import ElementTree
@@ -58,6 +58,14 @@ class ComparedInstance:
         return None if before is None or after is None else (before.value, after.value)
 
     @property
+    def agent_broke(self) -> bool:
+        """Whether it is not solved now because the agent failed, or gave no action in any step."""
+        now = self.after
+        if now is None or now.outcome is not False:
+            return False
+        return now.agent_error is not None or 0 < now.steps <= (now.malformed or 0)
+
+    @property
     def why(self) -> str:
         """What is missing now."""
         if self.after is None:
@@ -101,6 +109,20 @@ class SuccessChange:
     def count(self, kind: str) -> int:
         """The cases of one kind."""
         return sum(case.kind == kind for case in self.cases)
+
+    @property
+    def judged(self) -> int:
+        """The cases that were judged both times."""
+        return len(self.cases) - self.count("error")
+
+    @property
+    def levels(self) -> tuple[str, str]:
+        """Before and after, of what was judged both times: successes out of it, or the score of drives."""
+        if isinstance(self.found, ScoreChange):
+            before, after = (f"{score:.0f}".replace("-", "−") for score in (self.found.before, self.found.after))
+            return before, after
+        stayed = self.count("solved")
+        return f"{stayed + self.count('lost')}/{self.judged}", f"{stayed + self.count('won')}/{self.judged}"
 
     def is_worse(self, allowed: float) -> bool:
         """Whether success, or the score of drives, fell by more than ``allowed`` (a share, 0 to 1), or something
@@ -244,18 +266,13 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
     """A summary for a pull request."""
     rows = []
     for each in found:
-        judged = sum(case.kind != "error" for case in each.cases)
-        if isinstance(each.found, ScoreChange):
-            levels = [f"{score:.0f}" for score in (each.found.before, each.found.after)]
-        else:
-            levels = [f"{each.count('solved') + each.count(kind)}/{judged}" for kind in ("lost", "won")]
         rows.append(
             (
                 each.outcome(allowed),
                 each.contestant.label,
                 each.unit,
                 *(f"{rate.judged} of {rate.planned}" for rate in each.rates),
-                *levels,
+                *each.levels,
                 _difference(each.found),
                 *(str(each.count(kind)) for kind in ("lost", "won", "error")),
             )
@@ -295,8 +312,37 @@ def markdown(found: Sequence[SuccessChange], allowed: float) -> str:
         f"**{sentence(found, allowed)}**\n\n"
         + table.markdown()
         + unknown
-        + "".join(_listed(each, kind) for each in found for kind in ("lost", "error", "won"))
+        + "".join(
+            f"\n**{told.capitalize()}, {title}**\n\n" + "".join(f"- {name}\n" for name in names)
+            for each in found
+            for kind, told in _KINDS.items()
+            for title, names in _listing(each, kind)
+        )
     )
+
+
+def plain(found: Sequence[SuccessChange], allowed: float) -> str:
+    """The same summary for a terminal, in lines."""
+    lines = [sentence(found, allowed)]
+    for each in found:
+        before, after = each.levels
+        counts = ", ".join(f"{each.count(kind)} {told}" for kind, told in _KINDS.items())
+        lines += [
+            f"  {each.contestant.label}, {each.unit}: {each.outcome(allowed)}",
+            f"    {before} before, {after} after: {_difference(each.found)}",
+            f"    {counts}",
+        ]
+    lines += filter(None, [mixed_versions(found)])
+    lines += dict.fromkeys(problem for each in found for problem in each.problems)
+    for each in found:
+        for kind, told in _KINDS.items():
+            for title, names in _listing(each, kind):
+                lines += [f"{told.capitalize()}, {title}", *(f"  {name}" for name in names)]
+    return "\n".join(lines) + "\n"
+
+
+_KINDS = {"lost": "lost", "error": "not judged now", "won": "won"}
+"""The kinds of cases that are listed, with their words."""
 
 
 def _difference(found: Comparison | ScoreChange | None) -> str:
@@ -321,14 +367,21 @@ def sentence(found: Sequence[SuccessChange], allowed: float) -> str:
 
 
 def _before_and_after(each: SuccessChange) -> str:
-    if isinstance(each.found, ScoreChange):
-        told = _points((each.found.before, each.found.after))
-    else:
-        shares = " before, ".join("–" if rate.value is None else f"{rate.value:.0%}" for rate in each.rates)
-        told = f"{shares} after"
+    """The figures of the comparison itself, so that they never say other than its outcome."""
     unit, (old, new) = each.unit.removesuffix("s"), each.planned
     common = each.rates[1].planned
+    if isinstance(each.found, ScoreChange):
+        told = _points((each.found.before, each.found.after))
+    elif each.found is None:
+        told = "nothing was judged both times"
+    else:
+        before, after = (
+            (each.found.both + only) / each.found.count for only in (each.found.only_second, each.found.only_first)
+        )
+        told = f"{before:.0%} before, {after:.0%} after"
     told += f", of {counted(common, unit)}"
+    if lost := each.count("error"):
+        told += f", of which {lost:,} {'is' if lost == 1 else 'are'} no longer judged"
     if (old.planned, new.planned) != (common, common):
         told += f" that both planned ({old.planned:,} before, {new.planned:,} after)"
     for when, rate in (("before", old), ("after", new)):
@@ -347,15 +400,15 @@ def mixed_versions(found: Sequence[SuccessChange]) -> str:
     )
 
 
-def _listed(each: SuccessChange, kind: str) -> str:
+def _listing(each: SuccessChange, kind: str) -> Iterator[tuple[str, list[str]]]:
+    """The contestant's name and its cases of a kind with what is missing, if there are any to list."""
     cases = [case for case in each.cases if case.kind == kind]
     if not cases or each.unit == "pairs":
-        return ""
-    title = {"lost": "Lost", "won": "Won", "error": "Not judged now"}[kind]
-    lines = [f"- `{case.name}`" + (f": {case.why}" if case.why else "") for case in cases[:MOST_LISTED]]
+        return
+    lines = [case.name + (f": {case.why}" if case.why else "") for case in cases[:MOST_LISTED]]
     if len(cases) > MOST_LISTED:
-        lines.append(f"- and {len(cases) - MOST_LISTED} more")
-    return f"\n**{title}, {each.contestant.label}**\n\n" + "\n".join(lines) + "\n"
+        lines.append(f"and {len(cases) - MOST_LISTED} more")
+    yield each.contestant.label, lines
 
 
 def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
@@ -385,25 +438,29 @@ def as_json(found: Sequence[SuccessChange], allowed: float) -> Json:
 
 
 def junit(found: Sequence[SuccessChange]) -> str:
-    """JUnit XML, one suite per contestant, one case per instance; lost ones fail, ones not judged are errors.
+    """JUnit XML, one suite per contestant, one case per instance.
 
-    What was not solved before either passes: the change made nothing worse.
+    Lost ones fail. Errors are those not judged now, and those in which the agent failed or never gave an action,
+    before the change too. What else was not solved before passes: the change made nothing worse.
     """
     root = ElementTree.Element("testsuites", name="automotive-cosim compare")
     for each in found:
+        verdicts = [
+            "error" if case.agent_broke else {"lost": "failure", "error": "error"}.get(case.kind, "")
+            for case in each.cases
+        ]
         suite = ElementTree.SubElement(
             root,
             "testsuite",
             name=f"{each.contestant.label}: {each.unit}",
             tests=str(len(each.cases)),
-            failures=str(each.count("lost")),
-            errors=str(each.count("error")),
+            failures=str(verdicts.count("failure")),
+            errors=str(verdicts.count("error")),
         )
-        for case in each.cases:
+        for case, verdict in zip(each.cases, verdicts, strict=True):
             entry = ElementTree.SubElement(suite, "testcase", name=case.name, classname=case.before.subject)
-            element = {"lost": "failure", "error": "error"}.get(case.kind)
-            if element:
-                told = ElementTree.SubElement(entry, element, message=case.why or "not solved now")
+            if verdict:
+                told = ElementTree.SubElement(entry, verdict, message=case.why or "not solved now")
                 if case.after is not None and case.after.has_run:
                     told.text = f"trial {case.after.id}: `automotive-cosim serve` with its folder shows each step"
     ElementTree.indent(root)

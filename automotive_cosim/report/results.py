@@ -11,7 +11,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface, See
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.errors import SetupError, UserError
+from automotive_cosim.errors import SetupError, UserError, install_hint
 from automotive_cosim.run.coverage import Coverage, coverage
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -211,7 +211,7 @@ def load_results(folder: Path | str) -> pd.DataFrame:
     try:
         import pandas as pd
     except ImportError as error:
-        raise SetupError("load_results needs pandas: pip install 'automotive-cosim[report]'") from error
+        raise SetupError(f"load_results needs pandas: {install_hint('report')}") from error
     found = read_results(Path(folder))
     frame = pd.DataFrame([columns(row) for row in (*found.rows, *found.drives)]).set_index("id")
     judged = [name for name in frame.columns if name == "success" or name.startswith("part_")]

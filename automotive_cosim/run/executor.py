@@ -39,7 +39,7 @@ class Job(Protocol):
 
     @property
     def warm_up_weight(self) -> float:
-        """How long the warm-up of its simulation takes, as a share of what it takes in a town."""
+        """How long the warm-up of its simulation takes, as a share of that of a large town."""
         ...
 
     @property

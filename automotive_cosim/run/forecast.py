@@ -15,7 +15,7 @@ from automotive_cosim.contracts.given import PromptLength, See
 from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN
 from automotive_cosim.models.remote import Settings
-from automotive_cosim.run.jobs import GRID_WARM_UP_S, WARM_UP_S, DriveJob, TrialJob
+from automotive_cosim.run.jobs import DriveJob, TrialJob, warm_up_s
 from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.trial_row import TrialRow
 
@@ -118,7 +118,7 @@ def forecast(jobs: Sequence[TrialJob], workers: int, rows: Iterable[TrialRow] = 
     own = _own(judged)
     wall_s = sum(_seconds(job) for job in left)
     warm = {job.simulation for job in left}
-    wall_s += sum(GRID_WARM_UP_S if place == "grid" else WARM_UP_S for place, _ in warm)
+    wall_s += sum(warm_up_s(place) for place, _ in warm)
     wall_s /= max(1, min(workers, len(warm)))
     tokens = usd = Range(0.0, 0.0)
     for job in left:

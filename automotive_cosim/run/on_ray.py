@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any, Generic
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import InfrastructureError, SetupError, UserError
+from automotive_cosim.errors import InfrastructureError, SetupError, UserError, install_hint
 from automotive_cosim.run.executor import CannotWrite, J, LostError, Opener, R, Runner
 from automotive_cosim.run.meter import Meter, MeterHandle, Spent
 from automotive_cosim.run.settings import Budget
@@ -32,7 +32,7 @@ try:
     from ray.exceptions import RayActorError, RayError, RayTaskError, RuntimeEnvSetupError
     from ray.util.scheduling_strategies import NodeAffinitySchedulingStrategy
 except ImportError as error:
-    raise SetupError("the ray package is missing; install it with `pip install 'automotive-cosim[ray]'`") from error
+    raise SetupError(f"the ray package is missing; install it with `{install_hint('ray')}`") from error
 
 OBJECT_STORE_BYTES = 256 * 1024**2
 """Shared memory of our own cluster: the files of an episode and its screenshots take a few megabytes."""

@@ -98,16 +98,26 @@ def road_in(folder: Path) -> Path:
     Raises:
         UserError: it has none; of an evaluation's folder, the trials in it that have one are named.
     """
-    path = folder / NAME
-    if path.is_file():
-        return path
-    trials = sorted(each.parent for each in folder.glob(f"pictures/**/{NAME}"))
-    if trials:
-        more = f", and {len(trials) - 3} more" if len(trials) > 3 else ""
-        raise UserError(
-            f"{folder} is an evaluation; give one of its trials: {', '.join(map(str, trials[:3]))}{more}"
-        )
-    raise UserError(f"{folder} has no {NAME}; `run`, `drive --out` and `eval --pictures all` record the road")
+    found = roads_in(folder)
+    if "" in found:
+        return found[""]
+    trials = [path.parent for path in found.values()]
+    more = f", and {len(trials) - 3} more" if len(trials) > 3 else ""
+    raise UserError(f"{folder} is an evaluation; give one of its trials: {', '.join(map(str, trials[:3]))}{more}")
+
+
+def roads_in(folder: Path) -> dict[str, Path]:
+    """The recorded roads of a trial's folder, by an empty name, or of an evaluation's, by trial.
+
+    Raises:
+        UserError: it has none.
+    """
+    if (folder / NAME).is_file():
+        return {"": folder / NAME}
+    found = {path.parent.name: path for path in sorted(folder.glob(f"pictures/**/{NAME}"))}
+    if not found:
+        raise UserError(f"{folder} has no {NAME}; `run`, `drive --out` and `eval --pictures all` record the road")
+    return found
 
 
 def read_record(path: Path) -> RoadRecord:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from automotive_cosim.report.charts import PALETTE, Chart, Drawing, charted, is_installed, legend
 from automotive_cosim.safety.findings import judged
 from automotive_cosim.safety.hunt import Hunt
-from automotive_cosim.safety.space import FactorRange
+from automotive_cosim.safety.space import FactorRange, label_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +23,7 @@ def curves(found: Hunt) -> dict[str, Chart]:
         return {}
     ordered = [each for each in found.space.factors if isinstance(each, FactorRange) and each.is_ordered]
     return charted(
-        {f"curve-{each.name}": (f"Margin by {each.name}", _curve(found, each)) for each in ordered}
+        {f"curve-{each.name}": (f"Margin by {label_of(each.name)[0]}", _curve(found, each)) for each in ordered}
         if judged(found.samples)
         else {}
     )
@@ -58,7 +58,7 @@ def _curve(found: Hunt, factor: FactorRange) -> Drawing:
         axes.axhline(0, color=PALETTE[7], linewidth=0.8)
         if factor.logarithmic:
             axes.set_xscale("log")
-        axes.set_xlabel(factor.name)
+        axes.set_xlabel(", ".join(filter(None, label_of(factor.name))))
         axes.set_ylabel("margin")
         legend(axes)
 

@@ -15,7 +15,7 @@ from automotive_cosim.contracts.plain import counted, rounded
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.safety.hunt import REPEATS, Hunt, MinimalFailure, Tried
-from automotive_cosim.safety.space import BINS, Factor, FactorRange, FactorValue, SearchPoint, told
+from automotive_cosim.safety.space import BINS, Factor, FactorRange, FactorValue, SearchPoint, label_of, said
 
 CONFIDENCE_WORDS = f"{100 * CONFIDENCE:.0f} %"
 LEAST_EVEN = 12
@@ -183,7 +183,7 @@ def _rates(found: Hunt) -> Table:
             if mine or empty:
                 even = [each for each in mine if each.even]
                 failed = sum(each.outcome.failed for each in mine)
-                lines.append((factor.name, level, str(len(mine)), str(failed), str(empty), *_rate(even)))
+                lines.append((_named(factor), level, str(len(mine)), str(failed), str(empty), *_rate(even)))
     heads = (
         "Factor",
         "Value",
@@ -250,7 +250,7 @@ def _parts(factor: Factor, values: Sequence[FactorValue], count: int) -> list[st
 
 def _sensitivity(found: Hunt) -> Table:
     lines = [
-        (factor.name, f"{100 * share:.0f}", "–" if rank is None else f"{rank:+.2f}".replace("-", "−"))
+        (_named(factor), f"{100 * share:.0f}", "–" if rank is None else f"{rank:+.2f}".replace("-", "−"))
         for factor, share, rank in sensitivity(found)
     ]
     note = (
@@ -261,6 +261,11 @@ def _sensitivity(found: Hunt) -> Table:
     return Table(
         "sensitivity", "Sensitivity", ("Factor", "Share of variance %", "Rank correlation"), tuple(lines), note
     )
+
+
+def _named(factor: Factor) -> str:
+    """A factor as the heading of its values: ``visibility, m``."""
+    return ", ".join(filter(None, label_of(factor.name)))
 
 
 def _varied(found: Hunt) -> list[Factor]:
@@ -310,14 +315,15 @@ def _maps(found: Hunt) -> list[Table]:
         if low > 0 and len(set(other.levels)) <= MOST_COLUMNS:
             worst.append((-low, f"{one.name} and {other.name}", one, other, cells))
     made = []
-    for number, (_, names, one, other, cells) in enumerate(sorted(worst, key=lambda each: each[:2])[:MOST_MAPS], 1):
+    for number, (_, _, one, other, cells) in enumerate(sorted(worst, key=lambda each: each[:2])[:MOST_MAPS], 1):
         columns = tuple(dict.fromkeys(other.levels))
         rows = tuple(
             (row, *(_share_of(cells.get((row, column), ())) for column in columns))
             for row in dict.fromkeys(one.levels)
         )
-        note = f"Failures of samples. Rows are {one.name}, columns {other.name}; – was not sampled."
-        made.append(Table(f"map_{number}", f"Map of {names}", (one.name, *columns), rows, note))
+        note = f"Failures of samples. Rows are {_named(one)}, columns {_named(other)}; – was not sampled."
+        names = f"{label_of(one.name)[0]} and {label_of(other.name)[0]}"
+        made.append(Table(f"map_{number}", f"Map of {names}", (_named(one), *columns), rows, note))
     return made
 
 
@@ -326,7 +332,10 @@ def _share_of(failed: Sequence[bool]) -> str:
 
 
 def _cell(one: Factor, other: Factor, cell: tuple[str, str], failed: Sequence[bool]) -> tuple[float, str, str, str]:
-    words = f"{one.name} {cell[0]}, {other.name} {cell[1]}"
+    words = ", ".join(
+        " ".join(filter(None, (name, level, unit)))
+        for (name, unit), level in zip((label_of(one.name), label_of(other.name)), cell, strict=True)
+    )
     low = wilson(sum(failed), len(failed)).low
     return low, words, str(sum(failed)), str(len(failed))
 
@@ -366,7 +375,7 @@ def _errors(found: Hunt) -> Table:
 
 
 def _point(each: Tried) -> str:
-    return ", ".join(f"{name} {told(value)}" for name, value in each.point.items())
+    return ", ".join(said(name, value) for name, value in each.point.items())
 
 
 def sentence(found: Hunt, agent: str) -> str:
@@ -428,4 +437,5 @@ def as_json(found: Hunt) -> Json:
         ],
         "unsteady": [dict(each.point) for each in found.unsteady],
         "not_reduced": [dict(each.point) for each in found.not_reduced],
+        "sampled_trials": [each.outcome.trial for each in found.samples if each.outcome.trial],
     }

@@ -9,7 +9,7 @@ from enum import StrEnum
 from automotive_cosim.errors import BudgetSpentError, UserError
 from automotive_cosim.safety.objective import TriedOutcome
 from automotive_cosim.safety.samplers import Sampler
-from automotive_cosim.safety.space import FactorRange, FactorValue, PointKey, SearchPoint, Space, key_of, told
+from automotive_cosim.safety.space import FactorRange, FactorValue, PointKey, SearchPoint, Space, key_of, said
 
 REPEATS = 3
 """Runs of a failure; it counts if all of them fail."""
@@ -89,7 +89,7 @@ class MinimalFailure:
         if self.neighbour is None:
             return ""
         what = "passes" if self.neighbour_passes else "nothing is due"
-        return f"{what} with {self.differs} {told(self.neighbour[self.differs])}"
+        return f"{what} with {said(self.differs, self.neighbour[self.differs])}"
 
     def words(self, space: Space) -> str:
         """The conditions that trigger it."""
@@ -100,9 +100,9 @@ class MinimalFailure:
             factor, value = space.factor(name), self.point[name]
             if isinstance(factor, FactorRange) and factor.is_ordered:
                 bound = "at least" if factor.unit(value) >= factor.unit(factor.nominal) else "at most"
-                told_all.append(f"{name} {bound} {told(value)}")
+                told_all.append(said(name, value, bound))
             else:
-                told_all.append(f"{name} {told(value)}")
+                told_all.append(said(name, value))
         return " and ".join(told_all)
 
 

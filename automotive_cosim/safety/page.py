@@ -10,7 +10,7 @@ from pathlib import Path
 from automotive_cosim.agents import MODELLED
 from automotive_cosim.contracts import Json
 from automotive_cosim.formats.files import write_whole
-from automotive_cosim.report.charts import is_installed
+from automotive_cosim.report.charts import NEEDS, is_installed
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.plan import PlannedTrial
 from automotive_cosim.run.store import cannot_write, read_manifest
@@ -108,7 +108,7 @@ def _page(folder: Path, found: Hunt, agent: str, model: str, about: Json) -> str
         judged=len(judged(found.samples)),
         tables=made,
         curves=curves(found),
-        has_curves=is_installed(),
+        no_curves="" if is_installed() else NEEDS,
         starts=read_manifest(folder)["starts"],
         stand_in=model == "rules" and agent in MODELLED,
     )

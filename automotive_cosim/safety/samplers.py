@@ -8,10 +8,10 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from automotive_cosim.errors import SetupError, UnknownNameError
+from automotive_cosim.errors import SetupError, UnknownNameError, install_hint
 from automotive_cosim.safety.space import Factor, FactorChoices, FactorValue, SearchPoint, Space, key_of
 
-NEEDS = "the sampler {} needs the extra search: pip install 'automotive-cosim[search]'"
+NEEDS = f"the sampler {{}} needs the extra search: {install_hint('search')}"
 SHARE = 0.25
 """Share of its points that a sampler that learns spreads evenly first."""
 LEAST_EVEN = 8

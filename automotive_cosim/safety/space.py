@@ -304,3 +304,19 @@ def told(value: FactorValue) -> str:
     if isinstance(value, bool):
         return "yes" if value else "no"
     return rounded(value, 6).replace(",", "") if isinstance(value, int | float) else str(value)
+
+
+UNITS = {"_mm_h": "mm/h", "_min": "min", "_m": "m", "_s": "s", "_c": "°C"}
+"""Units at the end of a factor's name."""
+
+
+def label_of(name: str) -> tuple[str, str]:
+    """A factor's name in words, and its unit; empty without one."""
+    end = next((end for end in UNITS if name.endswith(end)), "")
+    return name.removesuffix(end).replace("_", " "), UNITS.get(end, "")
+
+
+def said(name: str, value: FactorValue, bound: str = "") -> str:
+    """A factor's value in words with its unit: ``visibility at most 118 m``."""
+    words, unit = label_of(name)
+    return " ".join(filter(None, (words, bound, told(value), unit)))

@@ -234,8 +234,7 @@ def drive(
         ran = run(configuration, scenario, observe_s, seed, scratch)
         trips = ran.trips
         network = read_network(configuration.net)
-        free_s = {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
-        times = cost(EdgeTimes(free_s, trips))
+        times = cost(EdgeTimes(network.free_s, trips))
         counted = [trip for trip in trips if first_s <= trip.departed_s < last_s]
         arrived = [trip for trip in counted if trip.has_arrived and len(trip.edges) > 1]
         found = quickest(arrived, times, ran.net, ran.types, scratch)

@@ -24,7 +24,7 @@ from statistics import fmean, stdev
 import numpy as np
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.scenarios import variant
 from automotive_cosim.scenarios.equilibrium import ROUTES, Assigned, changes, is_stuck, opened, rerouted
 from automotive_cosim.scenarios.gap import TAIL_S, DrivenTrip, EdgeTimes, drive, run, vehicle_types
@@ -127,7 +127,7 @@ def compare(
         SetupError: eclipse-sumo or scipy is not installed.
     """
     if find_spec("scipy") is None:
-        raise SetupError("a system optimum requires scipy: pip install 'automotive-cosim[report]'")
+        raise SetupError(f"a system optimum requires scipy: {install_hint('report')}")
     variant.check_target(target, RECORD, force=force)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-optimum-") as scratch:
         path = Path(scratch) / ROUTES

@@ -3,7 +3,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from typing import Any, get_args, get_origin, get_type_hints
 
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -35,10 +35,17 @@ def read_line(text: str, kinds: Mapping[str, type[Any]], place: str) -> Any:
         name, equals, value = pair.partition("=")
         if not equals:
             raise UserError(f"{place} has {pair!r}; give fields as name=value, such as from_s=300")
+        name = spelled(name, hints)
         if name not in hints:
             raise UnknownNameError(f"field of {kind} in {place}", name, hints)
         table[name] = _value(value, hints[name])
     return checked(kinds[kind], table, lambda steps: (place, str(steps[-1]) if steps else ""))
+
+
+def spelled(name: str, known: Container[str]) -> str:
+    """A field's name as its kind has it: ``edge`` and ``edges`` both do."""
+    other = {"edge": "edges", "edges": "edge"}.get(name, name)
+    return name if name in known or other not in known else other
 
 
 def _value(text: str, hint: Any) -> Any:

@@ -10,8 +10,8 @@ from typing import Any
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
-from automotive_cosim.drives.faults import OUTCOMES, times, was
-from automotive_cosim.drives.judge import JudgedAct, JudgedEvent
+from automotive_cosim.drives.faults import OUTCOMES, WHY_VOID, times, was
+from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import parse_json, read_json
@@ -28,6 +28,7 @@ from automotive_cosim.run.row import from_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_manifest, read_rows, read_trace
 from automotive_cosim.run.words import action_in_words
+from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve.decisions import decision_map, decisions, drives_under_way
 from automotive_cosim.serve.observers import StudyObservers
 from automotive_cosim.serve.records import NotHereError, RecordEntry, RecordFolders
@@ -139,6 +140,7 @@ class Content:
             "id": entry.id,
             "kind": kind,
             "name": entry.folder.name,
+            "is_search": (entry.folder / PAGE).is_file(),
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
             "running": sorted(
@@ -210,6 +212,7 @@ class Content:
             running = is_being_written(entry.folder / "lock")
             planned = manifest.get("episodes")
             told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
+            told["is_search"] = (entry.folder / PAGE).is_file()
             return {**shared, **told}
         if entry.is_drive:
             drive = self._drive(entry, (), None)
@@ -269,6 +272,7 @@ class Content:
             "id": entry.id,
             "kind": "drives",
             "name": entry.folder.name,
+            "is_search": (entry.folder / PAGE).is_file(),
             "plan": manifest["plan"],
             "planned": manifest.get("episodes"),
             "rows": self._drive_rows(entry, rows.values()),
@@ -404,9 +408,14 @@ def _became(event: JudgedEvent, acts: Sequence[JudgedAct]) -> str:
 def _drive_timeline(events: Sequence[JudgedEvent], acts: Sequence[JudgedAct]) -> list[Json]:
     """Every instant that the page lists, in order."""
     told = []
-    for event in events:
+    is_explained = False
+    for event in sorted(events, key=lambda each: each.observable_s):
         kind = event.kind.replace("_", " ")
-        what = f"{'look-alike of ' if event.lookalike else ''}{kind}: {event.words} ({_became(event, acts)})"
+        became = _became(event, acts)
+        if event.outcome is EventOutcome.VOID and not is_explained:
+            is_explained = True
+            became += f": {WHY_VOID}"
+        what = f"{'look-alike of ' if event.lookalike else ''}{kind}: {event.words} ({became})"
         told.append((event.observable_s, "event", what))
         if event.deadline_s is not None and not event.lookalike:
             told.append((event.deadline_s, "deadline", f"deadline of {kind}"))

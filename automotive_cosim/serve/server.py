@@ -22,12 +22,14 @@ from http.cookies import CookieError, SimpleCookie
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from importlib.resources import files
 from pathlib import Path
+from types import MappingProxyType
 from urllib.parse import parse_qs, unquote, urlsplit
 
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.files import parse_json
+from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
 from automotive_cosim.serve.play import Game
@@ -43,6 +45,11 @@ SECURITY = {
     "Cross-Origin-Resource-Policy": "same-origin",
     "Cross-Origin-Opener-Policy": "same-origin",
 }
+ALONE = (
+    "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; "
+    "frame-ancestors 'none'; sandbox"
+)
+"""The policy of a page from a file, which anybody may have made."""
 MOST_BYTES = 10_000
 """Longest request body that is read."""
 WAIT_S = 1.0
@@ -59,6 +66,8 @@ class WebAnswer:
     kind: str = "application/json"
     keep_s: int = 0
     """How long the browser may reuse it without asking."""
+    is_alone: bool = False
+    """Whether it is a page by itself, from a file: it may bring styles and pictures, and runs nothing."""
 
 
 class _RefusedRequestError(Exception):
@@ -135,6 +144,7 @@ class Site:
                 ),
                 (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
+                (rf"/api/evaluations/{run}/search\.html", lambda path, _: self._findings(path["run"])),
                 (rf"/api/studies/{run}", lambda path, _: _json(content.decisions(path["run"]))),
                 (rf"/api/studies/{run}/live", lambda path, _: _json(content.watched_study(path["run"]))),
                 (
@@ -273,6 +283,12 @@ class Site:
         if name not in self._static:
             raise NotHereError("there is no such file")
         return WebAnswer(self._static[name], mimetypes.guess_type(name)[0] or "application/octet-stream")
+
+    def _findings(self, name: str) -> WebAnswer:
+        """The page of a search."""
+        records = self._content.records
+        page = records.file(records.entry(name), PAGE)
+        return WebAnswer(page.read_bytes(), "text/html", is_alone=True)
 
     def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         records = self._content.records
@@ -441,10 +457,10 @@ class _RequestHandler(BaseHTTPRequestHandler):
         if text and len(body) > SMALL_BYTES and "gzip" in self.headers.get("Accept-Encoding", ""):
             body = gzip.compress(body, compresslevel=4, mtime=0)
             self.send_header("Content-Encoding", "gzip")
-        self._end(body)
+        self._end(body, {"Content-Security-Policy": ALONE} if answer.is_alone else {})
 
-    def _end(self, body: bytes) -> None:
-        for name, value in SECURITY.items():
+    def _end(self, body: bytes, own: Mapping[str, str] = MappingProxyType({})) -> None:
+        for name, value in {**SECURITY, **own}.items():
             self.send_header(name, value)
         self.send_header("Content-Length", str(len(body)))
         self.end_headers()

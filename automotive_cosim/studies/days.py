@@ -228,7 +228,7 @@ def _days(job: DaysJob) -> Iterator[StudyDay]:
     plan, scenario = job.plan, job.plan.scene()
     configuration = read_configuration(scenario.config)
     network = read_network(configuration.net)
-    free_s = {name: edge.length_m / max(0.1, edge.speed_mps) for name, edge in network.edges.items()}
+    free_s = network.free_s
     observe_s = plan.minutes * 60
     first_s = configuration.begin_s + scenario.sumo.warm_up_s
     rng = np.random.default_rng((job.seed, 7))

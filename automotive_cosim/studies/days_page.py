@@ -231,7 +231,7 @@ def _days(study: DaysStudy) -> Drawing | None:
                 linestyle=LINES.get(drivers, "-"),
                 color=INK if isinstance(drivers, str) else PALETTE[number % len(PALETTE)],
                 markersize=5,
-                label=named(drivers),
+                label=f"search for the {drivers}" if isinstance(drivers, str) else named(drivers),
             )
         axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
         axes.locator_params(axis="x", integer=True)
@@ -240,6 +240,10 @@ def _days(study: DaysStudy) -> Drawing | None:
         legend(axes)
 
     return 3.4 + 0.23 * len(found), draw
+
+
+FOUND = {EQUILIBRIUM: "day nearest to the user equilibrium", OPTIMUM: "shortest day found"}
+"""What the lines of a plot are: a search has found them, and an equilibrium or optimum it may not have reached."""
 
 
 def _shares(study: DaysStudy) -> Drawing | None:
@@ -268,7 +272,7 @@ def _shares(study: DaysStudy) -> Drawing | None:
         for state in (EQUILIBRIUM, OPTIMUM):
             mean = mean_s(study, state)
             if mean is not None:
-                axes.axhline(mean.value, color=INK, linestyle=LINES[state], linewidth=1, label=state)
+                axes.axhline(mean.value, color=INK, linestyle=LINES[state], linewidth=1, label=FOUND[state])
         axes.grid(axis="y", color=INK, alpha=0.15, linewidth=0.8)
         axes.set_xlabel("% of the drivers advised")
         axes.set_ylabel("mean travel time of the last days, s")

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.report.stats import CONFIDENCE, DRAWS, Interval
 
 LEAST_SEEDS = 10
@@ -65,7 +65,7 @@ def _clustered(groups: Sequence[Sequence[float]]) -> Interval:
     try:
         from scipy.special import stdtrit
     except ImportError as missing:
-        raise SetupError("intervals require scipy: pip install 'automotive-cosim[report]'") from missing
+        raise SetupError(f"intervals require scipy: {install_hint('report')}") from missing
     sums = np.array([sum(group) for group in groups])
     sizes = np.array([len(group) for group in groups], dtype=float)
     count = sizes.sum()

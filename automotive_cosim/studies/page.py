@@ -66,26 +66,32 @@ def write_study(folder: Path) -> Path:
 
 
 def answer(study: Study) -> str:
-    """What the study found, in a sentence: which policy saves the ego how much for each decision."""
+    """What the study found, in a sentence: which policy that rerouted saves the ego how much for each decision."""
     best: tuple[str, SeedMean, list[PolicyChoice]] | None = None
+    idle: list[str] = []
     for _, policy, _, chosen in groups(study):
         found = seed_mean((each.seed, time_saved_s(each)) for each in chosen)
-        if policy not in STAYING and found is not None and (best is None or found.value > best[1].value):
+        if policy in STAYING or found is None:
+            continue
+        if not any(each.rerouted for each in chosen):
+            idle.append(policy)
+        elif best is None or found.value > best[1].value:
             best = policy, found, chosen
+    never = ", ".join(f"“{each}”" for each in dict.fromkeys(idle)) + " rerouted nowhere"
     if best is None:
-        return "No decision to reroute was compared."
+        return f"{never}." if idle else "No decision to reroute was compared."
     policy, found, chosen = best
     bounds = found.interval
     sure = "" if bounds is None else f" ({bounds.low:.0f} to {bounds.high:.0f})".replace("-", "−")
     verb = "saves" if found.value >= 0 else "costs"
     told = f"Rerouting by “{policy}” {verb} {abs(found.value):.0f} s{sure} a decision{_parts(chosen)}"
     over = f"{counted(found.count, 'decision')} of {counted(found.seeds, 'seed')}"
+    rest = f"; {never}" if idle else ""
     noise_s = study.noise().time_s
     if bounds is None and abs(found.value) <= noise_s:
         told += f", which is within the noise floor of {noise_s:.0f} s"
-    return f"{told}, over {over}" + (
-        "." if bounds else f", too few for an interval, which needs {LEAST_SEEDS} seeds."
-    )
+    few = "" if bounds else f", too few for an interval, which needs {LEAST_SEEDS} seeds"
+    return f"{told}, over {over}{few}{rest}."
 
 
 def _parts(chosen: Sequence[PolicyChoice]) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.run.row import columns
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.plan import StudyPlan, make_study
@@ -107,7 +107,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
     try:
         import pandas as pd
     except ImportError as error:
-        raise SetupError("load_study requires pandas: pip install 'automotive-cosim[report]'") from error
+        raise SetupError(f"load_study requires pandas: {install_hint('report')}") from error
     return pd.DataFrame([columns(choice) for choice in read_study(Path(folder)).all_choices])
 
 

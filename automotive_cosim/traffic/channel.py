@@ -5,12 +5,13 @@ from __future__ import annotations
 import pickle
 import socket
 import struct
+from collections.abc import Callable
 from contextlib import suppress
 from typing import Any
 
-LOADING_LIMIT_S = 1200.0
-"""Wall time that the simulation may take to load a network without a sign of life. A city of 50,000 edges takes
-36 s of an idle core, and more than 300 s on a crowded machine."""
+LOADING_LIMIT_S = 300.0
+"""Processor time that the simulation may take to load a network without a sign of life. A city of 50,000 edges
+takes 36 s."""
 
 _LENGTH = struct.Struct("!Q")
 
@@ -45,11 +46,12 @@ class MessageChannel:
         except OSError as error:
             raise ClosedError from error
 
-    def receive(self, timeout_s: float | None = None) -> Any:
+    def receive(self, timeout_s: float | None = None, waits_on: Callable[[], bool] = lambda: False) -> Any:
         """Waits for an object.
 
         Args:
             timeout_s: longest silence; None waits forever.
+            waits_on: asked after each such silence, whether to wait once more.
 
         Raises:
             ClosedError: the other side is gone, or this one is closed, as at the end of the program.
@@ -59,8 +61,8 @@ class MessageChannel:
             self._socket.settimeout(timeout_s)
         except OSError as error:
             raise ClosedError from error
-        (length,) = _LENGTH.unpack(self._read(_LENGTH.size))
-        return pickle.loads(self._read(length))
+        (length,) = _LENGTH.unpack(self._read(_LENGTH.size, waits_on))
+        return pickle.loads(self._read(length, waits_on))
 
     def send_socket(self, connection: socket.socket) -> None:
         """Sends a socket to the process on the other side (not on Windows)."""
@@ -85,14 +87,16 @@ class MessageChannel:
         """Closes this end; may be called again."""
         self._socket.close()
 
-    def _read(self, length: int) -> bytearray:
+    def _read(self, length: int, waits_on: Callable[[], bool]) -> bytearray:
         data = bytearray(length)
         view, got = memoryview(data), 0
         while got < length:
             try:
                 count = self._socket.recv_into(view[got:])
             except TimeoutError:
-                raise
+                if not waits_on():
+                    raise
+                continue
             except OSError as error:
                 raise ClosedError from error
             if not count:

@@ -68,7 +68,7 @@ class Forked:
             seed: seed of SUMO's random numbers.
             progress: called with the progress of the warm-up.
             allow_unprojected: accept a network without projection, with lon and lat None.
-            timeout_s: wall time without a sign of life after which a simulation counts as hung.
+            timeout_s: processor time without a sign of life after which a simulation counts as hung.
             by_replay: make copies by replaying everything instead of forking.
             outputs: an empty folder for SUMO's own outputs; the warm traffic writes to ``warm`` in it, each drive
                 and branch to its ``drive-N``, from the start of the simulation, complete when it is closed.

@@ -28,7 +28,7 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from sys import intern
 from typing import TypeAlias
@@ -165,6 +165,14 @@ class Network:
     """Why it has no position on earth, e.g. "has no projection"; empty if it has one."""
     moved: bool = False
     """Whether it was moved from the position in its file."""
+    closed_free_s: Mapping[str, float] = field(default_factory=dict)
+    """The time of each edge without a lane for cars, as of a way for buses, at its limit."""
+
+    @property
+    def free_s(self) -> dict[str, float]:
+        """The time of every edge that a route may contain, at its limit."""
+        cars = {name: edge.length_m / max(SLOWEST_MPS, edge.speed_mps) for name, edge in self.edges.items()}
+        return {**cars, **self.closed_free_s}
 
     @property
     def has_hours(self) -> bool:
@@ -236,6 +244,7 @@ class NetworkReader:
         """Of the edge that is being read, like its parameters."""
         self._params: dict[str, str] = {}
         self.edges: dict[str, Edge] = {}
+        self.closed_free_s: dict[str, float] = {}
         self.inner_lanes: dict[str, Crossing] = {}
         self.connections: list[_Connection] = []
         self.location: Mapping[str, str] = {}
@@ -294,7 +303,8 @@ class NetworkReader:
         crossings = _crossings(self)
         lengths_m = {(here, there): way.length_m for here, ways in crossings.items() for there, way in ways.items()}
         roads = replace(roads, junctions_m=lengths_m)
-        return Network(self.edges, crossings, _opposite(self.edges.values()), roads, doubt)
+        opposite = _opposite(self.edges.values())
+        return Network(self.edges, crossings, opposite, roads, doubt, closed_free_s=self.closed_free_s)
 
     def _take_edge(self, edge: Attributes) -> None:
         lanes = [lane for lane in self._lanes if _open_to_cars(lane)]
@@ -305,6 +315,11 @@ class NetworkReader:
                 )
         elif lanes and "function" not in edge:
             self.edges[intern(edge["id"])] = _edge(edge, lanes, self._lanes, self._params)
+        elif self._lanes and "function" not in edge:
+            self.closed_free_s[edge["id"]] = min(
+                quantity(lane["length"], 0.0) / max(SLOWEST_MPS, quantity(lane["speed"], 0.0))
+                for lane in self._lanes
+            )
 
 
 def read_network(path: Path) -> Network:

@@ -47,6 +47,9 @@ BEAT_S = 1.0
 SETTLING_BEAT_S = 5.0
 """The same while a future is settled: nobody may read for minutes, and a full socket would hold it up."""
 
+WAITING_FACTOR = 20
+"""Wall time that a step may take, in multiples of the processor time that it may use."""
+
 DESCRIPTORS = Path("/proc/self/fd")
 
 
@@ -58,7 +61,7 @@ class Server:
 
         Args:
             channel: to the program that uses the simulation.
-            hang_limit_s: wall time after which an unfinished step ends the process.
+            hang_limit_s: processor time after which an unfinished step ends the process.
         """
         self._channel = channel
         self._hang_limit_s = hang_limit_s
@@ -302,12 +305,18 @@ class Server:
         self._channel.send(("progress", (done_s, total_s)))
 
     def _set_alarm(self, limit_s: float | None = None) -> None:
-        """The kernel ends the process after the limit, even if nobody is left to notice that it hangs."""
+        """The kernel ends the process after the limit, even if nobody is left to notice that it hangs.
+
+        One that waits for good uses no processor time, so the wall clock ends it, much later.
+        """
+        limit_s = limit_s or self._hang_limit_s
         if sys.platform != "win32":
-            signal.setitimer(signal.ITIMER_REAL, limit_s or self._hang_limit_s)
+            signal.setitimer(signal.ITIMER_PROF, limit_s)
+            signal.setitimer(signal.ITIMER_REAL, WAITING_FACTOR * limit_s)
 
     def _stop_alarm(self) -> None:
         if sys.platform != "win32":
+            signal.setitimer(signal.ITIMER_PROF, 0)
             signal.setitimer(signal.ITIMER_REAL, 0)
 
 

@@ -10,6 +10,7 @@ import sys
 import tempfile
 import weakref
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -18,11 +19,13 @@ from automotive_cosim.errors import CosimError, TrafficError
 from automotive_cosim.traffic.base import WarmUpProgress
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.options import SCRATCH, Setup
+from automotive_cosim.traffic.processor_time import processor_s
 
 TIMEOUT_S = 20.0
-"""Wall time without a sign of life after which a simulation counts as hung; it gives one every second."""
+"""Processor time without a sign of life after which a simulation counts as hung; it gives one every second of the
+wall. One that gets no processor time at all for as long counts as hung, too."""
 
-ALARM_MARGIN_S = 5.0
+ALARM_MARGIN_S = 25.0
 """The simulation's own alarm comes this much later, in case nobody is left to end it."""
 
 CLOSING_LIMIT_S = 2.0
@@ -50,6 +53,28 @@ class _Complaints:
         size = os.fstat(self.descriptor).st_size
         os.lseek(self.descriptor, max(0, size - 2000), os.SEEK_SET)
         return " ".join(os.read(self.descriptor, 2000).decode("utf-8", "replace").split())
+
+
+@dataclass(slots=True)
+class _Silence:
+    """A wait for a process's next sign of life. On a crowded machine, a second of its work may take a minute."""
+
+    pid: int
+    limit_s: float
+    """Processor time that it may use meanwhile."""
+    _began_s: float | None = None
+    _used_s: float | None = None
+    """Processor time at the first look, and at the last."""
+
+    def may_last(self) -> bool:
+        """Asked every ``limit_s`` of wall time: whether it has worked since, and not too long."""
+        before_s, self._used_s = self._used_s, processor_s(self.pid)
+        if self._used_s is None:
+            return False
+        if before_s is None or self._began_s is None:
+            self._began_s = self._used_s
+            return True
+        return before_s < self._used_s < self._began_s + self.limit_s
 
 
 class RemoteProcess:
@@ -149,18 +174,19 @@ class RemoteProcess:
 
     def receive(self, progress: WarmUpProgress | None = None, timeout_s: float | None = None) -> Any:
         """Waits for an answer; raises like ``call``."""
-        limit_s = max(self._timeout_s, timeout_s or 0.0)
+        silence = _Silence(self.pid, max(self._timeout_s, timeout_s or 0.0))
         try:
-            outcome, value = self._channel.receive(limit_s)
+            outcome, value = self._channel.receive(silence.limit_s, silence.may_last)
             while outcome in ("beat", "progress"):
                 if outcome == "progress" and progress is not None:
                     progress(*value)
-                outcome, value = self._channel.receive(self._timeout_s)
+                silence = _Silence(self.pid, self._timeout_s)
+                outcome, value = self._channel.receive(silence.limit_s, silence.may_last)
         except ClosedError:
             self._give_up(self._death())
         except TimeoutError:
             self._give_up(
-                f"the simulation (process {self.pid}) hung: no sign of life for {limit_s:g} s; it was ended"
+                f"the simulation (process {self.pid}) hung: no sign of life for {silence.limit_s:g} s; it was ended"
             )
         except BaseException:
             self.kill()

@@ -8,7 +8,6 @@ stands for 300 s (SUMO would teleport it), none collides, and hardly any is unab
 
 from __future__ import annotations
 
-import os
 import re
 import signal
 import subprocess
@@ -24,6 +23,7 @@ from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.confinement import confined
 from automotive_cosim.traffic.options import Copied, Setup, command_line, copied, read_configuration, run_options
+from automotive_cosim.traffic.processor_time import processor_s
 from automotive_cosim.traffic.sumo_programs import environment, first_error, program
 
 HALTED_SHARE_LIMIT = 0.25
@@ -55,9 +55,6 @@ processor time, however busy the machine, and one that waits forever does not.""
 
 LOOK_EVERY_S = 1.0
 """Wall time between two checks of the program's processor time."""
-
-PROC = Path("/proc")
-"""Where Linux reports processor time."""
 
 WINDOW_S = 60.0
 """Averaging time of the halted share, about one signal cycle."""
@@ -258,8 +255,7 @@ class _Watchdog:
 
     def __init__(self, process: subprocess.Popen[str]) -> None:
         self._process = process
-        self._stat = PROC / str(process.pid) / "stat"
-        self._is_told = self._stat.is_file()
+        self._is_told = processor_s(process.pid) is not None
         """Whether processor time is available."""
         self._signs = 0
         """Number of signs of life so far."""
@@ -308,13 +304,7 @@ class _Watchdog:
 
     def _used_s(self) -> float | None:
         """Processor time that it has used, or the wall clock if unavailable; None once it has ended."""
-        if not self._is_told:
-            return time.monotonic()
-        try:
-            fields = self._stat.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
-        except OSError:
-            return None
-        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+        return processor_s(self._process.pid) if self._is_told else time.monotonic()
 
 
 @dataclass(slots=True)

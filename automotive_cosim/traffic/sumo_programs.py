@@ -13,10 +13,10 @@ from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import Distribution, PackageNotFoundError, distribution, version
 from pathlib import Path
 
-from automotive_cosim.errors import SetupError
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.traffic.confinement import confined
 
-INSTALL = "pip install 'automotive-cosim[import]'"
+INSTALL = install_hint("import")
 
 
 def home() -> Path:

@@ -6,6 +6,7 @@ import json
 import shutil
 from collections import Counter
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -21,7 +22,7 @@ from automotive_cosim.calibration.result import RECORD, Calibration, Carried, Me
 from automotive_cosim.calibration.settings import CalibrationOptions
 from automotive_cosim.cli.scenarios import app
 from automotive_cosim.errors import CountsError, UserError
-from automotive_cosim.report.calibration import by_hour, findings, write_page
+from automotive_cosim.report.calibration import by_hour, findings, label_places, write_page
 from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes
 from automotive_cosim.scenarios.variant import check_demand
 from automotive_cosim.traffic.options import Configuration, Setup, copied, read_configuration, run_options
@@ -169,6 +170,20 @@ def test_the_page_tells_all_sites_and_times(made: tuple[Path, Calibration]) -> N
         "with seed 1",
     ):
         assert word in told
+
+
+def test_names_of_sites_do_not_overlap_on_the_map() -> None:
+    pytest.importorskip("matplotlib")
+    from matplotlib.figure import Figure
+    from matplotlib.text import Text
+
+    axes = Figure(figsize=(7, 6)).add_subplot()
+    axes.plot([0, 500], [0, 500])
+    places = [(100.0 + number % 4, 100.0 + number) for number in range(12)]
+    label_places(axes, [(f"site {number}", place, "k") for number, place in enumerate(places)])
+    boxes = [Text.get_window_extent(each) for each in axes.texts]
+    assert len(boxes) == len(places)
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
 
 
 @pytest.mark.slow

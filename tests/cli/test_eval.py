@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.errors import install_hint
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.store import opened, read_trace, write_trace
 
@@ -33,6 +34,10 @@ def test_a_run_is_told_and_the_same_command_finds_it_done(cli, tmp_path):
     told = json.loads(first.out)
     assert (told["planned"], told["successes"], told["errors"], told["ran"]) == (1, 1, 0, 1)
     assert Path(told["out"], "manifest.json").is_file()
+    (agent,) = told["agents"]
+    assert (agent["agent"], agent["episodes"], agent["successes"], agent["rate"]) == ("oracle", 1, 1, 1.0)
+    assert agent["interval"][0] < 1 == agent["interval"][1]
+    assert told["answer"].startswith("oracle (told the answer) solves 1 of 1 episode")
     again = cli("eval", "--agents", "oracle", *GRID)
     assert again.code == 0
     assert "1 of 1 episodes; 1 succeeded, 0 failed" in again.out
@@ -107,8 +112,9 @@ def test_without_ray_the_command_that_installs_it_is_named(cli, monkeypatch, tmp
     monkeypatch.setitem(sys.modules, "ray", None)
     ran = cli("eval", "--agents", "oracle", *GRID, "--executor", "ray")
     assert (ran.code, ran.err) == (
-        2, "error: the ray package is missing; install it with `pip install 'automotive-cosim[ray]'`\n"
-    )  # fmt: skip
+        2,
+        f"error: the ray package is missing; install it with `{install_hint('ray')}`\n",
+    )
     assert not list(tmp_path.iterdir())
 
 

@@ -63,12 +63,28 @@ def test_what_was_not_recorded_is_said_in_a_line(cli: Cli, tmp_path: Path) -> No
     assert "has no road.jsonl.gz; `run`, `drive --out`" in ran.err
 
 
-@pytest.mark.parametrize("command", [("measures",), ("export", "--csv")])
-def test_of_an_evaluation_the_trials_with_a_road_are_named(cli, tmp_path, command):
+def test_of_an_evaluation_every_trial_with_a_road_has_its_lines(cli: Cli, tmp_path: Path) -> None:
+    alone = cli("measures", record(tmp_path), "--range", 100).out.splitlines()
+    for name in ("one", "two"):
+        (tmp_path / "e/pictures" / name).mkdir(parents=True)
+        record(tmp_path / "e/pictures" / name)
+    heads, *lines = cli("measures", tmp_path / "e", "--range", 100).out.splitlines()
+    assert heads == f"trial,{alone[0]}"
+    assert lines == [f"one,{alone[1]}", f"two,{alone[1]}"]
+    assert cli("measures", tmp_path / "e", "--range", 100, "--out", tmp_path / "a.csv").out.startswith("2 lines")
+
+
+def test_an_evaluation_without_an_encounter_has_the_same_columns(cli: Cli, tmp_path: Path) -> None:
+    (tmp_path / "e/pictures/one").mkdir(parents=True)
+    record(tmp_path / "e/pictures/one")
+    assert cli("measures", tmp_path / "e", "--range", 20).out.startswith("trial,")
+
+
+def test_of_an_evaluation_export_names_the_trials_with_a_road(cli: Cli, tmp_path: Path) -> None:
     for name in ("one", "two"):
         (tmp_path / "e/pictures" / name).mkdir(parents=True)
         (tmp_path / "e/pictures" / name / "road.jsonl.gz").touch()
-    ran = cli(*command, tmp_path / "e")
+    ran = cli("export", "--csv", tmp_path / "e")
     told = " ".join(str(ran.err).split())
     assert "is an evaluation; give one of its trials: " in told
     assert "pictures/one, " in told

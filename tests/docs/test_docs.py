@@ -11,6 +11,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from contextlib import suppress
+from dataclasses import fields
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -329,3 +330,28 @@ def test_pages_count_the_episodes_as_they_are(cli, line, words):
     text = "".join((TOP / page).read_text(encoding="utf-8") for page in pages)
     assert f"automotive-cosim eval {line}" in text
     assert words.format(planned[1]) in text
+
+
+def test_the_reference_of_observations_has_every_field_reading_action_and_number():
+    from automotive_cosim.contracts import AlertKind, Observation, VehicleState
+    from automotive_cosim.drives.wakes import WAKES
+    from automotive_cosim.envs import flat, flat_drive
+
+    text = (TOP / "docs/reference/observations.md").read_text(encoding="utf-8")
+    parts = re.split(r"^##+ ", text, flags=re.MULTILINE)
+    seen, car, noticed, tasks, drives = (parts[number] for number in (0, 1, 2, 5, 6))
+    fields_of = [[field.name for field in fields(kind)] for kind in (Observation, VehicleState)]
+    assert [re.findall(r"^\| `(\w+)`", part, re.MULTILINE) for part in (seen, car)] == fields_of
+    named = re.findall(r"`([^`]+)`", noticed.rpartition("does:")[2])
+    assert named == [wake.name for wake in WAKES]
+    alerts = re.findall(r"(\d+)\s`(\w+)`", drives.partition("There are 256")[0])
+    acts = [(str(number), str(act.kind)) for number, act in enumerate(flat_drive.ACTIONS) if act.kind]
+    assert alerts == acts
+    assert re.findall(r"^\| ([^|`]+) \|", drives, re.MULTILINE)[1:] == list(flat_drive.FEATURES)
+    size = len(flat_drive.FEATURES) + sum(flat_drive.SLOTS) + len(WAKES) + len(AlertKind)
+    assert f"There are {size} numbers: the {len(flat_drive.FEATURES)} of" in drives
+    assert f"There are {len(flat_drive.ACTIONS)} actions" in drives
+    counts = [flat.GOAL_SLOTS, 3 * len(flat.CONTROLS), len(flat.NUMBERS), 1]
+    assert re.findall(r"^\| (\d+) \|", tasks, re.MULTILINE) == list(map(str, counts))
+    actions = len(flat.APPS) + len(flat.CONTROLS) + len(flat.ENDS)
+    assert f"there are {actions} actions and {sum(counts)} numbers" in tasks

@@ -2,8 +2,10 @@
 
 import json
 import os
+import runpy
 import shutil
 import subprocess
+import tomllib
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -11,6 +13,8 @@ import pytest
 import yaml
 
 from automotive_cosim.scenarios import load
+from automotive_cosim.tasking.instance import draw
+from automotive_cosim.tasks import CATALOGUE
 
 TOP = Path(__file__).parents[2]
 EXAMPLES = TOP / "docs/examples"
@@ -34,8 +38,8 @@ def evaluate(tmp_path, on_path):
     shutil.copytree(EXAMPLES / "my-agent", tmp_path / "checkout")
     plan = tmp_path / "checkout/plan.toml"
     both = plan.read_text(encoding="utf-8")
-    assert "seeds = [0, 1]" in both
-    plan.write_text(both.replace("seeds = [0, 1]", "seeds = [0]"), encoding="utf-8")
+    assert "seeds = [3, 4]" in both
+    plan.write_text(both.replace("seeds = [3, 4]", "seeds = [4]"), encoding="utf-8")
 
     def run(*arguments):
         return subprocess.run(
@@ -57,7 +61,9 @@ def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(ev
     )
     assert won >= 2, "it solves most of its tasks"
     agent = tmp_path / "checkout/my_agent.py"
-    agent.write_text(agent.read_text(encoding="utf-8").replace('"Max"', '"None such"'), encoding="utf-8")
+    whole = agent.read_text(encoding="utf-8")
+    agent.write_text(whole.replace(', "fan": "Max"', ""), encoding="utf-8")
+    assert agent.read_text(encoding="utf-8") != whole
     worse = evaluate("checkout", "checkout/plan.toml", "second", "first/after")
     assert worse.returncode == 1, worse.stderr
     assert ElementTree.parse(tmp_path / "second/compare.xml").findall(".//failure")
@@ -70,6 +76,17 @@ def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(ev
     assert alone.returncode == 1, alone.stderr
     told = (tmp_path / "third/compare.md").read_text(encoding="utf-8")
     assert "No agent succeeds, neither before nor after" in told
+    errors = ElementTree.parse(tmp_path / "third/compare.xml").findall(".//error")
+    assert len(errors) == 3
+    assert all("ValueError: no config" in each.get("message") for each in errors)
+
+
+def test_the_examples_seeds_say_each_word_that_its_agent_knows():
+    """So that a deleted word turns it red."""
+    known = runpy.run_path(str(EXAMPLES / "my-agent/my_agent.py"))["KNOWN"]
+    plan = tomllib.loads((EXAMPLES / "my-agent/plan.toml").read_text(encoding="utf-8"))
+    said = [draw(CATALOGUE[task], "first", seed).goal.lower() for task in plan["tasks"] for seed in plan["seeds"]]
+    assert all(any([each for each in known if each in goal] == [word] for goal in said) for word in known)
 
 
 @pytest.mark.skipif(os.name == "nt", reason="a script for bash")

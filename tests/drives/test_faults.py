@@ -70,7 +70,7 @@ def test_a_false_alarm_says_when_it_would_have_been_right_and_what_was_due() -> 
 
 def test_the_words_of_outcomes_are_explained_where_they_occur() -> None:
     void = JudgedEvent("tunnel", "a tunnel", False, 1.0, EventOutcome.VOID, 1.0, None, None, 9.0)
-    assert key_of((void, missed(), void)) == "void, nothing was due"
+    assert key_of((void, missed(), void)).startswith("void, nothing was due (it needed no act, passed by itself")
     assert key_of((missed(),)) == ""
 
 

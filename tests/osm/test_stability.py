@@ -10,7 +10,7 @@ import pytest
 from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.osm.report import ImportReport
 from automotive_cosim.scenarios import load
-from automotive_cosim.traffic import stability
+from automotive_cosim.traffic import processor_time, stability
 from automotive_cosim.traffic.stability import BACKLOG_SHARE_LIMIT, HALTED_SHARE_LIMIT, Stability, Stuck, measure
 
 Imported = tuple[Path, ImportReport]
@@ -116,7 +116,7 @@ STEP = 'print(\'<step time="1.00" running="1" halting="0" waiting="0" inserted="
 SCRIPTS = pytest.mark.skipif(
     sys.platform == "win32", reason="the stand-in is a script with a first line of its own"
 )
-TOLD = pytest.mark.skipif(not stability.PROC.is_dir(), reason="no processor time is told")
+TOLD = pytest.mark.skipif(not processor_time.PROC.is_dir(), reason="no processor time is told")
 BUSY, ASLEEP = "while True: pass", "time.sleep(600)"
 
 
@@ -164,7 +164,7 @@ def test_where_no_processor_time_is_told_wall_time_counts(
     script: str, limit: str, imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     _stand_in(tmp_path, script, monkeypatch)
-    monkeypatch.setattr(stability, "PROC", tmp_path)
+    monkeypatch.setattr(processor_time, "PROC", tmp_path)
     monkeypatch.setattr(stability, "LOOK_EVERY_S", 0.05)
     monkeypatch.setattr(stability, limit, 0.5)
     with pytest.raises(TrafficError, match=r"hung in village\.sumocfg"):

@@ -30,3 +30,13 @@ def test_a_manifest_lists_what_was_given_and_no_none() -> None:
         "seeds": "0, 1",
         "limits": "a 2",
     }
+
+
+def test_a_setting_of_several_lines_keeps_them():
+    from automotive_cosim.report.templates import _ENVIRONMENT
+
+    rows = _ENVIRONMENT.from_string(
+        '{% from "report/macros.html" import named_rows %}{{ named_rows(pairs) }}'
+    ).render(pairs=[("space", "[factors]\nseed = 1\n"), ("seed", 0)])
+    assert "<pre>[factors]\nseed = 1</pre>" in rows
+    assert "<td>0</td>" in rows

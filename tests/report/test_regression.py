@@ -10,7 +10,7 @@ import automotive_cosim
 from automotive_cosim.contracts.given import Clock
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
-from automotive_cosim.report.regression import as_json, changes, junit, markdown
+from automotive_cosim.report.regression import as_json, changes, junit, markdown, plain
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.jobs import failed
@@ -75,6 +75,46 @@ def test_what_an_agent_raised_is_told_where_it_lost(tmp_path):
         assert "no action in 20 steps, at first: agent 'mine' raised ZeroDivisionError" in told
 
 
+def test_an_agent_that_raises_in_every_step_is_an_error_of_junit_before_the_change_too(tmp_path):
+    raised = {
+        "steps": 20,
+        "malformed": 20,
+        "malformed_why": "agent 'mine' raised ZeroDivisionError: division by zero",
+    }
+    everything = set(range(len(PLAN.jobs())))
+    broken = write(tmp_path / "a", lost=everything, **raised)
+    once = {**raised, "malformed": 1}
+    for folder, errors in ((broken, len(everything)), (write(tmp_path / "b", lost=everything, **once), 0)):
+        suite = ElementTree.fromstring(junit(changes(folder, folder)))[0]
+        assert int(suite.get("errors")) == errors == len(suite.findall("testcase/error"))
+        assert all("ZeroDivisionError" in each.get("message") for each in suite.iter("error"))
+    gone = write(tmp_path / "c", lost={1}, agent_error="it raised OSError: no such file")
+    suite = ElementTree.fromstring(junit(changes(write(tmp_path / "d"), gone)))[0]
+    assert (suite.get("failures"), suite.get("errors")) == ("0", "1")
+    assert "OSError: no such file" in suite.find("testcase/error").get("message")
+
+
+def test_the_headline_has_the_figures_of_the_comparison_it_prints(tmp_path):
+    """An error before and another failure now leave the plan's rates alike, and what was judged both times fell."""
+    found = changes(write(tmp_path / "a", errors={0}), write(tmp_path / "b", lost={1}))
+    whole = len(PLAN.jobs())
+    assert [rate.value for rate in found[0].rates] == [1 - 1 / whole] * 2
+    assert found[0].outcome(0.0) == "worse"
+    told = markdown(found, 0.0).splitlines()[0]
+    assert f"100% before, {1 - 1 / (whole - 1):.0%} after" in told
+    broken = changes(write(tmp_path / "c", lost={1}), write(tmp_path / "d", lost={1}, errors={1}))
+    assert "1 is no longer judged" in markdown(broken, 0.0).splitlines()[0]
+
+
+def test_the_summary_for_a_terminal_is_narrow_and_says_what_the_markdown_says(tmp_path):
+    found = changes(write(tmp_path / "a", lost={1}), write(tmp_path / "b", lost={1, 2}))
+    head, *lines = plain(found, 0.0).splitlines()
+    assert markdown(found, 0.0).startswith(f"**{head}**")
+    assert max(map(len, lines)) <= 80
+    assert f"{len(PLAN.jobs()) - 1}/{len(PLAN.jobs())} before" in lines[1]
+    assert [line for line in lines if PLAN.jobs()[2].task.id in line], "what was lost is named"
+
+
 def test_an_improvement_is_not_worse(tmp_path):
     found = changes(write(tmp_path / "a", lost={0, 1, 2}), write(tmp_path / "b"))
     assert found[0].count("won") == 3
@@ -137,7 +177,9 @@ def test_the_command_tells_by_its_exit_code_and_writes_both_files(tmp_path):
     files = ["--junit", str(tmp_path / "j.xml"), "--markdown", str(tmp_path / "m.md")]
     worse = runner.invoke(app, ["compare", first, second, *files])
     assert worse.exit_code == 1
-    assert (tmp_path / "m.md").read_text() == worse.output
+    assert (tmp_path / "m.md").read_text() == markdown(changes(tmp_path / "a", tmp_path / "b"), 0.0)
+    assert worse.output.splitlines()[0] == (tmp_path / "m.md").read_text().splitlines()[0].strip("*")
+    assert "|" not in worse.output
     assert ElementTree.parse(tmp_path / "j.xml").getroot().tag == "testsuites"
     assert runner.invoke(app, ["compare", first, second, "--threshold", "60"]).exit_code == 0
     assert runner.invoke(app, ["compare", first, first]).exit_code == 0
@@ -210,6 +252,15 @@ def test_few_drives_have_no_interval(tmp_path):
     (found,) = changes(scored(tmp_path / "a", [0, 0], few), scored(tmp_path / "b", [0, -10], few))
     assert found.found.bounds is None
     assert "-5 points |" in markdown((found,), 0.0)
+
+
+def test_drives_are_told_with_their_score_and_its_interval(tmp_path):
+    from automotive_cosim.report.answer import agents_as_json
+    from automotive_cosim.report.results import read_results
+
+    (told,) = agents_as_json(read_results(scored(tmp_path / "a", [100, 100, 100, 100, 100, -20])))
+    assert (told["agent"], told["drives"], told["score"]) == ("silent", 6, pytest.approx(80))
+    assert told["interval"][0] < 80 < told["interval"][1] <= 100
 
 
 def test_a_share_of_the_score_is_asked_of_drives(tmp_path):

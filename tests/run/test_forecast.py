@@ -5,8 +5,10 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.run.forecast import asks, expected, forecast
+from automotive_cosim.run.jobs import WARM_UP_S, WARM_UPS_S
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.settings import Budget
+from automotive_cosim.scenarios import shipped
 
 PRICED = "nowhere/m?usd_per_million_in=2&usd_per_million_out=8"
 GRID = {"tasks": ["hvac_fan_max", "hvac_driver_seat_heater"], "scenarios": ["grid"], "seeds": [0, 1]}
@@ -71,3 +73,20 @@ def test_a_budget_is_held_against_it(budget, words):
     told = forecast(jobs(), 1).beyond(budget)
     assert words in told
     assert bool(told) == bool(words)
+
+
+def test_every_shipped_scenario_has_its_own_warm_up():
+    assert set(WARM_UPS_S) == set(shipped())
+    assert all(0 < seconds < WARM_UP_S for seconds in WARM_UPS_S.values())
+
+
+def test_the_readmes_evaluation_takes_what_was_forecast():
+    """Two warm-ups of Paris and two of a small place, which took 53 s on two shared cores."""
+    plan = {"agents": ["t3a", "asurada"], "tasks": ["road_speed_80_in_50", "hvac_fan_max"], "seeds": [0, 1]}
+    whole = make_plan(plan).jobs()
+    needs = forecast(whole, 1)
+    assert needs.wall_s.low < 36 < 53 < needs.wall_s.high
+    small, large = (
+        {job.warm_up_weight for job in whole if job.scenario == name} for name in ("beauce", "paris_centre")
+    )
+    assert max(small) < min(large) / 2

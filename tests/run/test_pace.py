@@ -14,6 +14,7 @@ import pytest
 from automotive_cosim.cli.batches import time_left
 from automotive_cosim.run import batch
 from automotive_cosim.run.batch import Progress, run_jobs
+from automotive_cosim.run.jobs import WARM_UP_S, WARM_UPS_S
 from automotive_cosim.run.meter import Spent
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.settings import Budget
@@ -310,3 +311,22 @@ def test_what_is_known_to_be_out_of_reach_takes_no_time(monkeypatch):
 )
 def test_the_time_left_is_told_in_hours_minutes_and_seconds(left_s, done, said):
     assert time_left(SimpleNamespace(left_s=left_s, done=done, planned=2)) == said
+
+
+def test_a_small_place_is_not_expected_to_warm_up_as_long_as_a_large_one(monkeypatch):
+    """The README's evaluation as it ran: Paris twice, and then a small place twice."""
+    places = (
+        ("paris_centre", 0, 27.0, 4),
+        ("paris_centre", 1, 20.0, 4),
+        ("beauce", 0, 6.0, 2),
+        ("beauce", 1, 1.5, 2),
+    )
+    jobs = [
+        Planned(f"{place}-{seed}-{n}", (place, seed), "ab"[n % 2], f"{place}-{seed}-{n}", 1.2 + n, warm_up_s,
+                warm_up_weight=WARM_UPS_S[place] / WARM_UP_S)
+        for place, seed, warm_up_s, count in places for n in range(count)
+    ]  # fmt: skip
+    told = play(monkeypatch, jobs, 1)
+    known = [(now_s, left_s) for now_s, left_s, left in told if left_s and left in (6, 5, 4)]
+    assert known
+    assert all(0.5 < left_s / (told[-1][0] - now_s) < 2 for now_s, left_s in known), known

@@ -147,6 +147,27 @@ def test_a_search_counts_the_kinds_of_its_space_alone(tmp_path: Path) -> None:
     assert not any("%" in column for name in ("events", "events_beside") for column in tables[name].columns)
 
 
+def test_a_search_counts_its_samples_and_no_rates_that_no_row_explains(tmp_path: Path) -> None:
+    """Of six trials, two miss the tunnel; one of those repeats the other."""
+    findings = {"failures": [], "failure_rate_upper": None, "unseen_rate_upper": None, "pairs_covered": 0}
+    subject = read_subject(run(tmp_path / "runs", 2))
+    sampled = [row.id for row in subject.rows[1:]]
+    rule = asdict(FailureRule(events=("tunnel",)))
+    search = replace(subject, findings=findings | {"rule": rule, "sampled_trials": sampled})
+    made = dossier(search)
+    assert made.sentence.startswith("1 of 5 judged trials failed (2.00 h driven). 1 more run repeated")
+    tables = {table.name: table for section in made.sections for table in section.tables}
+    assert {row[1] for row in tables["events"].rows} == {"5"}
+    assert len(tables["failures"].rows) == len(tables["faults"].rows) == 1
+    (quiet,) = [part for part in claims(search).parts if "disturb" in part.text]
+    assert "an hour" not in quiet.evidence
+    (quiet,) = [part for part in claims(subject).parts if "disturb" in part.text]
+    (row,) = [row for section in dossier(subject).sections for table in section.tables for row in table.rows
+              if table.name == "unseen" and str(row[0]).startswith("Nuisances")]  # fmt: skip
+    bound = quiet.evidence.partition("at most ")[2].removesuffix(" an hour.")
+    assert f"at most {bound}" in str(row[1])
+
+
 def test_an_agent_must_be_named_if_there_are_several(tmp_path: Path) -> None:
     folder = run(tmp_path / "runs", 0, ("asurada", "m3a", "rule-perfect"))
     with pytest.raises(UserError, match="several agents; give --agent with one of asurada, m3a, rule-perfect"):

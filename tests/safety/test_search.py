@@ -25,7 +25,17 @@ from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_careful
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.page import suite
 from automotive_cosim.safety.samplers import SAMPLERS, RandomSampler, even_points, make_sampler
-from automotive_cosim.safety.space import FactorChoices, FactorRange, FailureRule, SearchPoint, Space, read_space
+from automotive_cosim.safety.space import (
+    FACTORS,
+    FactorChoices,
+    FactorRange,
+    FailureRule,
+    SearchPoint,
+    Space,
+    label_of,
+    read_space,
+    said,
+)
 
 SPACE = Space(
     (
@@ -84,7 +94,8 @@ def test_a_failure_is_repeated_and_made_small() -> None:
     differing = [name for name in minimal.point if minimal.point[name] != (minimal.neighbour or {})[name]]
     assert differing == [minimal.differs] == ["visibility_m"]
     assert 100 < float(minimal.point["visibility_m"]) < 200
-    assert minimal.words(SPACE).startswith("driver hurried and visibility_m at most ")
+    assert minimal.words(SPACE).startswith("driver hurried and visibility at most ")
+    assert minimal.words(SPACE).endswith(" m")
     repeats = [each.repeat for each in found.tried if each.phase is Phase.REPEAT and each.point == minimal.point]
     assert repeats == list(range(1, REPEATS))
     assert found.run == 64
@@ -328,7 +339,7 @@ def test_triples_are_counted_as_pairs_are() -> None:
 def test_maps_of_two_factors_count_every_sample() -> None:
     found = searched("sobol", 128)
     maps = [table for table in tables(found) if table.name.startswith("map_")]
-    assert "driver and visibility_m" in maps[0].title
+    assert "driver and visibility" in maps[0].title
     for table in maps:
         cells = [str(cell).split(" of ") for row in table.rows for cell in row[1:] if str(cell) != "–"]
         assert sum(int(failed) for failed, _ in cells) == sum(each.outcome.failed for each in found.samples)
@@ -440,3 +451,11 @@ def test_sensitivity_is_that_of_the_margin() -> None:
     assert shares_of_folded["hour"] > 0.6
     assert "Sensitivity" in [table.title for table in tables(found)]
     assert sensitivity(searched("sobol", 8, additive)) == []
+
+
+def test_factors_are_told_with_their_units_and_every_number_of_a_drive_has_one() -> None:
+    assert said("visibility_m", 118.0, "at most") == "visibility at most 118 m"
+    assert said("driver", "hurried") == "driver hurried"
+    assert said("rain_mm_h", 2.5) == "rain 2.5 mm/h"
+    bare = {name for name in FACTORS if "_" in name and not label_of(name)[1]}
+    assert bare <= {"held_out"}, "a name with an unknown unit"

@@ -131,6 +131,23 @@ def two_ways(tmp_path: Path, drawn: Mapping[str, tuple[str, str, float, int]], r
     return folder
 
 
+def test_buses_on_a_way_of_their_own_count(sumo: None, tmp_path: Path) -> None:
+    folder = two_ways(tmp_path, EDGES, "access main exit", 9.0)
+    edges = tmp_path / "n.edg.xml"
+    for name in ("out", "back"):
+        edges.write_text(edges.read_text().replace(f'<edge id="{name}"', f'<edge id="{name}" allow="bus"'))
+    built, printed = sumo_programs.run(
+        "netconvert", ["-n", tmp_path / "n.nod.xml", "-e", edges, "-o", folder / "two.net.xml", "--no-turnarounds"]
+    )
+    assert built, printed
+    demand = folder / "two.rou.xml"
+    buses = '<vType id="bus" vClass="bus"/><flow id="g" type="bus" begin="0" end="900" period="90">'
+    demand.write_text(
+        demand.read_text().replace("</routes>", f'{buses}<route edges="access out back exit"/></flow></routes>')
+    )
+    assert measure(scenarios.load(folder), observe_s=600).trips >= 60
+
+
 @pytest.mark.slow
 def test_drivers_find_the_other_way(jammed: Path, tmp_path: Path) -> None:
     told: list[AssignmentStep] = []

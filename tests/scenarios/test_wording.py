@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 from automotive_cosim.errors import CosimError, UnknownNameError
-from automotive_cosim.formats.incidents import Breakdown, Incident, Jam
+from automotive_cosim.formats.incidents import Breakdown, Closure, Incident, Jam
 from automotive_cosim.scenarios import load
 from automotive_cosim.scenarios.wording import KINDS, read_line
 
@@ -17,6 +17,8 @@ from automotive_cosim.scenarios.wording import KINDS, read_line
     [
         ("breakdown edge=7 position_m=12 aside=true", Breakdown(edge="7", position_m=12.0, aside=True)),
         ("jam edges=a,b length_m=200 from_s=-30 trip=", Jam(edges=("a", "b"), length_m=200.0, from_s=-30.0)),
+        ("jam edge=a length_m=200", Jam(edges=("a",), length_m=200.0)),
+        ("closure edges=a", Closure(edge="a")),
     ],
 )
 def test_a_line_is_the_table_it_stands_for(text: str, expected: Incident) -> None:

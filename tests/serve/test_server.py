@@ -137,6 +137,27 @@ def test_listening_everywhere_knows_addresses_but_no_foreign_names(serving: Serv
     assert browser("/", Host=f"192.0.2.7:{port}", token="wrong").status == 403
 
 
+def test_a_search_is_told_from_an_evaluation_and_its_page_runs_nothing(serving: Serving, tmp_path: Path) -> None:
+    write_evaluation(tmp_path / "all/mine")
+    page = "<h1>found</h1><script>alert(1)</script>"
+    (write_evaluation(tmp_path / "all/hunt") / "search.html").write_text(page, encoding="utf-8")
+    browser = serving(tmp_path / "all")
+    records = {record["name"]: record for record in browser("/api/runs").json["records"]}
+    assert {name: record["is_search"] for name, record in records.items()} == {"mine": False, "hunt": True}
+    shown = browser(f"/api/evaluations/{records['hunt']['id']}/search.html")
+    assert (shown.status, shown.body.decode()) == (200, page)
+    assert shown.headers["Content-Type"].startswith("text/html")
+    policy = shown.headers["Content-Security-Policy"]
+    assert "sandbox" in policy
+    assert "default-src 'none'" in policy
+    assert "script" not in policy
+    assert browser(f"/api/evaluations/{records['hunt']['id']}").json["is_search"]
+    assert browser(f"/api/evaluations/{records['mine']['id']}/search.html").status == 404
+    (tmp_path / "secret.html").write_text("secret", encoding="utf-8")
+    (tmp_path / "all/mine/search.html").symlink_to(tmp_path / "secret.html")
+    assert browser(f"/api/evaluations/{records['mine']['id']}/search.html").status == 404
+
+
 def test_an_evaluation_and_its_episodes(serving: Serving, tmp_path: Path) -> None:
     browser = serving(write_evaluation(tmp_path / "mine"))
     (record,) = browser("/api/runs").json["records"]

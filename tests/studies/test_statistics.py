@@ -260,6 +260,18 @@ def test_a_gain_is_congestion_avoided_and_way_saved() -> None:
     assert not parts(study([old])).rows, "rows of earlier versions do not say"
 
 
+def test_a_policy_that_rerouted_nowhere_is_not_the_best() -> None:
+    """At a delay of 90 s, one that waits for 600 s does nothing, which costs less than a long way round."""
+    rows = seeds(30, parted(-50.0, 10.0, 90.0))
+    found = study(rows)
+    plan = replace(found.plan, policies=("never", "always", "delay:600"))
+    told = answer(replace(found, plan=plan))
+    assert told.startswith("Rerouting by “always” costs 50 s")
+    assert told.endswith("; “delay:600” rerouted nowhere.")
+    alone = replace(found, plan=replace(found.plan, policies=("never", "delay:600")))
+    assert answer(alone) == "“delay:600” rerouted nowhere."
+
+
 def test_a_route_leaves_out_what_is_ahead_and_not_what_is_behind() -> None:
     route = ("a", "b", "c", "d", "goal")
     assert left_out(route, ("a", "x", "d", "goal"), ("c", "d", "goal")) == ["c"]

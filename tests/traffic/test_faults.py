@@ -17,7 +17,7 @@ import pytest
 
 from automotive_cosim.errors import NoRoomError, ScenarioError, SetupError, TrafficError, UnknownNameError
 from automotive_cosim.scenarios import Scenario
-from automotive_cosim.traffic import sumo
+from automotive_cosim.traffic import remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, Simulations
 from automotive_cosim.traffic.in_process import InProcess
@@ -128,6 +128,33 @@ def test_a_hung_drive_is_ended_in_time(grid: Scenario, hurried: EgoPlan) -> None
     traffic.close()
     simulation.depart(hurried).close()
     simulation.close()
+
+
+@linux
+def test_a_drive_that_waits_for_a_processor_is_waited_for(grid: Scenario, hurried: EgoPlan) -> None:
+    with closing(Forked(grid, seed=1, timeout_s=1.0)) as simulation, closing(simulation.depart(hurried)) as traffic:
+        expected = traffic.branch()
+        os.kill(traffic.pid, signal.SIGSTOP)
+        Timer(1.3, os.kill, (traffic.pid, signal.SIGCONT)).start()
+        assert traffic.advance(5.0) == expected.advance(5.0)
+        expected.close()
+
+
+def test_a_silent_process_may_use_so_much_processor_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    told = iter([100.0, 107.0, 119.9, 120.0])
+    monkeypatch.setattr(remote, "processor_s", lambda pid: next(told))
+    silence = remote._Silence(1, 20.0)
+    assert [silence.may_last() for _ in range(4)] == [True, True, True, False]
+
+
+@pytest.mark.parametrize("told", [[None], [100.0, 100.0]])
+def test_a_silent_process_that_does_not_work_hangs(
+    monkeypatch: pytest.MonkeyPatch, told: list[float | None]
+) -> None:
+    readings = iter(told)
+    monkeypatch.setattr(remote, "processor_s", lambda pid: next(readings))
+    silence = remote._Silence(1, 20.0)
+    assert [silence.may_last() for _ in told][-1] is False
 
 
 @linux

@@ -58,6 +58,14 @@ def test_a_way_through_a_lane_of_the_buses_is_none(
     assert bool(way_through(found, ("ab", "bc"))) is is_way
 
 
+def test_ways_of_buses_have_a_time_but_are_no_roads(net: Callable[..., Network]) -> None:
+    bus, both = (' allow="bus"', ' allow="pedestrian"'), (' allow="bus"', "")
+    found = net(edge("ab", lanes=both), edge("bc", lanes=bus))
+    assert set(found.edges) == {"ab"}
+    assert set(found.free_s) == {"ab", "bc"}
+    assert found.free_s["bc"] == pytest.approx(found.free_s["ab"])
+
+
 def test_tags_of_openstreetmap_are_understood(net: Callable[..., Network]) -> None:
     edges = net(
         edge("ab", "maxspeed=50 lit=yes zone:traffic=FR:urban lane_markings=no", more='type="highway.primary"'),

@@ -54,7 +54,7 @@ def _preventable(subject: Subject) -> Claim:
         found = rate((row.task, row.success) for row in subject.episodes)
         bounds = (
             ""
-            if found.interval is None
+            if found.interval is None or subject.findings is not None
             else f", {100 * found.interval.low:.0f} to {100 * found.interval.high:.0f} %"
         )
         status = "supported" if passed == len(subject.episodes) else "contradicted"
@@ -80,9 +80,13 @@ def _quiet(subject: Subject) -> Claim:
     if not scores:
         return Claim(text, "not examined", "The run has no drives.", "events")
     nuisances, hours = sum(score.nuisances for score in scores), sum(score.driven_s for score in scores) / 3600
-    upper = rate_upper_bound(nuisances, hours)
-    evidence = f"{counted(nuisances, 'nuisance')} in {hours:.2f} h, at most {number_told(upper)} an hour."
-    return Claim(text, "contradicted" if nuisances else "limited", evidence, "unseen")
+    evidence = f"{counted(nuisances, 'nuisance')} in {hours:.2f} h"
+    if subject.findings is None:
+        evidence += f", at most {number_told(rate_upper_bound(nuisances, hours))} an hour."
+    else:
+        evidence += "; trials of a search give no rates."
+    section = "unseen" if subject.findings is None else "failures"
+    return Claim(text, "contradicted" if nuisances else "limited", evidence, section)
 
 
 def _known_hazards(subject: Subject) -> Claim:

@@ -73,10 +73,20 @@ class Subject:
         every = (*self.results.rows, *self.results.drives)
         return [name for name in _agents(map(contestant, every)) if name != self.agent]
 
-    @property
+    @cached_property
     def judged(self) -> list[TrialRow]:
-        """The trials with a judgement."""
-        return [row for row in self.rows if row.outcome is not None]
+        """The trials with a judgement; of a search, its samples, as repeats and reductions try a failure again."""
+        return [row for row in self.rows if row.outcome is not None and row.id not in self._again]
+
+    @property
+    def again(self) -> int:
+        """How many trials of a search repeat or reduce a failure; no total counts them."""
+        return len(self._again)
+
+    @cached_property
+    def _again(self) -> frozenset[str]:
+        sampled = (self.findings or {}).get("sampled_trials")
+        return frozenset() if sampled is None else frozenset(row.id for row in self.rows) - frozenset(sampled)
 
     @cached_property
     def rule(self) -> FailureRule | None:
@@ -207,6 +217,8 @@ def sentence(subject: Subject) -> str:
     failed, judged, empty = len(subject.failed), len(subject.judged), len(subject.nothing_due)
     hours = f"{subject.hours:.2f} h driven"
     told = f"{failed} of {counted(judged, 'judged trial')} failed ({hours})."
+    if subject.again:
+        told += f" {counted(subject.again, 'more run')} repeated and reduced failures, and are in no total."
     if subject.rule is not None and subject.drives:
         told += f" The space counts {subject.rule.words}."
     if beside := len(subject.failed_beside):

@@ -25,11 +25,13 @@ function line(record) {
       h("span", { class: "pill bad" }, "Unreadable"));
   }
   if (WHOLE[record.kind]) {
-    const [page, label, unit] = WHOLE[record.kind];
+    const [page, whole, unit] = WHOLE[record.kind];
+    const label = record.is_search ? "Search" : whole;
     const done = record.planned ? `${record.done} of ${counted(record.planned, unit)}` : counted(record.done, unit);
     return h("li", { class: "card" },
       h("div", {}, h("a", { href: `#/${page}/${record.id}` }, record.name), h("p", { class: "muted" }, `${label} · ${done} · ${when(record.started)}`)),
       record.running && record.kind === "study" ? h("a", { class: "pill live", href: `#/live/${record.id}` }, "Watch live")
+        : record.is_search && !record.running ? h("a", { class: "pill quiet", href: findings(record.id) }, "Findings")
         : h("span", { class: record.running ? "pill live" : "pill quiet" }, record.running ? "Running" : "Results"));
   }
   const about = [record.half && `${record.half} half`, record.scenario, record.agent, record.model !== "none" && record.model, record.seed !== null && `seed ${record.seed}`, ...(record.conditions ?? []), when(record.started)];
@@ -39,6 +41,9 @@ function line(record) {
       h("p", { class: "muted" }, about.filter(Boolean).join(" · "))),
     record.kind === "drive" && !record.running && record.value !== null ? h("span", { class: "pill quiet" }, `Score ${Math.round(record.value)}`) : outcome(record));
 }
+
+const findings = (id) => `/api/evaluations/${id}/search.html`;
+const searched = (results) => results.is_search ? h("p", {}, "These are the trials of a search. ", h("a", { href: findings(results.id) }, "What it found")) : "";
 
 const when = (text) => (text ? text.slice(0, 16).replace("T", " ") : "");
 
@@ -99,7 +104,7 @@ export async function resultsPage(query, id) {
   const head = ["Task", "Half", "Scenario", "Agent", "Seed", "Steps", "Outcome", "Failed parts"].map((name) => h("th", { scope: "col" }, name));
   return {
     title: results.name,
-    content: [h("h1", {}, results.name), heading, now, h("div", { class: "filters" }, search, choices, beside), count,
+    content: [h("h1", {}, results.name), searched(results), heading, now, h("div", { class: "filters" }, search, choices, beside), count,
       h("div", { class: "card scroll", tabindex: 0, role: "region", "aria-label": "Episodes" }, h("table", {}, h("thead", {}, h("tr", {}, head)), table)),
       results.drives?.length ? [h("h2", {}, "Drives"), drivesTable(id, results.drives)] : []].flat(),
     leave: () => clearInterval(timer),
@@ -117,7 +122,7 @@ function drivesTable(id, rows) {
 
 function drivesPage(id, results) {
   const done = results.planned ? `${results.rows.length} of ${counted(results.planned, "drive")} are done` : counted(results.rows.length, "drive");
-  return { title: results.name, content: [h("h1", {}, results.name), h("p", { class: "muted" }, done), drivesTable(id, results.rows)] };
+  return { title: results.name, content: [h("h1", {}, results.name), searched(results), h("p", { class: "muted" }, done), drivesTable(id, results.rows)] };
 }
 
 function episode(id, row) {

@@ -75,7 +75,13 @@ def answer(study: CongestionStudy) -> str:
     assert added is not None
     of = f", of {len(plan.measures)} measures the one that changes most," if len(plan.measures) > 1 else ""
     lost_h = round(added.value, 1)
-    detours_h = round(total.value, 1) - lost_h
+    driven_h = round(round(total.value, 1) - lost_h, 1)
+    driven = (
+        f" and {abs(driven_h):.1f} {'more' if driven_h > 0 else 'fewer'} driven, on other routes or by getting "
+        f"{'further' if driven_h > 0 else 'less far'} in the time"
+        if driven_h
+        else ""
+    )
     share = f" ({told(added.value / before_h, '+.0%')})" if before_h else ""
     index = (
         f"the travel time index goes from {found.travel_time:.2f} to {after.travel_time:.2f}"
@@ -90,8 +96,7 @@ def answer(study: CongestionStudy) -> str:
     )
     return (
         f"“{name_of(best)}”{of} {_told(total)}: {abs(lost_h):.1f} {'more' if lost_h >= 0 else 'fewer'} of "
-        f"delay{share} and {abs(detours_h):.1f} {'more' if detours_h >= 0 else 'fewer'} of detours; "
-        f"{index}, {over}{lacks}."
+        f"delay{share}{driven}; {index}, {over}{lacks}."
     )
 
 

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from string import Formatter
 
+from automotive_cosim.scenarios.wording import spelled
+
 PHRASES: Mapping[str, str] = {
     "breakdown": "breakdown on {edge}",
     "roadworks": "roadworks on {edge} at {limit_kmh} km/h",
@@ -45,11 +47,12 @@ def name_of(text: str) -> str:
         text: a line that a plan has checked, as ``closure edge=c2c3``; empty for no measure.
     """
     kind, *pairs = text.split() or [""]
-    given = {name: _told(name, value) for name, _, value in (pair.partition("=") for pair in pairs)}
     phrase = PHRASES.get(kind)
     if phrase is None:
         return text or "none"
     said = {name for _, name, _, _ in Formatter().parse(phrase) if name}
+    split = (pair.partition("=") for pair in pairs)
+    given = {spelled(name, said): _told(name, value) for name, _, value in split}
     rest = (
         FIELDS.get(name, f"{name.replace('_', ' ')} {{}}").format(given[name]) for name in given if name not in said
     )

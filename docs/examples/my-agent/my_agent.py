@@ -2,7 +2,7 @@
 
 from automotive_cosim import Action, ActionType, Channel, GoalStatus, Observation, Reason
 
-KNOWN = {"seat": "Seat heat", "hands": "Steering wheel heat", "fan": "Max", "blow": "Max", "air flow": "Max"}
+KNOWN = {"seat": "Seat heat", "hands": "Steering wheel heat", "fan": "Max"}
 """How the button of the climate screen begins that a word of the driver's asks for."""
 
 
