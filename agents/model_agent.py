@@ -23,7 +23,7 @@ from automotive_cosim.models.base import ChatModel
 
 LONGEST_LESSON, LONGEST_PLAN = 300, 2000
 """Characters of its own text that it carries over to the next turn."""
-WATCH_HISTORY, SHORT_HISTORY = 20, 6
+DRIVE_HISTORY, SHORT_HISTORY = 20, 6
 """Lines of history in a watch, which lasts for hundreds of turns, and in a short prompt."""
 
 
@@ -160,7 +160,7 @@ class ModelAgent:
         if self._sees and seen.screenshot is not None:
             with_marks = _marked(seen)
             pictures = (png(seen.screenshot), *([] if with_marks is None else [with_marks]))
-        last = WATCH_HISTORY if seen.on_watch else len(self._history)
+        last = DRIVE_HISTORY if seen.on_watch else len(self._history)
         if self._profile.length is PromptLength.SHORT:
             last = SHORT_HISTORY
         history = self._history[len(self._history) - last :] if last < len(self._history) else self._history

@@ -101,7 +101,7 @@ def _file(profile: AgentProfile, observation: Observation) -> str:
     if profile.instructions:
         return OWN
     if observation.on_watch:
-        return WATCH
+        return DRIVE
     return profile.name if profile.length is PromptLength.LONG else profile.length
 
 
@@ -135,13 +135,13 @@ PLACE_COUNTS = (
     "Weigh what you know of the place against what the car is doing: the same act can be right in one place and "
     "wrong in another."
 )
-WATCH = "drive"
-"""The prompt of a watch over a drive, the same for every agent."""
+DRIVE = "drive"
+"""The prompt of a drive, the same for every agent."""
 OWN = "own"
 """The prompt with instructions from a file, of tasks and of drives."""
 UNASKED = frozenset({ActionType.STATUS})
 """Actions that a watch has no use for."""
-WATCHED = {
+ON_DRIVES = {
     ActionType.WAIT: "wait until something changes, or for up to 60 seconds",
     ActionType.SHOW_ALERT: "warn the driver on screen and by voice; a text has up to 120 characters",
 }
@@ -180,7 +180,7 @@ def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
         text = grammar(kinds, by_point=by_point)
     else:
         text = brief.actions(kinds, by_point=by_point, by_name=profile.length is PromptLength.SHORT)
-    for action, about in WATCHED.items() if on_watch else ():
+    for action, about in ON_DRIVES.items() if on_watch else ():
         text = text.replace(FIELDS[action].about, about)
     if profile.functions:
         is_told = profile.length is not PromptLength.SHORT

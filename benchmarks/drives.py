@@ -208,8 +208,8 @@ def compared(whos: Sequence[str], drives: Sequence[Kept]) -> Iterator[str]:
         values = [together([drive.score for drive in kept]).value for _, kept in _by_family(mine)]
         spread = f"{min(values):.0f} to {max(values):.0f}" if values else "-"
         near_s = f"{sum(drive.short_ttc_s for drive in mine):.0f}"
-        nobodys_s = f"{sum(drive.untouched_short_ttc_s for drive in mine):.0f}"
-        rows.append((*_row(who, together([drive.score for drive in mine])), spread, near_s, nobodys_s))
+        baseline_s = f"{sum(drive.untouched_short_ttc_s for drive in mine):.0f}"
+        rows.append((*_row(who, together([drive.score for drive in mine])), spread, near_s, baseline_s))
     yield from _table(("watcher", *FIGURES, "by family", "near collision, s", "without it"), rows)
 
 

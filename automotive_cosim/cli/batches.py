@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Generic, TypeVar
 import typer
 from annotated_types import Ge, Le
 
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.formats.annotations import Option
 
@@ -259,10 +259,3 @@ def time_left(progress: Progress[Any]) -> str:
     if left_s is None or progress.done == progress.planned:
         return ""
     return f"{clock(left_s)} left"
-
-
-def clock(seconds: float) -> str:
-    """A span of wall time as ``3:05`` or ``1:03:05``."""
-    minutes, rest = divmod(int(seconds), 60)
-    told = f"{minutes // 60}:{minutes % 60:02d}" if minutes >= 60 else f"{minutes}"
-    return f"{told}:{rest:02d}"

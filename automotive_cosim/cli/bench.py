@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, whole_number
+from automotive_cosim.cli.derived import filled, takes
+from automotive_cosim.cli.options import AsJson
+from automotive_cosim.run.settings import BenchSettings
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -15,22 +17,15 @@ if TYPE_CHECKING:
     from automotive_cosim.run.measure import Figures
 
 
-def bench(
-    scenario: Annotated[
-        str, typer.Option(help="A scenario's name or folder, any .sumocfg or .net.xml(.gz).")
-    ] = "paris_centre",
-    steps: Annotated[
-        int,
-        typer.Option(help="SUMO steps to measure after the warm-up.", metavar="N", parser=whole_number(100, 10**6)),
-    ] = 2000,
-    as_json: AsJson = False,
-) -> None:
+@takes(BenchSettings)
+def bench(as_json: AsJson = False, **settings: Any) -> None:
     """Time bare SUMO, a libsumo loop and the environment side by side; also resets and memory."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.measure import measure
 
     progress = Console(stderr=True, quiet=as_json, highlight=False)
-    figures = measure(scenario, steps, lambda what: progress.print(f"measuring: {what}"))
+    told = filled(BenchSettings, settings)
+    figures = measure(told.scenario, told.steps, lambda what: progress.print(f"measuring: {what}"))
     if as_json:
         typer.echo(json.dumps(figures.as_json()))
     else:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import inspect
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Annotated, Any, TypeVar
 
 import typer
+from annotated_types import Ge, Le
 
 from automotive_cosim.cli.batches import words
-from automotive_cosim.cli.derived import with_options
-from automotive_cosim.cli.options import number
+from automotive_cosim.cli.derived import ShownDefault, number_in, unless_shown, with_options
 from automotive_cosim.episode.conditions import TABLE, Condition
 from automotive_cosim.episode.own_prompt import resolved
 
@@ -48,7 +49,7 @@ def _told(settings: Mapping[str, Any]) -> list[tuple[Condition, str]]:
 def _value(each: Condition, word: str) -> Any:
     if each.name == "prompt":
         return resolved(word)
-    return word if each.choices else number(*each.bounds)(word)
+    return word if each.choices else number_in(float, [Ge(each.bounds[0]), Le(each.bounds[1])], word)
 
 
 def _parameter(each: Condition, *, lists: bool) -> inspect.Parameter:
@@ -59,8 +60,8 @@ def _parameter(each: Condition, *, lists: bool) -> inspect.Parameter:
         help=each.help + choices + (" Several are separated by commas." if lists and not each.choices else ""),
         metavar=None if each.choices else "SECONDS",
         rich_help_panel="Conditions: what the agent is given, and at what speed",
-        show_default=f"{each.default:g}" if isinstance(each.default, float) else str(each.default),
+        parser=partial(unless_shown, str),
     )
-    return inspect.Parameter(
-        each.name, inspect.Parameter.KEYWORD_ONLY, default=None, annotation=Annotated[str | None, option]
-    )
+    own = ShownDefault(f"{each.default:g}" if isinstance(each.default, float) else each.default)
+    kind = inspect.Parameter.KEYWORD_ONLY
+    return inspect.Parameter(each.name, kind, default=own, annotation=Annotated[str | None, option])

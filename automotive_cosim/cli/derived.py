@@ -89,22 +89,33 @@ def _parameter(each: Field[Any], hint: Any, text: str) -> inspect.Parameter:
     option, bare = shown_as(hint), _bare(hint)
     name, is_flag = option_name(each.name, hint), bare is bool
     kind: Any = bool if is_flag else list[str] if option.repeats else bare if bare is Path else str
-    told = option.default or _told(each.default)
+    own = "" if is_flag or option.repeats or option.default else _told(each.default)
     is_denied = is_flag and each.default is True and not option.name
+    read = None if is_flag or option.repeats else option.read or _reader(name, hint)
     made = typer.Option(
         f"--no-{name}" if is_denied else f"--{name}",
         help=text.replace("`", ""),
         metavar=option.form or (None if is_flag or option.repeats else _form(bare)),
-        parser=None if is_flag or option.repeats else option.read or _reader(name, hint),
-        show_default=False if is_flag else told or ("none" if option.repeats else False),
+        parser=partial(unless_shown, read or str) if own else read,
+        show_default=bool(own) or option.default or ("none" if option.repeats else False),
+        envvar=option.variable,
         rich_help_panel=option.panel,
     )
     return inspect.Parameter(
         each.name,
         inspect.Parameter.KEYWORD_ONLY,
-        default=False if is_flag else None,
+        default=ShownDefault(own) if own else False if is_flag else None,
         annotation=Annotated[kind if is_flag else kind | None, made],
     )
+
+
+class ShownDefault(str):
+    """A default as the help shows it; whoever leaves the option out gives no value."""
+
+
+def unless_shown(read: Callable[[str], Any], text: str) -> Any:
+    """The value in a text; None for a default."""
+    return None if isinstance(text, ShownDefault) else read(text)
 
 
 def _bare(hint: Any) -> Any:
@@ -157,7 +168,7 @@ def _reader(name: str, hint: Any) -> Callable[[str], Any] | None:
         (names,) = [each for each in _annotations(hint) if isinstance(each, OneOf)]
         return partial(_member, bare, names)
     if bare in (int, float):
-        return partial(_number, bare, tuple(_beside(hint)), tuple(_annotations(hint)))
+        return partial(number_in, bare, tuple(_annotations(hint)), beside=tuple(_beside(hint)))
     return None
 
 
@@ -184,9 +195,9 @@ def _annotations(hint: Any) -> Iterator[Any]:
             yield from _annotations(each)
 
 
-def _number(kind: type[int | float], words_beside: tuple[str, ...], annotations: tuple[Any, ...], text: str) -> Any:
-    """A number within its bounds, or one of the words beside."""
-    if text in words_beside:
+def number_in(kind: type[int | float], annotations: Iterable[Any], text: str, beside: Collection[str] = ()) -> Any:
+    """The number in a text, within the bounds among its annotations; or one of the words beside numbers."""
+    if text in beside:
         return text
     bounds = [
         (*BOUNDS[type(each)], getattr(each, type(each).__name__.lower()))
@@ -199,7 +210,7 @@ def _number(kind: type[int | float], words_beside: tuple[str, ...], annotations:
         value = None
     if value is None or not all(keeps(value, bound) for _, keeps, bound in bounds):
         within = "".join(f" {told} {_told(bound)}" for told, _, bound in bounds)
-        beside = "".join(f" nor {word}" for word in words_beside)
-        what = f"{'neither' if beside else 'not'} a {'whole number' if kind is int else 'number'}{within}{beside}"
+        others = "".join(f" nor {word}" for word in beside)
+        what = f"{'neither' if others else 'not'} a {'whole number' if kind is int else 'number'}{within}{others}"
         raise typer.BadParameter(f"{text!r} is {what}")
     return value

@@ -114,7 +114,8 @@ def drives(as_json: AsJson = False) -> None:
 
 def _tell(console: Console, row: DriveTrialRow) -> None:
     """The drive's events and acts in chronological order, what went wrong and why, and its score."""
-    from automotive_cosim.drives.faults import became, clock, faults, key_of, was
+    from automotive_cosim.contracts.plain import clock
+    from automotive_cosim.drives.faults import became, faults, key_of, was
     from automotive_cosim.drives.judge import Worth
 
     lines = [

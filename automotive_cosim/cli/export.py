@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import reads_results
 from automotive_cosim.errors import UserError
+from automotive_cosim.exchange.settings import ExportFormats
+
+if TYPE_CHECKING:
+    from automotive_cosim.exchange.recording import Recording
 
 ROAD, SCENARIO, TRACE, FCD, TABLE = "road.xodr", "scenario.xosc", "trace_gt.osi", "fcd.xml", "trajectories"
 
 
 @reads_results
+@takes(ExportFormats)
 def export(
     trial: Annotated[
         Path,
@@ -22,51 +29,38 @@ def export(
             show_default=False,
         ),
     ],
-    openscenario: Annotated[
-        str | None,
-        typer.Option(help=f"Write {SCENARIO} in this version of OpenSCENARIO XML: 1.2 or 1.3.", metavar="VERSION"),
-    ] = None,
-    opendrive: Annotated[
-        bool, typer.Option("--opendrive", help=f"Write the road as {ROAD}, which {SCENARIO} then names.")
-    ] = False,
-    osi: Annotated[bool, typer.Option("--osi", help=f"Write {TRACE}, a trace of OSI ground truth.")] = False,
-    fcd: Annotated[bool, typer.Option("--fcd", help=f"Write {FCD}, SUMO's floating car data.")] = False,
-    table: Annotated[bool, typer.Option("--csv", help=f"Write {TABLE}.csv.")] = False,
-    parquet: Annotated[bool, typer.Option("--parquet", help=f"Write {TABLE}.parquet.")] = False,
     out: Annotated[Path | None, typer.Option(help="Folder for the files.", show_default="TRIAL/exchange")] = None,
+    **settings: Any,
 ) -> None:
     """Write a kept trial in the formats of others: OpenSCENARIO XML, OpenDRIVE, OSI, SUMO's FCD, CSV, Parquet."""
     from automotive_cosim.exchange.needs import check_formats
-    from automotive_cosim.exchange.opendrive import write_opendrive
     from automotive_cosim.exchange.openscenario import write_openscenario
     from automotive_cosim.exchange.osi import write_osi
     from automotive_cosim.exchange.recording import read_recording
     from automotive_cosim.exchange.trajectories import write_csv, write_fcd, write_parquet
     from automotive_cosim.run.store import cannot_write
-    from automotive_cosim.scenarios import open_scenario
-    from automotive_cosim.traffic.options import read_configuration
 
-    if not (openscenario or opendrive or osi or fcd or table or parquet):
+    formats = filled(ExportFormats, settings)
+    if not formats:
         raise UserError("nothing to write; give --openscenario 1.3, --opendrive, --osi, --fcd, --csv or --parquet")
-    check_formats(openscenario=openscenario, opendrive=opendrive, osi=osi, parquet=parquet)
+    check_formats(formats)
     recording = read_recording(trial)
     folder = out or trial / "exchange"
+    road = folder / ROAD if formats.opendrive else None
     written = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        if opendrive:
-            write_opendrive(read_configuration(open_scenario(recording.scenario).config).net, folder / ROAD)
-            written.append(ROAD)
-        if openscenario:
-            write_openscenario(recording, folder / SCENARIO, openscenario, folder / ROAD if opendrive else None)
-            written.append(SCENARIO)
-        if osi:
-            write_osi(recording, folder / TRACE, folder / ROAD if opendrive else None)
-            written.append(TRACE)
         for name, wanted, write in (
-            (FCD, fcd, write_fcd),
-            (f"{TABLE}.csv", table, write_csv),
-            (f"{TABLE}.parquet", parquet, write_parquet),
+            (ROAD, formats.opendrive, _write_road),
+            (
+                SCENARIO,
+                formats.openscenario,
+                partial(write_openscenario, version=formats.openscenario or "", road=road),
+            ),
+            (TRACE, formats.osi, partial(write_osi, road=road)),
+            (FCD, formats.fcd, write_fcd),
+            (f"{TABLE}.csv", formats.csv, write_csv),
+            (f"{TABLE}.parquet", formats.parquet, write_parquet),
         ):
             if wanted:
                 write(recording, folder / name)
@@ -74,3 +68,11 @@ def export(
     except OSError as error:
         raise cannot_write(folder, error) from error
     typer.echo(f"{', '.join(written)} in {folder}")
+
+
+def _write_road(recording: Recording, target: Path) -> None:
+    from automotive_cosim.exchange.opendrive import write_opendrive
+    from automotive_cosim.scenarios import open_scenario
+    from automotive_cosim.traffic.options import read_configuration
+
+    write_opendrive(read_configuration(open_scenario(recording.scenario).config).net, target)

@@ -41,14 +41,15 @@ def measures(
     Those of an evaluation have a first column with the trial.
     """
     from automotive_cosim.exchange.needs import check_formats
+    from automotive_cosim.exchange.settings import ExportFormats
     from automotive_cosim.exchange.trajectories import write_frame
+    from automotive_cosim.formats.files import write_whole
     from automotive_cosim.measures import Encounter, PairReading, encounters, pair_readings
     from automotive_cosim.measures.encounters import as_csv, as_frame
-    from automotive_cosim.run.record import write_whole
     from automotive_cosim.run.road import read_record, roads_in
 
     roads = {"": record} if record.is_file() else roads_in(record)
-    check_formats(parquet=out is not None and out.suffix == ".parquet")
+    check_formats(ExportFormats(parquet=out is not None and out.suffix == ".parquet"))
     thresholds = filled(Thresholds, settings)
     ego = None if everyone else "ego"
     kind: type[Encounter] | type[PairReading] = PairReading if readings else Encounter

@@ -5,16 +5,16 @@ from __future__ import annotations
 import json
 import math
 import os
-import re
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import wraps
+from functools import partial, wraps
 from pathlib import Path
 from typing import Annotated, ParamSpec
 
 import typer
 from annotated_types import Ge, Le
 
+from automotive_cosim.cli.derived import number_in
 from automotive_cosim.cli.terminal import escaped
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Option
@@ -81,45 +81,17 @@ def print_json(values: object) -> None:
     typer.echo(escaped(json.dumps(values, ensure_ascii=False)))
 
 
-def whole_number(least: int, most: int) -> Callable[[str], int]:
-    """A parser of whole numbers in a range; its error says what came and what was expected."""
-
-    def parse(text: str) -> int:
-        try:
-            number = int(text)
-        except ValueError:
-            number = least - 1
-        if not least <= number <= most:
-            raise typer.BadParameter(f"{text!r} is not a whole number from {least} to {most}")
-        return number
-
-    return parse
-
-
-def number(least: float, most: float) -> Callable[[str], float]:
-    """A parser of numbers in a range, ends included; its error says what came and what was expected."""
-
-    def parse(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not least <= value <= most:
-            raise typer.BadParameter(f"{text!r} is not a number from {least:g} to {most:g}")
-        return value
-
-    return parse
-
-
 MOST_SEED = 2**31 - 1
 """SUMO takes no larger one."""
 Seed = Annotated[
     int,
     typer.Option(
-        "--seed", help="Seed; the same seed gives the same trace.", metavar="N", parser=whole_number(0, MOST_SEED)
+        "--seed",
+        help="Seed; the same seed gives the same trace.",
+        metavar="N",
+        parser=partial(number_in, int, (Ge(0), Le(MOST_SEED))),
     ),
 ]
-SeedList = Annotated[str, typer.Option("--seeds", help="Seeds, as in 0-4 or 0,3,7.", metavar="LIST")]
 AgentName = Annotated[
     str,
     typer.Option(
@@ -168,27 +140,6 @@ class DriveChanges:
 
 
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.")]
-
-
-@dataclass(frozen=True, slots=True)
-class PartOf:
-    """One of several parts, as in ``3/10``."""
-
-    number: int
-    of: int
-
-    @classmethod
-    def read(cls, text: str) -> PartOf:
-        """Parser of ``--part``."""
-        found = re.fullmatch(r"(\d{1,6})/(\d{1,6})", text)
-        part = cls(int(found[1]), int(found[2])) if found else cls(0, 0)
-        if not 1 <= part.number <= part.of:
-            raise typer.BadParameter(f"{text!r} is not a part such as 3/10")
-        return part
-
-    def taken(self, all_of_them: tuple[str, ...]) -> tuple[str, ...]:
-        """Every Nth item, so that all parts together have every item."""
-        return all_of_them[self.number - 1 :: self.of]
 
 
 def tell_opening(*names: str) -> None:

@@ -11,8 +11,9 @@ import typer
 
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results, whole_number
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.publish.settings import VerifySettings
 
 MOST_LISTED = 50
 """How many problems are printed."""
@@ -41,28 +42,10 @@ def bundle(
 
 
 @app.command()
+@takes(VerifySettings)
 @takes(ExecutorSettings, only=["workers"])
 def verify(
     path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
-    replays: Annotated[
-        int,
-        typer.Option(
-            "--replay",
-            help="How many drives to replay and compare bit for bit.",
-            metavar="N",
-            parser=whole_number(0, 10**6),
-        ),
-    ] = 3,
-    seed: Annotated[
-        int | None,
-        typer.Option(
-            "--replay-seed",
-            help="Seed that draws the drives to replay.",
-            metavar="N",
-            parser=whole_number(0, 2**31 - 1),
-            show_default="a new one each time",
-        ),
-    ] = None,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
@@ -70,8 +53,10 @@ def verify(
     """Check an evaluation or a bundle; exit code 1 if something does not match."""
     from automotive_cosim.publish.verify import verify as verified
 
-    drawn_with = secrets.randbelow(2**31) if seed is None else seed
-    found = verified(path, replays=replays, seed=drawn_with, workers=filled(ExecutorSettings, settings).processes)
+    told = filled(VerifySettings, settings)
+    seed = secrets.randbelow(2**31) if told.seed is None else told.seed
+    workers = filled(ExecutorSettings, settings).processes
+    found = verified(path, replays=told.replays, seed=seed, workers=workers)
     if as_json:
         problems = [asdict(problem) for problem in found.problems]
         print_json({"ok": not problems, "facts": found.facts, "problems": problems, "unknown": found.unknown})

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import asdict
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
 import typer
+from annotated_types import Ge, Le
 
-from automotive_cosim.cli.options import AsJson, TasksFrom, number, print_json, reads_results
+from automotive_cosim.cli.derived import number_in
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError, install_hint
 
@@ -77,7 +80,7 @@ def replay(
         typer.Option(
             help="How many times as fast as recorded --play and --film are.",
             metavar="X",
-            parser=number(0.1, 1000),
+            parser=partial(number_in, float, (Ge(0.1), Le(1000))),
         ),
     ] = 4.0,
     tasks_from: TasksFrom = None,

@@ -15,13 +15,12 @@ from automotive_cosim.cli.batches import (
     EXECUTORS,
     ExecutorSettings,
     check_prices,
-    clock,
     forecast_in_words,
     minutes_in_words,
 )
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.safety.settings import SearchSettings
 
@@ -91,8 +90,8 @@ def search(
     After Ctrl-C the page has what was found by then.
     """
     from automotive_cosim.cli.console import Console
+    from automotive_cosim.formats.files import write_whole
     from automotive_cosim.run.plan import make_plan
-    from automotive_cosim.run.record import write_whole
     from automotive_cosim.run.settings import Budget
     from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
     from automotive_cosim.safety.findings import as_json as findings_json

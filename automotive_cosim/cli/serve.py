@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
-from automotive_cosim.cli.options import TasksFrom, whole_number
+from automotive_cosim.cli.derived import filled, takes
+from automotive_cosim.cli.options import TasksFrom
+from automotive_cosim.serve.settings import ServeSettings
 
 
+@takes(ServeSettings)
 def serve(
     folders: Annotated[
         list[Path] | None,
@@ -19,25 +22,8 @@ def serve(
             show_default="runs",
         ),
     ] = None,
-    host: Annotated[
-        str, typer.Option(help="Address to listen on; by default, only this machine can connect.")
-    ] = "127.0.0.1",
-    port: Annotated[
-        int, typer.Option(help="Port to listen on; 0 picks a free one.", metavar="N", parser=whole_number(0, 65535))
-    ] = 0,
-    play: Annotated[
-        bool,
-        typer.Option("--play", help="Let one person at a time operate the cockpit, judged as agents are."),
-    ] = False,
-    study: Annotated[
-        Path | None,
-        typer.Option(
-            help="TOML file of a study: deals its episodes to several people, each on their own page.",
-            metavar="FILE",
-            show_default=False,
-        ),
-    ] = None,
     tasks_from: TasksFrom = None,
+    **settings: Any,
 ) -> None:
     """Show runs, results, tasks and scenarios in a browser; a run in progress is shown live.
 
@@ -47,12 +33,12 @@ def serve(
     """
     from automotive_cosim.serve.server import WebServer
 
-    default = Path("runs")
-    if (play or study) and folders is None:
+    told, default = filled(ServeSettings, settings), Path("runs")
+    if (told.play or told.study) and folders is None:
         default.mkdir(exist_ok=True)
     shown = folders if folders is not None else [default] if default.is_dir() else []
     game = dealt = None
-    if play or study:
+    if told.play or told.study:
         from automotive_cosim.errors import UserError
         from automotive_cosim.serve.dealing import read_study
         from automotive_cosim.serve.play import Game
@@ -60,9 +46,9 @@ def serve(
 
         if (shown[0] / "steps.jsonl").exists() or (shown[0] / "manifest.json").exists():
             raise UserError(f"{shown[0]} is itself a record; give a folder of records")
-        game = Game(shown[0]) if play else None
-        dealt = PeopleStudy(read_study(study), shown[0] / study.stem) if study else None
-    with WebServer(shown, host, port, game, dealt) as server:
+        game = Game(shown[0]) if told.play else None
+        dealt = PeopleStudy(read_study(told.study), shown[0] / told.study.stem) if told.study else None
+    with WebServer(shown, told.host, told.port, game, dealt) as server:
         typer.echo(f"Open {server.address}")
         if dealt is not None:
             typer.echo(f"Participants open {server.people_address}")

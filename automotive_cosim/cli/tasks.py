@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 from collections import Counter
 from pathlib import Path
@@ -14,6 +12,7 @@ import typer
 from automotive_cosim.cli.options import AsJson, Seed, SuiteName, TaskNames, TasksFrom, print_json
 from automotive_cosim.cli.validate import validate
 from automotive_cosim.contracts.plain import counted
+from automotive_cosim.formats.csvs import csv_text
 
 if TYPE_CHECKING:
     from automotive_cosim.tasking.task import Task
@@ -72,17 +71,16 @@ def export(
     if path.suffix == ".json":
         text = json.dumps(rows, ensure_ascii=False, indent=1) + "\n"
     elif path.suffix == ".csv":
-        lines = io.StringIO()
-        writer = csv.writer(lines, lineterminator="\n")
-        writer.writerow(rows[0])
-        writer.writerows(
-            [
-                value if isinstance(value, str | int) else json.dumps(value, ensure_ascii=False)
-                for value in row.values()
-            ]
-            for row in rows
+        text = csv_text(
+            rows[0],
+            (
+                [
+                    value if isinstance(value, str | int) else json.dumps(value, ensure_ascii=False)
+                    for value in row.values()
+                ]
+                for row in rows
+            ),
         )
-        text = lines.getvalue()
     else:
         raise UserError(f"{path} is neither .json nor .csv; give a name with one of these endings")
     try:

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Any
 
 import typer
 
-from automotive_cosim.cli.batches import whole_numbers_in, words
-from automotive_cosim.cli.options import AsJson, PartOf, SeedList, SuiteName, TaskNames, TasksFrom, whole_number
+from automotive_cosim.cli.derived import filled, takes
+from automotive_cosim.cli.options import AsJson, TasksFrom
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.proof.settings import ProofSettings
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,42 +21,8 @@ if TYPE_CHECKING:
 FAILED = 1
 
 
-def validate(
-    tasks: TaskNames = "all",
-    suite: SuiteName = "standard",
-    part: Annotated[
-        PartOf | None,
-        typer.Option(
-            help="Prove only part K of N, as in 3/10; together, the parts are all tasks.",
-            metavar="K/N",
-            parser=PartOf.read,
-            show_default=False,
-        ),
-    ] = None,
-    seeds: SeedList = "0-2",
-    gates: Annotated[
-        str, typer.Option(help="Gates to try, separated by commas, by their names in the table; or `all`.")
-    ] = "all",
-    workers: Annotated[
-        int, typer.Option(help="Number of processes.", metavar="N", parser=whole_number(1, 256))
-    ] = 1,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Folder for the proofs; an existing one is resumed. Without it, nothing is kept.",
-            show_default=False,
-        ),
-    ] = None,
-    against: Annotated[
-        Path | None,
-        typer.Option(
-            help="Earlier output of --json: the reference solutions must still give the same traces.",
-            show_default=False,
-        ),
-    ] = None,
-    tasks_from: TasksFrom = None,
-    as_json: AsJson = False,
-) -> None:
+@takes(ProofSettings)
+def validate(tasks_from: TasksFrom = None, as_json: AsJson = False, **settings: Any) -> None:
     """Prove that tasks can be solved by public actions, cannot be solved by trivial strategies, and repeat exactly.
 
     Exit code 1 if a gate fails, else 3 if a proof could not be completed. With --out, rerun the command to resume.
@@ -67,16 +33,16 @@ def validate(
     from automotive_cosim.proof.prover import as_json as json_of
     from automotive_cosim.run.plan import choose
 
-    chosen = GATES if gates == "all" else tuple(words("gates", gates))
-    task_ids = choose(words("tasks", tasks), suite)
-    if part is not None:
+    told = filled(ProofSettings, settings)
+    chosen = GATES if told.gates == ("all",) else told.gates
+    task_ids = choose(told.tasks, told.suite)
+    if (part := told.part) is not None:
         asked, task_ids = len(task_ids), part.taken(task_ids)
         if not task_ids:
             raise UserError(
                 f"--part {part.number}/{part.of} contains none of {counted(asked, 'task')}; give fewer parts"
             )
-    numbers = tuple(whole_numbers_in("seeds", seeds))
-    before = None if against is None else read_traces(against)
+    before = None if told.against is None else read_traces(told.against)
     console = Console(stderr=True, markup=True)
 
     def tell(proof: Proof, done: int, planned: int) -> None:
@@ -96,12 +62,12 @@ def validate(
         )
 
     try:
-        proofs = prove(task_ids, numbers, chosen, workers=workers, out=out, begun=begun, tell=tell)
+        proofs = prove(task_ids, told.seeds, chosen, workers=told.workers, out=told.out, begun=begun, tell=tell)
     except KeyboardInterrupt:
-        if out is not None:
-            typer.echo(f"finished proofs are in {out}; rerun the command to resume", err=True)
+        if told.out is not None:
+            typer.echo(f"finished proofs are in {told.out}; rerun the command to resume", err=True)
         raise
-    result = json_of(proofs, task_ids, numbers)
+    result = json_of(proofs, task_ids, told.seeds)
     changed = changed_traces(before, result["traces"]) if before is not None else ()
     for name in changed:
         console.print(f"[red]✗[/] {name}: its reference solution gives a different trace", highlight=False)
@@ -112,7 +78,7 @@ def validate(
             typer.echo(line)
         failed = sum(bool(entry["failed"]) for entry in result["gates"].values())
         typer.echo(
-            f"{counted(len(task_ids), 'task')}, {counted(len(numbers), 'seed')}: "
+            f"{counted(len(task_ids), 'task')}, {counted(len(told.seeds), 'seed')}: "
             f"{counted(failed, 'gate')} failed, {counted(len(result['errors']), 'error')}"
         )
     if changed or any(entry["failed"] for entry in result["gates"].values()):

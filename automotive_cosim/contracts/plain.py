@@ -38,6 +38,13 @@ def counted(number: int, noun: str, plural: str = "") -> str:
     return f"{number:,} {noun if number == 1 else plural or noun + 's'}"
 
 
+def clock(seconds: float) -> str:
+    """A span of time as ``3:05`` or ``1:03:05``."""
+    minutes, rest = divmod(int(seconds), 60)
+    told = f"{minutes // 60}:{minutes % 60:02d}" if minutes >= 60 else f"{minutes}"
+    return f"{told}:{rest:02d}"
+
+
 def rounded(value: float, digits: int = 3) -> str:
     """A number to so many significant digits as people write it: ``340``, ``0.0012``, never ``3.4e+02``."""
     if not isfinite(value) or value == 0:

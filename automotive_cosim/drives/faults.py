@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
+from automotive_cosim.contracts.plain import clock
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.judge import EARLY_S, EventOutcome, JudgedAct, JudgedEvent, Worth
 
@@ -57,11 +58,6 @@ def faults(events: Iterable[JudgedEvent], acts: Iterable[JudgedAct]) -> list[Fau
         if act.worth.is_nuisance
     ]
     return sorted(found, key=lambda fault: (fault.time_s, fault.about))
-
-
-def clock(time_s: float) -> str:
-    """Minutes and seconds since departure, as ``3:05``."""
-    return f"{int(time_s) // 60}:{int(time_s) % 60:02d}"
 
 
 OUTCOMES = {

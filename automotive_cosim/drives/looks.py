@@ -16,7 +16,7 @@ from automotive_cosim.drives.wakes import CLOSE_S, DUE_S, OVER_S
 
 LOOK_S = 2
 """How often the watcher looks again while something nears a threshold."""
-WATCHED_M, WATCHED_S = 400.0, 20.0
+LOOKS_AHEAD_M, LOOKS_AHEAD_S = 400.0, 20.0
 """What is ahead is watched from this distance, or from so long before it is due."""
 LOW_KPA = 240.0
 SLOW_KMH = 20.0
@@ -242,7 +242,7 @@ def _traffic(known: Gathered) -> Iterator[Concern]:
 
 def _nears(known: Gathered, name: str, away_m: float) -> bool:
     """Whether something ahead is near enough to look again and again; before that, it wakes."""
-    return away_m <= max(WATCHED_M, known.mps * (DUE_S[name] + WATCHED_S))
+    return away_m <= max(LOOKS_AHEAD_M, known.mps * (DUE_S[name] + LOOKS_AHEAD_S))
 
 
 # --- the car and its driver ------------------------------------------------------------------------------------

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import astuple, fields
@@ -13,7 +11,8 @@ from typing import Any
 from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.exchange.recording import Recording
-from automotive_cosim.run.record import write_whole
+from automotive_cosim.formats.csvs import csv_text
+from automotive_cosim.formats.files import write_whole
 
 NEEDS = f"Parquet needs pandas and pyarrow: {install_hint('parquet')}"
 COLUMNS = ("at_s", *(entry.name for entry in fields(SeenVehicle)))
@@ -33,11 +32,7 @@ def _lines(recording: Recording) -> Iterator[tuple[object, ...]]:
 
 def write_csv(recording: Recording, target: Path) -> None:
     """Writes them as CSV, with a line of names."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    writer.writerows(_lines(recording))
-    write_whole(target, text.getvalue())
+    write_whole(target, csv_text(COLUMNS, _lines(recording)))
 
 
 def write_parquet(recording: Recording, target: Path) -> None:

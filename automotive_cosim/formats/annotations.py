@@ -138,6 +138,8 @@ class Option:
     """Heading of the help below which it stands."""
     repeats: bool = False
     """Whether the option is given once for each item of a list, which may contain commas."""
+    variable: str | None = None
+    """The environment variable that gives it otherwise."""
 
 
 Longitude = Annotated[float, Ge(-180), Le(180), Called("a longitude from -180 (west) to 180 (east)")]

@@ -7,8 +7,6 @@ nothing is known: a value is right to one step.
 
 from __future__ import annotations
 
-import csv
-import io
 from bisect import bisect_left
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Sequence
@@ -22,6 +20,7 @@ import numpy as np
 
 from automotive_cosim.contracts import SeenVehicle
 from automotive_cosim.errors import SetupError, install_hint
+from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.measures.formulas import (
     crossing_drac_mps2,
     crossing_time_to_collision_s,
@@ -184,13 +183,12 @@ def as_csv(
         kind: of what they are.
         trials: the trial of each row, for a first column; None if they are all of one.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
     names = _names(kind)
-    writer.writerow([*_heads(trials), *names])
-    for number, row in enumerate(rows):
-        writer.writerow([*(trials or ())[number : number + 1], *(_plain(getattr(row, name)) for name in names)])
-    return text.getvalue()
+    lines = (
+        [*(trials or ())[number : number + 1], *(_plain(getattr(row, name)) for name in names)]
+        for number, row in enumerate(rows)
+    )
+    return csv_text([*_heads(trials), *names], lines)
 
 
 def _heads(trials: Sequence[str] | None) -> list[str]:

@@ -162,7 +162,7 @@ def convert(
     _write(text, target)
     tell("reading the network", None)
     network = read_network(target)
-    more = {edge_id: _cameras(places_m) for edge_id, places_m in _watched(network, extract.cameras).items()}
+    more = {edge_id: _cameras(places_m) for edge_id, places_m in _beside_cameras(network, extract.cameras).items()}
     for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
         more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
     if more:
@@ -221,7 +221,7 @@ def _write(text: str, target: Path) -> None:
     target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
 
 
-def _watched(network: Network, cameras: Sequence[Position]) -> dict[str, list[float]]:
+def _beside_cameras(network: Network, cameras: Sequence[Position]) -> dict[str, list[float]]:
     """Edges with their cameras, in metres from the start. The map does not say which way a camera faces, so it
     counts for both directions."""
     if not cameras or network.map.projection is None:

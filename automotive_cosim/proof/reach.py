@@ -21,6 +21,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.situation import SituationFinder
 from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
 from automotive_cosim.errors import TriggerNotReachedError
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.run.plan import choose
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Half
@@ -97,9 +98,7 @@ def write(path: Path, record: Mapping[str, Reach]) -> None:
                 row = {"situation": reach.situation, "reached": sorted(reach.reached)}
                 row |= {"missed": sorted(reach.missed)} if reach.missed else {}
                 lines.append(f"{json.dumps(f'{task.id}/{half}')}: {json.dumps(row)}")
-    part = path.with_suffix(".part")
-    part.write_text("{\n" + ",\n".join(lines) + "\n}\n", encoding="utf-8")
-    part.replace(path)
+    write_whole(path, "{\n" + ",\n".join(lines) + "\n}\n")
 
 
 def measure(

@@ -17,7 +17,7 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import open_file
+from automotive_cosim.formats.files import drafted, open_file
 from automotive_cosim.publish.contents import NAME
 
 MEMBER = re.compile(
@@ -43,10 +43,9 @@ def pack(folder: Path, out: Path) -> None:
     Raises:
         UserError: the archive cannot be written.
     """
-    draft = out.with_name(f".{out.name}.part")
     try:
         out.parent.mkdir(parents=True, exist_ok=True)
-        with zipfile.ZipFile(draft, "w") as archive:
+        with drafted(out) as draft, zipfile.ZipFile(draft, "w") as archive:
             for name in members(folder):
                 entry = zipfile.ZipInfo(name, _LONG_AGO)
                 entry.create_system, entry.external_attr = 3, 0o644 << 16
@@ -54,9 +53,7 @@ def pack(folder: Path, out: Path) -> None:
                 with archive.open(entry, "w") as target, (folder / name).open("rb") as source:
                     while chunk := source.read(_CHUNK_BYTES):
                         target.write(chunk)
-        draft.replace(out)
     except OSError as error:
-        draft.unlink(missing_ok=True)
         raise UserError(f"cannot write {out}: {error.strerror or error}; give --out another file") from error
 
 

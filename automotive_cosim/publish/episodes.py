@@ -15,6 +15,8 @@ from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.files import CHUNK_BYTES, opened
 from automotive_cosim.interface.trace import SAID, Step, plain, sha256
 from automotive_cosim.measures import nearest_s
+from automotive_cosim.publish.drives import PLANNED as DRIVE_PLANNED
+from automotive_cosim.publish.drives import UNJUDGED as DRIVE_UNJUDGED
 from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
 from automotive_cosim.report.page import element
@@ -85,11 +87,7 @@ def check_trial(folder: Path, job: TrialJob, row: TrialRow) -> tuple[Problem, ..
     try:
         if large := _too_large(folder, job):
             return (large,)
-        if isinstance(job, DriveJob) and isinstance(row, DriveTrialRow):
-            return tuple(drive_problems(folder, job, row))
-        if isinstance(job, EpisodeJob) and isinstance(row, EpisodeRow):
-            return tuple(_problems(folder, job, row))
-        return (Problem(ROWS, row.id, "is of another kind than the plan says"),)
+        return tuple(_problems(folder, job, row))
     except (
         CosimError, OSError, LookupError, TypeError, ValueError, AttributeError, ArithmeticError, RecursionError,
         MemoryError,
@@ -119,21 +117,30 @@ def _too_large(folder: Path, job: TrialJob) -> Problem | None:
     return None
 
 
-def _problems(folder: Path, job: EpisodeJob, row: EpisodeRow) -> Iterator[Problem]:
-    told = as_json(row)
-    yield from differences(ROWS, row.id, told, as_json(job.planned()), PLANNED, "the plan")
+def _problems(folder: Path, job: TrialJob, row: TrialRow) -> Iterator[Problem]:
+    planned = job.planned()
+    if type(row) is not type(planned):
+        yield Problem(ROWS, row.id, "is of another kind than the plan says")
+        return
+    is_drive, told, expected = isinstance(row, DriveTrialRow), as_json(row), as_json(planned)
+    yield from differences(ROWS, row.id, told, expected, DRIVE_PLANNED if is_drive else PLANNED, "the plan")
     yield from attempt_problems(row)
-    if job.scenario in _shipped() and row.scenario != job.scenario:
-        yield Problem(ROWS, f"{row.id} scenario", f"is {row.scenario!r}, but {job.scenario!r} by the plan")
-    if row.traffic_seed not in (None, job.setup.seed, *job.setup.spare_traffic):
-        yield Problem(ROWS, f"{row.id} traffic_seed", f"is {row.traffic_seed}, which the plan does not have")
-    if row.success is None:
-        yield from differences(ROWS, row.id, told, as_json(job.planned()), UNJUDGED, "its error")
+    if isinstance(job, EpisodeJob) and isinstance(row, EpisodeRow):
+        if job.scenario in _shipped() and row.scenario != job.scenario:
+            yield Problem(ROWS, f"{row.id} scenario", f"is {row.scenario!r}, but {job.scenario!r} by the plan")
+        if row.traffic_seed not in (None, job.setup.seed, *job.setup.spare_traffic):
+            yield Problem(ROWS, f"{row.id} traffic_seed", f"is {row.traffic_seed}, which the plan does not have")
+    if row.outcome is None:
+        yield from differences(ROWS, row.id, told, expected, DRIVE_UNJUDGED if is_drive else UNJUDGED, "its error")
         if row.error is None or row.error_kind is None or row.end is not End.ERROR:
-            yield Problem(ROWS, row.id, "has neither a verdict nor an error")
+            yield Problem(ROWS, row.id, f"has neither a {'judgement' if is_drive else 'verdict'} nor an error")
+    elif isinstance(row, DriveTrialRow):
+        yield from drive_problems(folder, row, told)
     elif row.end is not End.AGENT_FAILED or trace_file(folder, row.id).is_file():
+        assert isinstance(job, EpisodeJob)
+        assert isinstance(row, EpisodeRow)
         yield from _judged_problems(folder, job, row, told)
-    elif row.success or row.agent_error is None:
+    elif row.outcome or row.agent_error is None:
         yield Problem(ROWS, row.id, "has a verdict without a trace")
 
 
@@ -146,7 +153,7 @@ def _malformed(row: EpisodeRow, steps: Sequence[Json]) -> Json:
 
 def _judged_problems(folder: Path, job: EpisodeJob, row: EpisodeRow, told: Json) -> Iterator[Problem]:
     *steps, last = read_trace(folder, row.id)
-    judged = read_judged(folder, row.id)
+    judged = read_judged(folder, row.id, Judged)
     file, result = trace_file(folder, row.id).relative_to(folder).as_posix(), dict(last["result"])
     if "untouched_drive" in result:  # its name in older traces
         result["baseline_drive"] = result.pop("untouched_drive")

@@ -16,6 +16,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
 from automotive_cosim.publish.verify import verify
@@ -27,7 +28,6 @@ from automotive_cosim.report.tables import Table, TableRow
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.run.versions import minor
 

@@ -1,4 +1,4 @@
-"""Replays a stored episode's recorded actions and compares everything that follows from them."""
+"""Replays a stored trial's recorded actions and compares everything that follows from them."""
 
 from __future__ import annotations
 
@@ -11,20 +11,19 @@ from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.contracts import ActionType, Json
 from automotive_cosim.interface.observe import ALL, Channel
 from automotive_cosim.interface.trace import SAID
-from automotive_cosim.publish.drives import drive_differences
 from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
+from automotive_cosim.run.drive import DriveRecord, JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
-from automotive_cosim.run.moments import judged_file, read_judged
-from automotive_cosim.run.rerun import PlayedAgain, played
+from automotive_cosim.run.moments import Judged, judged_file, read_judged
+from automotive_cosim.run.rerun import PlayedAgain, compare_drives, driven, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial_row import LATER, TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
-OF_THE_AGENT = frozenset({"prompt_tokens", "tokens_in", "tokens_out", "cost_usd", "end"})
+OF_THE_AGENT = frozenset({"prompt_tokens", "calls", "tokens_in", "tokens_out", "cost_usd", "end"})
 """Fields of a row that the actions do not determine."""
 RESULT = (
     "goal",
@@ -49,10 +48,10 @@ def replay(folder: Path, job: TrialJob, row: TrialRow, simulations: Simulations)
     Raises:
         CosimError: it cannot be replayed.
     """
-    if isinstance(job, DriveJob):
-        return tuple(drive_differences(folder, job, cast("DriveTrialRow", row), simulations))
-    row = cast("EpisodeRow", row)
     *steps, last = read_trace(folder, row.id)
+    if isinstance(job, DriveJob):
+        driven_again = driven(job, cast("DriveTrialRow", row), steps, simulations)
+        return tuple(_differences(folder, row, steps, last, driven_again))
     found: tuple[Problem, ...] = ()
     for channels in _channels(job, steps):
         again = played(job, steps, channels, row.agent_error, simulations=simulations)
@@ -73,19 +72,26 @@ def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]
 
 
 def _differences(
-    folder: Path, row: EpisodeRow, steps: Sequence[Json], last: Json, again: PlayedAgain
+    folder: Path, row: TrialRow, steps: Sequence[Json], last: Json, again: PlayedAgain | DriveRecord
 ) -> Iterator[Problem]:
     *new_steps, new_last = json.loads(json.dumps(again.lines))
     file = trace_file(folder, row.id).relative_to(folder).as_posix()
-    if len(steps) != len(new_steps):
-        yield Problem(file, "", f"has {len(steps)} steps, but {len(new_steps)} when replayed")
-    for number, (step, new) in enumerate(zip(steps, new_steps, strict=False)):
-        told, now = ({SAID: []} | each for each in (step, new))
-        yield from differences(file, f"step {number}", told, now, (*STEP, SAID), "its replay")
-    names = [name for name in RESULT if name in last["result"]]
+    if isinstance(again, DriveRecord):
+        names = list(new_last["result"])
+        for compared in compare_drives(steps, new_steps):
+            for name in compared.differs:
+                yield Problem(file, f"step {compared.number} {name}", "differs from its replay")
+    else:
+        names = [name for name in RESULT if name in last["result"]]
+        if len(steps) != len(new_steps):
+            yield Problem(file, "", f"has {len(steps)} steps, but {len(new_steps)} when replayed")
+        for number, (step, new) in enumerate(zip(steps, new_steps, strict=False)):
+            told, now = ({SAID: []} | each for each in (step, new))
+            yield from differences(file, f"step {number}", told, now, (*STEP, SAID), "its replay")
     yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
     unknown = OF_THE_AGENT | (LATER if row.malformed is None else frozenset())
     names = [name for name in steady(row) if name not in unknown]
     yield from differences(ROWS, row.id, as_json(row), as_json(again.row), names, "its replay")
-    if read_judged(folder, row.id) != again.judged:
-        yield Problem(judged_file(folder, row.id).relative_to(folder).as_posix(), "", "differs from its replay")
+    path, kind = judged_file(folder, row.id), JudgedDrive if isinstance(again, DriveRecord) else Judged
+    if read_judged(folder, row.id, kind) != again.judged:
+        yield Problem(path.relative_to(folder).as_posix(), "", "differs from its replay")

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from automotive_cosim.calibration.counts import GOOD_GEH
 from automotive_cosim.calibration.result import Calibration, Met, read_calibration
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.report.charts import INK, PALETTE, Chart, Drawing, charted, legend
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.scenarios.opening import network_of, open_scenario
 from automotive_cosim.traffic.network import Network

@@ -11,7 +11,8 @@ from textwrap import wrap
 from typing import TYPE_CHECKING
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.drives.faults import WHY_VOID, beside, clock, faults
+from automotive_cosim.contracts.plain import clock
+from automotive_cosim.drives.faults import WHY_VOID, beside, faults
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.report.charts import INK, NARROW_IN, PALETTE, WIDE_IN, Chart, Drawing
 from automotive_cosim.run.drive_row import DriveTrialRow
@@ -318,16 +319,16 @@ def _lamps(axes: Axes, timeline: Json) -> None:
 
 def _speeds(axes: Axes, timeline: Json) -> None:
     times_s, speeds = timeline["time_s"], timeline["speed_kmh"]
-    nobodys = timeline["baseline_kmh"][: len(times_s)]
+    baseline = timeline["baseline_kmh"][: len(times_s)]
     limits = [float("nan") if limit is None else limit for limit in timeline["limit_kmh"]]
     axes.plot(times_s, limits, color=VERMILION, linewidth=1.0, drawstyle="steps-post", alpha=0.8, label="limit")
-    alone_s = times_s[: len(nobodys)]
-    axes.plot(alone_s, nobodys, color=GREY, linewidth=1.0, linestyle=(0, (3, 2)), label="without the agent")
+    alone_s = times_s[: len(baseline)]
+    axes.plot(alone_s, baseline, color=GREY, linewidth=1.0, linestyle=(0, (3, 2)), label="without the agent")
     axes.plot(times_s, speeds, color=BLUE, linewidth=1.3, label="speed")
     for number, (from_s, to_s) in enumerate(timeline.get("advice", ())):
         words = "" if number else "advice in force"
         axes.axvspan(from_s, to_s, color=GREEN, alpha=0.15, linewidth=0, label=words)
     axes.legend(loc="lower right", bbox_to_anchor=(1.0, 0.98), ncols=4, frameon=False, fontsize=7.5, borderpad=0)
     known = [limit for limit in timeline["limit_kmh"] if limit is not None]
-    axes.set_ylim(0, 1.08 * max([1.0, *speeds, *nobodys, *known]))
+    axes.set_ylim(0, 1.08 * max([1.0, *speeds, *baseline, *known]))
     axes.set_ylabel("km/h")

@@ -11,11 +11,12 @@ import numpy as np
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import ToldPolicy
-from automotive_cosim.contracts.plain import counted
+from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.drives.events import KINDS
-from automotive_cosim.drives.faults import clock, faults
+from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.judge import FULL_S
 from automotive_cosim.drives.score import Score, together
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.measures.exposure import summed
 from automotive_cosim.measures.thresholds import DEFAULT_THRESHOLDS
 from automotive_cosim.report.charts import Chart
@@ -26,7 +27,6 @@ from automotive_cosim.report.stats import CONFIDENCE, LEAST_CLUSTERS, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.former import former_timeline
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import read_trace, trace_file
 
 DRAWS = 2000
@@ -103,8 +103,8 @@ def _saved(of: Callable[[Any], float]) -> Figure:
 
     def figure(rows: Sequence[DriveTrialRow]) -> float | None:
         pairs = [(row.harm, row.baseline_harm) for row in rows if row.harm and row.baseline_harm]
-        nobodys = sum(of(baseline) for _, baseline in pairs)
-        return 100 * (nobodys - sum(of(mine) for mine, _ in pairs)) / nobodys if nobodys else None
+        before = sum(of(baseline) for _, baseline in pairs)
+        return 100 * (before - sum(of(mine) for mine, _ in pairs)) / before if before else None
 
     return figure
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from pathlib import Path
 
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.tables import Table
-from automotive_cosim.run.record import write_whole
 
 
 def write_files(folder: Path, tables: Iterable[Table], plots: Iterable[Chart]) -> None:

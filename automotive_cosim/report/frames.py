@@ -16,6 +16,7 @@ from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import NIGHT
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.formats.files import drafted
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.words import action_in_words
@@ -144,15 +145,14 @@ def why(result: EpisodeResult) -> str:
 
 def save_animation(path: Path, pictures: Sequence[Image.Image], milliseconds: Sequence[int]) -> None:
     """Writes an animated WebP completely or not at all."""
-    draft = path.with_name(f".{path.name}.part")
-    pictures[0].save(
-        draft,
-        format="WEBP",
-        save_all=True,
-        append_images=list(pictures[1:]),
-        duration=list(milliseconds),
-        loop=0,
-        quality=QUALITY,
-        method=3,
-    )
-    draft.replace(path)
+    with drafted(path) as draft:
+        pictures[0].save(
+            draft,
+            format="WEBP",
+            save_all=True,
+            append_images=list(pictures[1:]),
+            duration=list(milliseconds),
+            loop=0,
+            quality=QUALITY,
+            method=3,
+        )

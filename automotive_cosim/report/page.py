@@ -13,10 +13,11 @@ from PIL import Image
 
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import BoundingBox, Element, Json
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.record import screenshot, write_whole
+from automotive_cosim.run.record import screenshot
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.words import action_in_words
 

@@ -17,6 +17,7 @@ from PIL import Image
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmplot import speeds_plot
 from automotive_cosim.report.frames import (
@@ -34,7 +35,6 @@ from automotive_cosim.report.frames import (
 from automotive_cosim.report.page import PARTS, embedded
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.timeline import Sample
 
 WIDTH, HEIGHT = 1280, 836

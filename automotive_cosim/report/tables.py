@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from collections.abc import Sequence
 from dataclasses import dataclass
-from io import StringIO
+
+from automotive_cosim.formats.csvs import csv_text
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,11 +47,7 @@ class Table:
 
     def csv(self) -> str:
         """Comma-separated values, the columns' names first."""
-        text = StringIO()
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(self.columns)
-        writer.writerows([str(cell) for cell in row] for row in self.rows)
-        return text.getvalue()
+        return csv_text(self.columns, ([str(cell) for cell in row] for row in self.rows))
 
     def latex(self) -> str:
         """A LaTeX table for the booktabs package."""

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Generic
 
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.run import worker
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
 from automotive_cosim.run.jobs import failed
@@ -24,7 +25,6 @@ from automotive_cosim.run.pace import JobTurn, Pace
 from automotive_cosim.run.plan import Plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue, SimulationKey
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.row import JobRow, from_json
 from automotive_cosim.run.rows import kind_of
 from automotive_cosim.run.settings import Budget, Pictures

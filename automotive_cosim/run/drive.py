@@ -26,6 +26,7 @@ from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.interface.trace import Step, canonical, plain
 from automotive_cosim.run.drive_row import DriveTrialRow
+from automotive_cosim.run.moments import JudgeInput
 from automotive_cosim.run.observer import Answers, TrialObserver, play_observed
 from automotive_cosim.traffic.fork import Simulations
 
@@ -50,7 +51,7 @@ class DriveSetup(DriveSpec):
 
 
 @dataclass(frozen=True, slots=True)
-class JudgedDrive:
+class JudgedDrive(JudgeInput):
     """The input of a drive's judgement; times are simulation times."""
 
     events: tuple[DriveEvent, ...]

@@ -24,11 +24,12 @@ from PIL import Image
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import KMH_PER_MPS, Element
 from automotive_cosim.drives.session import DriveSession
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.interface.trace import plain
 from automotive_cosim.run.collect import PICTURE_QUALITY
 from automotive_cosim.run.drive import DriveObserver, DriveRecord
 from automotive_cosim.run.observer import Shot
-from automotive_cosim.run.record import remove, write_whole
+from automotive_cosim.run.record import remove
 from automotive_cosim.run.road import NAME
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.words import action_in_words

@@ -37,7 +37,7 @@ from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
 AFTERMATH_S = 12.0
-"""The road is watched this long after the end: enough for a driver to react and to brake from 80 to 50 km/h."""
+"""The car drives on for this long after the end: enough for a driver to react and to brake from 80 to 50 km/h."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,7 +208,7 @@ class _Run:
         end = play_observed(episode, agent, self._answers, self._observers, wall_s)
         if isinstance(agent, Learner) and episode.verdict is not None:
             agent.learn(episode.verdict.success)
-        self._watch_aftermath(episode)
+        self._drive_on(episode)
         return end
 
     def _find(self) -> HandOver:
@@ -235,18 +235,18 @@ class _Run:
             observer.finished(result)
         return result
 
-    def _watch_aftermath(self, episode: Episode) -> None:
+    def _drive_on(self, episode: Episode) -> None:
         try:
             for _ in range(int(AFTERMATH_S)):
                 self._after += episode.aftermath(1.0)
             if episode.instance.task.second is not None:
-                self._baseline = episode.baseline.until(self._watched(episode)[-1].time_s)
+                self._baseline = episode.baseline.until(self._driven(episode)[-1].time_s)
         except InfrastructureError:
             # The figures of the row count the aftermath: without it they would not be those of another run.
             episode.verdict = None
             raise
 
-    def _watched(self, episode: Episode) -> list[Moment]:
+    def _driven(self, episode: Episode) -> list[Moment]:
         """Moments from the hand-over to the end of the aftermath."""
         return [*episode.moments, *self._after]
 
@@ -288,8 +288,8 @@ class _Run:
         judged = episode.verdict
         before = [*episode.drive, *episode.moments[1:]]
         moments = [*before, *self._after]
-        watched = self._watched(episode)
-        hand_over_s, end_s = watched[0].time_s, watched[-1].time_s
+        driven = self._driven(episode)
+        hand_over_s, end_s = driven[0].time_s, driven[-1].time_s
         return EpisodeResult(
             **named,
             goal=episode.goal,
@@ -304,7 +304,7 @@ class _Run:
             path=samples(moments, hand_over_s),
             held_out=episode.instance.held_out,
             load=driver_load(episode.steps),
-            drive=drive_figures(watched, end_s) if self._baseline else None,
+            drive=drive_figures(driven, end_s) if self._baseline else None,
             baseline_drive=drive_figures(self._baseline, end_s) if self._baseline else None,
             breaches=episode.breaches,
             estimates=estimates(episode.steps, before),

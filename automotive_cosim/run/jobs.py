@@ -8,7 +8,7 @@ from abc import ABC, abstractmethod
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Annotated, Generic, TypeVar
+from typing import Annotated, Any, Generic, TypeVar
 
 from annotated_types import Ge, Gt, Le
 
@@ -129,6 +129,31 @@ class PlannedJob(ABC, Generic[SetupT]):
         return warm_up_s(self.scenario) / WARM_UP_S
 
     @property
+    def wall_s(self) -> float:
+        """Limit of its wall time."""
+        return self.limits.longest_s
+
+    @property
+    @abstractmethod
+    def split(self) -> Split:
+        """The public set that it belongs to."""
+
+    @property
+    def _told(self) -> dict[str, Any]:
+        """What its row says of it before it runs, whatever its kind."""
+        setup = self.setup
+        return {
+            "id": self.id,
+            "scenario": self.scenario,
+            "agent": setup.agent,
+            "model": setup.model,
+            "conditions": setup.conditions,
+            "seed": setup.seed,
+            "repeat": self.repeat,
+            "split": self.split,
+        }
+
+    @property
     @abstractmethod
     def scenario(self) -> str:
         """Name or folder of its scenario."""
@@ -196,11 +221,6 @@ class EpisodeJob(PlannedJob[EpisodeSetup]):
         return self.setup.task, self.setup.half, self.scenario, self.setup.seed, self.repeat
 
     @property
-    def wall_s(self) -> float:
-        """Limit of its wall time."""
-        return self.limits.longest_s
-
-    @property
     def id(self) -> str:
         """Its id, which can be a file name."""
         return self._named(self.setup.half)
@@ -215,7 +235,7 @@ class EpisodeJob(PlannedJob[EpisodeSetup]):
         setup, task = self.setup, self.task
         half = task.half(setup.half)
         return EpisodeRow(
-            id=self.id,
+            **self._told,
             task=task.id,
             half=setup.half,
             pair=self.pair,
@@ -227,14 +247,7 @@ class EpisodeJob(PlannedJob[EpisodeSetup]):
             skills=tuple(sorted(task.skills)),
             ability=task.ability,
             declines=not half.moves,
-            scenario=self.scenario,
-            agent=setup.agent,
-            model=setup.model,
-            conditions=setup.conditions,
-            seed=setup.seed,
-            repeat=self.repeat,
             held_out=setup.held_out,
-            split=self.split,
         )
 
     def _named(self, half: str) -> str:
@@ -276,11 +289,6 @@ class DriveJob(PlannedJob[DriveSetup]):
         return self.setup.family, self.scenario, self.setup.settings, self.setup.seed, self.repeat
 
     @property
-    def wall_s(self) -> float:
-        """Limit of its wall time."""
-        return self.limits.longest_s
-
-    @property
     def id(self) -> str:
         """Its id, which can be a file name."""
         setup = self.setup
@@ -291,17 +299,10 @@ class DriveJob(PlannedJob[DriveSetup]):
         """What is known about it before it runs."""
         setup = self.setup
         return DriveTrialRow(
-            id=self.id,
+            **self._told,
             family=setup.family,
             season=family_named(setup.family).season,
             settings=setup.settings,
-            scenario=self.scenario,
-            agent=setup.agent,
-            model=setup.model,
-            conditions=setup.conditions,
-            seed=setup.seed,
-            repeat=self.repeat,
-            split=self.split,
         )
 
 

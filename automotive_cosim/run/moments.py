@@ -22,16 +22,15 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from datetime import datetime
 from enum import Enum
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Self, TypeVar
 from zoneinfo import ZoneInfo
 
 from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import read_json
+from automotive_cosim.formats.files import read_json, write_whole
 from automotive_cosim.geo.locate import Geo
 
-T = TypeVar("T")
 PACKAGE = "automotive_cosim."
 """Only classes of this package are created when a file is read."""
 MOVED = {"automotive_cosim.cosim:Moment": "automotive_cosim.cosim.moment:Moment"}
@@ -44,8 +43,32 @@ PRESET = 2
 """xz preset: four times as fast as the default, for files that are a tenth larger."""
 
 
+class JudgeInput:
+    """What the judge of a trial has read: of a task's half the drive, of a drive its events and acts."""
+
+    __slots__ = ()
+
+    def packed(self) -> Self:
+        """The same without what follows from the rest, as a file holds it."""
+        return self
+
+    def unpacked(self, path: Path) -> Self:
+        """The reverse of ``packed``.
+
+        Args:
+            path: of the file, for messages.
+
+        Raises:
+            UserError: a version wrote it whose form can no longer be judged.
+        """
+        return self
+
+
+J = TypeVar("J", bound=JudgeInput)
+
+
 @dataclass(frozen=True, slots=True)
-class Judged:
+class Judged(JudgeInput):
     """The input of a verdict, except the task."""
 
     goal: str
@@ -64,70 +87,57 @@ class Judged:
     said: tuple[str, ...] = ()
     """What the agent told the driver."""
 
+    def packed(self) -> Judged:
+        """Without geo-contexts, and with what changed from moment to moment alone."""
+        beside: Any = _changes(self.trace[-1].commands, self.counterfactual or {})
+        return replace(self, trace=_bare(self.trace), baseline=_bare(self.baseline), counterfactual=beside)
 
-def judged_file(folder: Path, episode: str) -> Path:
-    """Path of an episode's file."""
-    return folder / "traces" / f"{episode}.judged.json.xz"
+    def unpacked(self, path: Path) -> Judged:
+        """Each moment with its geo-context by the current rules.
+
+        Raises:
+            UserError: it was written without the counterfactual or with requests to the road as text.
+        """
+        geo = Geo()
+        judged = replace(self, trace=_placed(self.trace, geo), baseline=_placed(self.baseline, geo))
+        requests = (*judged.trace[-1].commands["requests"], *judged.baseline[-1].commands["requests"])
+        lacks = {
+            "with requests as text": any(isinstance(request, str) for request in requests),
+            "without the counterfactual": self.counterfactual is None,
+        }
+        for what, is_so in lacks.items():
+            if is_so:
+                raise UserError(f"{path} has an older format {what}; judge it with the version that wrote it")
+        beside: Any = self.counterfactual
+        return replace(judged, counterfactual=_changed(judged.trace[-1].commands, *beside))
 
 
-def write_judged(folder: Path, episode: str, judged: Judged) -> None:
-    """Writes them, whole or not at all; the same moments give the same bytes.
+def judged_file(folder: Path, trial: str) -> Path:
+    """Path of a trial's file."""
+    return folder / "traces" / f"{trial}.judged.json.xz"
+
+
+def write_judged(folder: Path, trial: str, judged: JudgeInput) -> None:
+    """Writes it, whole or not at all; the same input gives the same bytes.
 
     Raises:
         OSError: the file cannot be written.
     """
-    beside: Any = _changes(judged.trace[-1].commands, judged.counterfactual or {})
-    write_value(
-        judged_file(folder, episode),
-        replace(judged, trace=_bare(judged.trace), baseline=_bare(judged.baseline), counterfactual=beside),
-    )
-
-
-def write_value(path: Path, stored: object) -> None:
-    """Writes a dataclass, whole or not at all; the same value gives the same bytes.
-
-    Raises:
-        OSError: the file cannot be written.
-    """
-    writer = _Writer()
-    value = writer.value(stored)
+    writer, path = _Writer(), judged_file(folder, trial)
+    value = writer.value(judged.packed())
     whole = {"classes": writer.classes, "pool": writer.pool, "value": value}
     text = json.dumps(whole, ensure_ascii=False, separators=(",", ":"))
-    draft = path.with_name(f".{path.name}.part")
-    draft.write_bytes(lzma.compress(text.encode(), preset=PRESET))
-    draft.replace(path)
+    write_whole(path, lzma.compress(text.encode(), preset=PRESET))
 
 
-def read_judged(folder: Path, episode: str) -> Judged:
-    """Reads them back, each moment with its geo-context by the current rules.
+def read_judged(folder: Path, trial: str, kind: type[J]) -> J:
+    """Reads it back.
 
     Raises:
-        UserError: there is no such file, it is damaged, or it was written by a version with other fields, without
-            the counterfactual or with requests to the road as text.
+        UserError: there is no such file, it is damaged or holds something else, or a version with other fields
+            wrote it.
     """
-    path = judged_file(folder, episode)
-    judged = read_value(path, Judged)
-    geo = Geo()
-    judged = replace(judged, trace=_placed(judged.trace, geo), baseline=_placed(judged.baseline, geo))
-    requests = (*judged.trace[-1].commands["requests"], *judged.baseline[-1].commands["requests"])
-    if any(isinstance(request, str) for request in requests):
-        raise UserError(
-            f"{path} has an older format with requests as text; judge it with the version that wrote it"
-        )
-    if judged.counterfactual is None:
-        raise UserError(
-            f"{path} has an older format without the counterfactual; judge it with the version that wrote it"
-        )
-    beside: Any = judged.counterfactual
-    return replace(judged, counterfactual=_changed(judged.trace[-1].commands, *beside))
-
-
-def read_value(path: Path, kind: type[T]) -> T:
-    """What ``write_value`` wrote.
-
-    Raises:
-        UserError: there is no such file, it is damaged, or it holds something else.
-    """
+    path = judged_file(folder, trial)
     try:
         whole: Json = read_json(path)
         value = _Reader(whole["classes"], whole["pool"]).value(whole["value"])
@@ -137,7 +147,7 @@ def read_value(path: Path, kind: type[T]) -> T:
         raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
     if not isinstance(value, kind):
         raise UserError(f"{path} has no moments" if kind is Judged else f"{path} holds no {kind.__name__}")
-    return value
+    return value.unpacked(path)
 
 
 def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:

@@ -24,7 +24,7 @@ from PIL import Image
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.plain import plain
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.versions import installed
@@ -134,16 +134,6 @@ class Recorder(EpisodeObserver):
 def screenshot(folder: Path, step: int) -> Path:
     """Path of a step's screenshot in a record."""
     return folder / "screenshots" / f"step_{step:03d}.png"
-
-
-def write_whole(path: Path, content: str | bytes) -> None:
-    """Writes a file, a text as plain text, completely or not at all; an error names the file, and not its draft."""
-    draft = path.with_name(f".{path.name}.part")
-    try:
-        draft.write_bytes(content if isinstance(content, bytes) else plain(content).encode())
-        draft.replace(path)
-    except OSError as error:
-        raise OSError(error.errno, error.strerror, str(path)) from error
 
 
 def remove(path: Path) -> None:

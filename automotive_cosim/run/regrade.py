@@ -11,7 +11,7 @@ from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.moments import Judged, judged_file, read_judged, read_value
+from automotive_cosim.run.moments import Judged, read_judged
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_evaluation
 from automotive_cosim.tasking.binding import UnmetNeedError, bound
@@ -60,11 +60,13 @@ def regrade(folder: Path) -> Iterator[Regraded]:
     rows = read_trials(folder)
     for name in sorted(rows):
         row = rows[name]
-        if isinstance(row, DriveTrialRow):
-            if row.score is not None:
-                yield _drive_regraded(folder, row, row.score)
-        elif isinstance(row, EpisodeRow) and row.parts is not None:
-            yield _regraded(folder, row, row.parts)
+        try:
+            if isinstance(row, DriveTrialRow) and row.score is not None:
+                yield Regraded(name, row.has_succeeded, *_drive_again(folder, row, row.score))
+            elif isinstance(row, EpisodeRow) and row.parts is not None:
+                yield Regraded(name, row.has_succeeded, *_again(folder, row, row.parts))
+        except CosimError as error:
+            yield Regraded(name, row.has_succeeded, None, problem=str(error))
 
 
 def judged_again(row: EpisodeRow, stored: Judged) -> Verdict:
@@ -104,25 +106,20 @@ def _rule_elsewhere(row: EpisodeRow, half: Half, stored: Judged) -> str:
         raise UserError(f"{row.id} cannot be judged: {missing}") from missing
 
 
-def _regraded(folder: Path, row: EpisodeRow, held: PartsHeld) -> Regraded:
-    try:
-        verdict = judged_again(row, read_judged(folder, row.id))
-    except CosimError as error:
-        return Regraded(row.id, row.has_succeeded, None, problem=str(error))
+def _again(folder: Path, row: EpisodeRow, held: PartsHeld) -> tuple[bool, tuple[Change, ...]]:
+    """Whether it succeeds now, and what changes."""
+    verdict = judged_again(row, read_judged(folder, row.id, Judged))
     changes = tuple(
         Change(name, before, now.ok, now.why)
         for name, before in asdict(held).items()
         if (now := verdict.parts[name]).ok is not before
     )
-    return Regraded(row.id, row.has_succeeded, verdict.success, changes)
+    return verdict.success, changes
 
 
-def _drive_regraded(folder: Path, row: DriveTrialRow, held: Score) -> Regraded:
-    try:
-        stored = read_value(judged_file(folder, row.id), JudgedDrive)
-        events, acts, score = stored.judgement()
-    except CosimError as error:
-        return Regraded(row.id, row.has_succeeded, None, problem=str(error))
+def _drive_again(folder: Path, row: DriveTrialRow, held: Score) -> tuple[bool, tuple[Change, ...]]:
+    """The same of a drive."""
+    events, acts, score = read_judged(folder, row.id, JudgedDrive).judgement()
     now = replace(row, events=events, acts=acts, score=score, value=score.value)
     changes = tuple(
         Change(f"{before.kind} at {before.observable_s:.0f} s", before.outcome.counts, after.outcome.counts, why)
@@ -131,4 +128,4 @@ def _drive_regraded(folder: Path, row: DriveTrialRow, held: Score) -> Regraded:
     )
     if not changes and (score != held or acts != row.acts or events != row.events):
         changes = (Change("score", True, False, f"{score.value:.1f} instead of {held.value:.1f}"),)
-    return Regraded(row.id, row.has_succeeded, now.has_succeeded, changes)
+    return now.has_succeeded, changes

@@ -1,4 +1,5 @@
-"""What can be set about an evaluation. Each field is a value of ``plan.toml`` and an option of ``eval``."""
+"""What can be set about an evaluation. Each field is a value of ``plan.toml`` and an option of ``eval``. And about
+``bench``."""
 
 from __future__ import annotations
 
@@ -103,3 +104,13 @@ class Budget:
     def is_limited(self) -> bool:
         """Whether there is a limit."""
         return self.tokens is not None or self.usd is not None
+
+
+@dataclass(frozen=True, slots=True)
+class BenchSettings:
+    """What ``bench`` measures."""
+
+    scenario: str = "paris_centre"
+    """A scenario's name or folder, any .sumocfg or .net.xml(.gz)."""
+    steps: Annotated[int, Ge(100), Le(10**6)] = 2000
+    """SUMO steps to measure after the warm-up."""

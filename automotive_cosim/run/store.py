@@ -27,9 +27,10 @@ import automotive_cosim
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.own_code import own_code, own_scenarios
-from automotive_cosim.run.record import STAMPED, write_whole
+from automotive_cosim.run.record import STAMPED
 from automotive_cosim.run.row import R, as_json, from_line
 from automotive_cosim.run.versions import installed
 
@@ -203,9 +204,7 @@ def write_trace(folder: Path, episode: str, lines: Iterable[Json]) -> None:
     path = trace_file(folder, episode)
     path.parent.mkdir(exist_ok=True)
     text = "".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines)
-    draft = path.with_name(f".{path.name}.part")
-    draft.write_bytes(gzip.compress(text.encode(), compresslevel=1, mtime=0))
-    draft.replace(path)
+    write_whole(path, gzip.compress(text.encode(), compresslevel=1, mtime=0))
 
 
 def read_trace(folder: Path, episode: str) -> list[Json]:
@@ -245,9 +244,7 @@ def keep_files(folder: Path, files: Mapping[str, bytes]) -> None:
     for name, content in files.items():
         path = folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
-        draft = path.with_name(f".{path.name}.part")
-        draft.write_bytes(content)
-        draft.replace(path)
+        write_whole(path, content)
 
 
 def megabytes(folder: Path) -> float:

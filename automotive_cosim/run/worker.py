@@ -14,14 +14,14 @@ from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.collect import Collector
-from automotive_cosim.run.drive import DriveRecord, JudgedDrive, run_drive
+from automotive_cosim.run.drive import DriveRecord, run_drive
 from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.episode import EpisodeResult, run_episode
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob, Limits, TrialJob, failed
 from automotive_cosim.run.meter import Metered, MeterHandle
-from automotive_cosim.run.moments import Judged, judged_file, write_judged, write_value
+from automotive_cosim.run.moments import JudgeInput, write_judged
 from automotive_cosim.run.observer import TrialObserver
 from automotive_cosim.run.outside import OutsideAgent, is_outside
 from automotive_cosim.run.road_recorder import RoadRecorder
@@ -96,10 +96,8 @@ def run_with(
         return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
     if kept.lines:
         write_trace(folder, job.id, kept.lines)
-        if isinstance(kept.judged, Judged):
+        if kept.judged is not None:
             write_judged(folder, job.id, kept.judged)
-        elif kept.judged is not None:
-            write_value(judged_file(folder, job.id), kept.judged)
         kept.keep_pictures()
     return kept.row
 
@@ -111,7 +109,7 @@ class _Kept:
     row: TrialRow
     lines: Sequence[Json]
     """Its trace, with the result as its last line."""
-    judged: Judged | JudgedDrive | None
+    judged: JudgeInput | None
     keep_pictures: Callable[[], None]
 
 

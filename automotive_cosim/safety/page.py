@@ -9,10 +9,10 @@ from pathlib import Path
 
 from automotive_cosim.agents import MODELLED
 from automotive_cosim.contracts import Json
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.report.charts import NEEDS, is_installed
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.plan import PlannedTrial
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write, read_manifest
 from automotive_cosim.safety.curves import curves
 from automotive_cosim.safety.findings import as_json, judged, nothing_due, sentence, tables

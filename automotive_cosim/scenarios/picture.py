@@ -16,6 +16,7 @@ from automotive_cosim.cockpit.map import AVENUES, MOTORWAYS, QUIET, Camera, View
 from automotive_cosim.cockpit.theme import DAY, Colour, Weight, face, font
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ScenarioError, UserError
+from automotive_cosim.formats.files import drafted
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.geo.place import Atlas
 from automotive_cosim.scenarios.labels import GREY, RED, Labels, Points, place_labels
@@ -129,11 +130,10 @@ def save_picture(scenario: Scenario, path: Path) -> tuple[str, ...]:
         UserError: the file cannot be written.
     """
     picture, unwritten = _drawn(scenario)
-    draft = path.with_name(f".{path.name}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        picture.save(draft, path.suffix[1:].upper(), quality=QUALITY, method=6)
-        draft.replace(path)
+        with drafted(path) as draft:
+            picture.save(draft, path.suffix[1:].upper(), quality=QUALITY, method=6)
     except OSError as error:
         raise UserError(
             f"cannot write {path} ({error.strerror}); give --out a folder that you can write to"

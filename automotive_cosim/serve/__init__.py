@@ -9,6 +9,7 @@ person     the person as the agent of an episode, and the screen that an act sho
 played     keeps what people play as an evaluation, which every report reads
 dealing    what a study deals to whom, in what order
 study      a running study: seats, questions, export
+observers  tells running studies that somebody observes them
 server     answers a browser: token, host and origin checked, a fixed table of routes
 static/    one page, one stylesheet, small scripts without a library; texts are only ever set as text
 """

@@ -30,8 +30,8 @@ from automotive_cosim.run.store import read_manifest, read_rows, read_trace
 from automotive_cosim.run.words import action_in_words
 from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve.decisions import decision_map, decisions, drives_under_way
+from automotive_cosim.serve.observers import StudyObservers
 from automotive_cosim.serve.records import NotHereError, RecordEntry, RecordFolders
-from automotive_cosim.serve.spectators import Spectators
 from automotive_cosim.studies.live import LIVE, WATCHED
 
 HEAD = (
@@ -53,7 +53,7 @@ class Content:
     def __init__(self, records: RecordFolders) -> None:
         """Content of these folders; files are read when they are first asked for."""
         self.records = records
-        self.spectators = Spectators()
+        self.observers = StudyObservers()
 
     def runs(self) -> Json:
         """All records, the newest first, each on one line."""
@@ -189,7 +189,7 @@ class Content:
         """
         folder = self._study(name)
         with suppress(NotHereError):  # it is older
-            self.spectators.watch(self.records.file(self.records.entry(name), LIVE, WATCHED))
+            self.observers.observe(self.records.file(self.records.entry(name), LIVE, WATCHED))
         return drives_under_way(folder)
 
     def decision_map(self, name: str, decision: str) -> Json:

@@ -236,7 +236,7 @@ class Site:
 
     def close(self) -> None:
         """Ends game and study, and stops watching."""
-        self._content.spectators.close()
+        self._content.observers.close()
         if self._game is not None:
             self._game.close()
         if self._study is not None:

@@ -10,8 +10,6 @@ starts again, and the export says so.
 
 from __future__ import annotations
 
-import csv
-import io
 import json
 import os
 import secrets
@@ -26,6 +24,7 @@ from typing import Any
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.csvs import csv_text
 from automotive_cosim.formats.files import parse_json
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.jobs import EpisodeJob
@@ -200,11 +199,7 @@ class PeopleStudy:
     def as_csv(self) -> str:
         """The same as CSV."""
         lines = self.export()
-        text = io.StringIO()
-        writer = csv.DictWriter(text, list(lines[0]))
-        writer.writeheader()
-        writer.writerows(lines)
-        return text.getvalue()
+        return csv_text(lines[0], (line.values() for line in lines))
 
     def close(self) -> None:
         """Ends the running episodes, which will start again."""

@@ -12,6 +12,7 @@ traffic    whether the traffic still flows, or is excluded as gridlocked
 driver     lets an agent at the cockpit decide
 policies   the deciding rules, and their results
 batch      drives in parallel, resumed, until the interval is narrow enough
+content    what every study's folder holds
 results    reads stored results, as data frames
 intervals  means with bootstrap intervals over seeds
 everyone   how an effect is spread over everyone

@@ -21,7 +21,7 @@ from automotive_cosim.studies.policies import PolicyRule
 from automotive_cosim.studies.results import choices
 from automotive_cosim.studies.rows import DriveRow
 from automotive_cosim.studies.tracks import TRACKS
-from automotive_cosim.studies.traffic import PULSE_S
+from automotive_cosim.studies.traffic import MEASURED_EVERY_S
 from automotive_cosim.traffic.accounts import TrafficSummary
 from automotive_cosim.traffic.fork import Forked
 
@@ -105,7 +105,7 @@ class _Warm:
         self._simulation: Forked | None = None
         self._key: tuple[str, int] | None = None
         self._now_s = 0.0
-        self._pulses: list[TrafficSummary] = []
+        self._measured: list[TrafficSummary] = []
 
     def run(self, job: StudyJob, folder: Path) -> DriveRow:
         """Runs a drive; an error becomes a row too. Tracks, if wanted, and what is watched are also kept."""
@@ -136,12 +136,12 @@ class _Warm:
             self._simulation = Forked(
                 scene, job.seed, lambda done_s, _: warming_up(done_s, total_s), allow_unprojected=True
             )
-            self._simulation.watch(consumptions=job.plan.emissions, tracks=job.plan.trajectories)
+            self._simulation.keep_ledger(consumptions=job.plan.emissions, tracks=job.plan.trajectories)
             if job.plan.placebo_every or job.plan.draws.stop:
                 self._simulation.fresh()  # here, so that it does not depend on which departures this worker drives
-            self._key, self._now_s, self._pulses = job.simulation, 0.0, []
+            self._key, self._now_s, self._measured = job.simulation, 0.0, []
         while self._now_s < job.departure_s:
-            onward_s = min(job.departure_s, (self._now_s // PULSE_S + 1) * PULSE_S) - self._now_s
+            onward_s = min(job.departure_s, (self._now_s // MEASURED_EVERY_S + 1) * MEASURED_EVERY_S) - self._now_s
             if cold_s is None:
                 doing(
                     "driving the traffic to the departure",
@@ -152,6 +152,6 @@ class _Warm:
                 warming_up(cold_s + self._now_s, cold_s + job.departure_s)
             summary = self._simulation.run_on(onward_s)
             self._now_s += onward_s
-            if self._now_s % PULSE_S == 0:
-                self._pulses.append(summary)
-        return self._simulation, tuple(self._pulses)
+            if self._now_s % MEASURED_EVERY_S == 0:
+                self._measured.append(summary)
+        return self._simulation, tuple(self._measured)

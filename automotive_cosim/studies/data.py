@@ -6,19 +6,18 @@ and every column with its type, and holds what a new run needs: plan, versions a
 
 from __future__ import annotations
 
-import csv
 import hashlib
 import json
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
-from io import StringIO
 from pathlib import Path
 from typing import Annotated, Any
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
-from automotive_cosim.run.record import write_whole
+from automotive_cosim.formats.csvs import csv_text
+from automotive_cosim.formats.files import drafted, write_whole
 from automotive_cosim.run.row import InColumns, columns
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.policies import chosen, parse_policy
@@ -28,7 +27,9 @@ from automotive_cosim.studies.rows import (
     NOTHING,
     Branch,
     Decision,
+    DecisionLine,
     DecisionPoint,
+    DriveLine,
     OthersTotals,
     PolicyChoice,
     Totals,
@@ -40,20 +41,9 @@ DTYPES = {"integer": "Int64", "number": "Float64", "boolean": "boolean", "string
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class FutureRow:
+class FutureRow(DecisionLine):
     """One future of one decision that was driven: a line of ``futures.csv``."""
 
-    id: str
-    """Number of the decision, as in ``choices.csv``."""
-    scenario: str
-    share: float
-    seed: int
-    departure_s: float
-    trip: str
-    at_s: float
-    edge: str
-    delay_s: float
-    eta_s: float
     excluded: str
     """Why the decision is in no average; empty if it counts."""
     draw: int
@@ -73,15 +63,9 @@ class FutureRow:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class WholeRow:
+class WholeRow(DriveLine):
     """One whole drive under one policy: a line of ``whole_drives.csv``."""
 
-    id: str
-    scenario: str
-    share: float
-    seed: int
-    departure_s: float
-    trip: str
     policy: str
     compliance: float
     draw: int
@@ -115,12 +99,7 @@ def whole_drives(study: Study) -> Iterator[WholeRow]:
     for row in study.rows:
         for drive in row.whole:
             yield WholeRow(
-                id=row.id,
-                scenario=row.scenario,
-                share=row.share,
-                seed=row.seed,
-                departure_s=row.departure_s,
-                trip=row.trip,
+                **row.line,
                 policy=drive.policy,
                 compliance=drive.compliance,
                 draw=drive.draw,
@@ -166,13 +145,8 @@ def write_data(study: Study) -> list[Path]:
 
 def as_csv(rows: Sequence[object]) -> str:
     """Rows of one kind as CSV, one per line, with the columns of a data frame."""
-    text = StringIO()
     made = [columns(row) for row in rows]
-    if made:
-        writer = csv.DictWriter(text, list(made[0]), lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(made)
-    return text.getvalue()
+    return csv_text(made[0], (row.values() for row in made)) if made else ""
 
 
 def inputs(study: Study) -> Json:
@@ -197,19 +171,9 @@ def _future(
     *,
     is_placebo: bool = False,
 ) -> FutureRow:
-    drive, decision = point.drive, point.decision
     return FutureRow(
-        id=point.id,
-        scenario=drive.scenario,
-        share=drive.share,
-        seed=drive.seed,
-        departure_s=drive.departure_s,
-        trip=drive.trip,
-        at_s=decision.at_s,
-        edge=decision.edge,
-        delay_s=decision.delay_s,
-        eta_s=decision.eta_s,
-        excluded=decision.excluded,
+        **point.line,
+        excluded=point.decision.excluded,
         draw=draw,
         draw_seed=seed,
         branch=branch,
@@ -234,13 +198,12 @@ def choosers(plan: StudyPlan, decision: Decision) -> dict[int | None, str]:
 def _write_parquet(path: Path, rows: Sequence[object]) -> Path:
     import pandas as pd
 
-    draft = path.with_name(f".{path.name}.part")
     made = [columns(row) for row in rows]
     # The declared types, not the narrowest that fit these values, so that files of several studies match.
     dtypes = {name: DTYPES.get(_type(row[name] for row in made), "object") for name in made[0]}
     frame = pd.DataFrame({name: pd.Series([row[name] for row in made], dtype=dtypes[name]) for name in dtypes})
-    frame.to_parquet(draft, index=False)
-    draft.replace(path)
+    with drafted(path) as draft:
+        frame.to_parquet(draft, index=False)
     return path
 
 

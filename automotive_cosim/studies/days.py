@@ -22,19 +22,19 @@ from zlib import crc32
 
 import numpy as np
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, LoneJob, Runner
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.stage import doing
-from automotive_cosim.run.store import opened, read_manifest, read_rows
+from automotive_cosim.run.store import opened
 from automotive_cosim.scenarios import Scenario, open_scenario, variant
 from automotive_cosim.scenarios.equilibrium import ROUTES, Assigned, rerouted
 from automotive_cosim.scenarios.gap import TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
 from automotive_cosim.scenarios.optimum import POWER
 from automotive_cosim.studies.adviser import AdvisedDay, Adviser, OwnAdviser, Quickest
+from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.plan import checked_plan, driven_at, plan_of
 from automotive_cosim.studies.settings import DaysSettings
 from automotive_cosim.traffic.network import read_network
@@ -319,19 +319,9 @@ def _made(folder: Path) -> Path:
     return folder
 
 
-@dataclass(frozen=True, slots=True)
-class DaysStudy:
+@dataclass(frozen=True)
+class DaysStudy(StudyContent[DaysPlan, DaysRow]):
     """The content of a folder."""
-
-    folder: Path
-    manifest: Json
-    plan: DaysPlan
-    rows: tuple[DaysRow, ...]
-
-    @property
-    def errors(self) -> tuple[DaysRow, ...]:
-        """Those that ended in an infrastructure error."""
-        return tuple(row for row in self.rows if row.error is not None)
 
     def of(self, drivers: Drivers) -> tuple[DaysRow, ...]:
         """The rows of a share or state."""
@@ -344,10 +334,7 @@ def read_days(folder: Path) -> DaysStudy:
     Raises:
         UserError: it is not such a study's folder, or is damaged.
     """
-    manifest = read_manifest(folder)
-    plan = make_days(manifest["plan"])
-    rows = read_rows(folder, DaysRow)
-    return DaysStudy(folder, manifest, plan, tuple(rows[job.id] for job in plan.jobs() if job.id in rows))
+    return DaysStudy.read(folder, make_days, DaysRow)
 
 
 def make_days(values: Mapping[str, Any]) -> DaysPlan:

@@ -77,7 +77,7 @@ def run_drive(
     Args:
         job: the drive to run.
         simulation: its traffic at the ego's departure, watched.
-        history: measurements of the traffic so far, ``traffic.PULSE_S`` apart.
+        history: measurements of the traffic so far, ``traffic.MEASURED_EVERY_S`` apart.
         tracks: folder for the ego's tracks in a simulation that keeps them; None leaves them out.
         study: the study's folder, in which it can be watched; None if it cannot.
 

@@ -8,9 +8,9 @@ from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.templates import render
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.studies.charts import charts
 from automotive_cosim.studies.context import context

@@ -11,10 +11,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from automotive_cosim.contracts import Json
 from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.run.row import columns
-from automotive_cosim.run.store import read_manifest, read_rows
+from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.plan import StudyPlan, make_study
 from automotive_cosim.studies.policies import Policy, drawn_choices, hindsight, parse_policy
 from automotive_cosim.studies.rows import NOBODY, Decision, DecisionPoint, DriveRow, News, PolicyChoice, Totals
@@ -26,26 +25,15 @@ NOISE = 0.95
 """The noise floor is this quantile of the differences caused by chance alone."""
 
 
-@dataclass(frozen=True, slots=True)
-class Study:
-    """The content of a study's folder."""
-
-    folder: Path
-    manifest: Json
-    plan: StudyPlan
-    rows: tuple[DriveRow, ...]
-    """One row per drive, in the order of the plan."""
+@dataclass(frozen=True)
+class Study(StudyContent[StudyPlan, DriveRow]):
+    """The content of a rerouting study's folder, with a row per drive."""
 
     @property
     def planned(self) -> int:
         """Number of drives in the plan; if it may stop early (``half_width_s``), those of the seeds begun."""
         begun = {row.seed for row in self.rows}
         return sum(self.plan.half_width_s is None or job.seed in begun for job in self.plan.jobs())
-
-    @property
-    def errors(self) -> tuple[DriveRow, ...]:
-        """Drives that ended in an infrastructure error."""
-        return tuple(row for row in self.rows if row.error is not None)
 
     @property
     def decisions(self) -> tuple[DecisionPoint, ...]:
@@ -106,10 +94,7 @@ def read_study(folder: Path) -> Study:
     Raises:
         UserError: it is not a study's folder, or is damaged.
     """
-    manifest = read_manifest(folder)
-    plan = make_study(manifest["plan"])
-    rows = read_rows(folder, DriveRow)
-    return Study(folder, manifest, plan, tuple(rows[job.id] for job in plan.jobs() if job.id in rows))
+    return Study.read(folder, make_study, DriveRow)
 
 
 def load_study(folder: Path | str) -> pd.DataFrame:
@@ -162,16 +147,7 @@ def _choice(point: DecisionPoint, policy: Policy, news: News, compliance: float)
     signs = [_sign(decision, draw, number) for draw, number in enumerate(numbers)] if decision.draws > 1 else []
     assert drive.stay is not None, "it has a decision"
     return PolicyChoice(
-        id=point.id,
-        scenario=drive.scenario,
-        share=drive.share,
-        seed=drive.seed,
-        departure_s=drive.departure_s,
-        trip=drive.trip,
-        at_s=decision.at_s,
-        edge=decision.edge,
-        delay_s=decision.delay_s,
-        eta_s=decision.eta_s,
+        **point.line,
         time_index=round(decision.time_index, 3),
         lost_ahead_s=_lost_ahead_s(point),
         age_s=news.age_s,

@@ -359,6 +359,34 @@ class DriveRow(JobRow):
     whole: tuple[WholeDrive, ...] = ()
     """Whole drives under each policy, if the plan has them."""
 
+    @property
+    def line(self) -> dict[str, Any]:
+        """The fields of a ``DriveLine``."""
+        return {each.name: getattr(self, each.name) for each in fields(DriveLine)}
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DriveLine:
+    """What a line of a table says of its drive."""
+
+    id: str
+    """Of the drive, or the number of the decision, as in ``choices.csv``."""
+    scenario: str
+    share: float
+    seed: int
+    departure_s: float
+    trip: str
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DecisionLine(DriveLine):
+    """What a line of a table says of its decision."""
+
+    at_s: float
+    edge: str
+    delay_s: float
+    eta_s: float
+
 
 @dataclass(frozen=True, slots=True)
 class DecisionPoint:
@@ -368,22 +396,17 @@ class DecisionPoint:
     drive: DriveRow
     decision: Decision
 
+    @property
+    def line(self) -> dict[str, Any]:
+        """The fields of a ``DecisionLine``."""
+        names = ("at_s", "edge", "delay_s", "eta_s")
+        return {**self.drive.line, "id": self.id, **{name: getattr(self.decision, name) for name in names}}
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class PolicyChoice:
+class PolicyChoice(DecisionLine):
     """One policy's choice at one decision with news of one age: a line of ``choices.csv``."""
 
-    id: str
-    """Number of the decision."""
-    scenario: str
-    share: float
-    seed: int
-    departure_s: float
-    trip: str
-    at_s: float
-    edge: str
-    delay_s: float
-    eta_s: float
     time_index: float
     """Expected travel time divided by that at free flow."""
     lost_ahead_s: float | None

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
 from automotive_cosim.report.templates import render
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.store import cannot_write
 
 

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import csv
-import gzip
-import io
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from automotive_cosim.formats.csvs import write_packed_csv
 from automotive_cosim.studies.compare import Future
 from automotive_cosim.studies.points import Drawn, Point
 
@@ -30,17 +28,14 @@ def write_tracks(folder: Path, drive_id: str, stay: Future, points: Sequence[Poi
     Raises:
         OSError: it cannot be written.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for number, point in enumerate(points):
-        for draw, branch, is_placebo, future in _futures(stay, point):
-            key = f"{drive_id}-{number}", draw, "" if branch is None else branch, str(is_placebo)
-            writer.writerows((*key, *each) for each in future.settled.track if each[0] >= point.decision.at_s)
-    folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / f".{drive_id}.part"
-    draft.write_bytes(gzip.compress(text.getvalue().encode(), mtime=0))
-    draft.replace(folder / f"{drive_id}.csv.gz")
+    lines = (
+        (f"{drive_id}-{number}", draw, branch, str(is_placebo), *each)
+        for number, point in enumerate(points)
+        for draw, branch, is_placebo, future in _futures(stay, point)
+        for each in future.settled.track
+        if each[0] >= point.decision.at_s
+    )
+    write_packed_csv(folder / f"{drive_id}.csv.gz", COLUMNS, lines)
 
 
 def _futures(stay: Future, point: Point) -> Iterator[tuple[int, int | None, bool, Future]]:

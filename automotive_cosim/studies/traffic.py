@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from automotive_cosim.traffic.accounts import HALTED_MPS, STUCK_S, TrafficSummary
 
-PULSE_S = 300.0
+MEASURED_EVERY_S = 300.0
 """Time between two measurements of the traffic as a whole."""
 
 STUCK_SHARE = 0.05
@@ -40,7 +40,7 @@ def gridlock(summaries: Sequence[TrafficSummary]) -> Gridlock | None:
     """Why the traffic counts as gridlocked; None while it flows.
 
     Args:
-        summaries: measurements of one simulation, in order, about ``PULSE_S`` apart.
+        summaries: measurements of one simulation, in order, about ``MEASURED_EVERY_S`` apart.
     """
     if not summaries:
         return None

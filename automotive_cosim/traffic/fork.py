@@ -98,7 +98,7 @@ class Forked:
             raise TrafficError("the simulation is closed")
         return self._source.departed(plan)
 
-    def watch(self, *, consumptions: bool = False, tracks: bool = False) -> None:
+    def keep_ledger(self, *, consumptions: bool = False, tracks: bool = False) -> None:
         """Makes this traffic and every drive that departs from it keep a ledger, which studies read.
 
         Args:
@@ -110,10 +110,10 @@ class Forked:
         """
         if self._source.by_replay:
             raise SetupError("studies branch a running simulation, which requires fork: use Linux")
-        self._source.warm_call("watch", consumptions, tracks)
+        self._source.warm_call("keep_ledger", consumptions, tracks)
 
     def run_on(self, duration_s: float) -> TrafficSummary:
-        """Lets the watched traffic run, so that later drives depart later; returns its state.
+        """Lets the traffic with its ledger run, so that later drives depart later; returns its state.
 
         Raises:
             TrafficError: SUMO stopped at an error, died or hung.
@@ -122,7 +122,7 @@ class Forked:
         return summary
 
     def fresh(self) -> Fresh:
-        """How copies of the watched traffic get random numbers of their own, proven here at the first call."""
+        """How copies of this traffic get random numbers of their own, proven here at the first call."""
         if self._fresh is None:
             try:
                 self._fresh = Fresh.proven(*(self._source.sampled(seed) for seed in (1, 1, 2)))
@@ -131,7 +131,7 @@ class Forked:
         return self._fresh
 
     def copy(self) -> RemoteFlow:
-        """A copy of the watched traffic, without an ego.
+        """A copy of the traffic with its ledger, without an ego.
 
         Raises:
             TrafficError: the simulation died or hung.
@@ -227,12 +227,12 @@ class RemoteTraffic:
             return edges
 
     def others(self) -> tuple[tuple[str, ...], TrafficSummary]:
-        """The other vehicles on the road or due, and the state of the traffic, in a watched simulation."""
+        """The other vehicles on the road or due, and the state of the traffic, in a simulation with a ledger."""
         seen: tuple[tuple[str, ...], TrafficSummary] = self._process.call("others")
         return seen
 
     def account(self) -> Account:
-        """Figures of the ego's drive so far, in a watched simulation."""
+        """Figures of the ego's drive so far, in a simulation with a ledger."""
         account: Account = self._process.call("account")
         return account
 
@@ -254,7 +254,7 @@ class RemoteTraffic:
         self._process.call("stage", Closure(edge=edge))
 
     def begin_settling(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> None:
-        """Lets a watched simulation run until the ego's drive has ended and a share of each group has arrived.
+        """Lets the simulation run until the ego's drive has ended and a share of each group has arrived.
 
         From then on it reads nothing but the drive, so its state knows of no other vehicles, signals or delays.
 

@@ -174,7 +174,7 @@ class Server:
 
     # --- calls of studies ---------------------------------------------------------------------------------
 
-    def do_watch(self, consumptions: bool, tracks: bool) -> None:
+    def do_keep_ledger(self, consumptions: bool, tracks: bool) -> None:
         """Records every step from now on in a ledger, which forks copy."""
         assert self._world is not None
         self._ledger = Ledger(load_library(), self._world.step_s, consumptions=consumptions, tracks=tracks)

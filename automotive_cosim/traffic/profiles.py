@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from automotive_cosim.errors import UnknownNameError
 
@@ -43,61 +43,54 @@ class DriverProfile:
     """How far speed and gap are adapted to the weather: 1 as much as other drivers do, 0 not at all."""
 
 
+AVERAGE = DriverProfile(
+    name="average",
+    about="keeps the limit",
+    speed_ratio=1.0,
+    over_limit_max_kmh=0,
+    top_speed_kmh=130,
+    headway_s=1.4,
+    min_gap_m=2.5,
+    acceleration_mps2=2.6,
+    deceleration_mps2=4.5,
+    early_mps2=EARLY_MPS2,
+    imperfection=0.3,
+    overtaking=1.0,
+    reaction_s=1.1,
+    compliance=0.95,
+    caution=1.0,
+)
+"""From whom the others differ."""
 PROFILES: Mapping[str, DriverProfile] = {
     profile.name: profile
     for profile in (
-        DriverProfile(
+        replace(
+            AVERAGE,
             name="calm",
             about="keeps just under the limit and well back",
             speed_ratio=0.95,
-            over_limit_max_kmh=0,
             top_speed_kmh=120,
             headway_s=2.0,
             min_gap_m=3.0,
             acceleration_mps2=1.8,
             deceleration_mps2=3.5,
-            early_mps2=EARLY_MPS2,
             imperfection=0.2,
             overtaking=0.5,
             reaction_s=1.0,
             compliance=1.0,
-            caution=1.0,
         ),
-        DriverProfile(
-            name="average",
-            about="keeps the limit",
-            speed_ratio=1.0,
-            over_limit_max_kmh=0,
-            top_speed_kmh=130,
-            headway_s=1.4,
-            min_gap_m=2.5,
-            acceleration_mps2=2.6,
-            deceleration_mps2=4.5,
-            early_mps2=EARLY_MPS2,
-            imperfection=0.3,
-            overtaking=1.0,
-            reaction_s=1.1,
-            compliance=0.95,
-            caution=1.0,
-        ),
-        DriverProfile(
+        AVERAGE,
+        replace(
+            AVERAGE,
             name="steady",
             about="exactly the limit, without variation: for studies with calculations by hand",
-            speed_ratio=1.0,
-            over_limit_max_kmh=0,
-            top_speed_kmh=130,
             headway_s=1.0,
-            min_gap_m=2.5,
-            acceleration_mps2=2.6,
-            deceleration_mps2=4.5,
-            early_mps2=EARLY_MPS2,
             imperfection=0.0,
-            overtaking=1.0,
             reaction_s=1.0,
             compliance=1.0,
-            caution=1.0,
         ),
-        DriverProfile(
+        replace(
+            AVERAGE,
             name="hurried",
             about="far over the limit where the road is clear",
             speed_ratio=1.62,
@@ -106,7 +99,6 @@ PROFILES: Mapping[str, DriverProfile] = {
             headway_s=0.9,
             min_gap_m=2.0,
             acceleration_mps2=3.0,
-            deceleration_mps2=4.5,
             early_mps2=HURRIED_MPS2,
             imperfection=0.1,
             overtaking=5.0,
@@ -114,58 +106,30 @@ PROFILES: Mapping[str, DriverProfile] = {
             compliance=0.9,
             caution=0.0,
         ),
-        DriverProfile(
+        replace(
+            AVERAGE,
             name="brisk",
             about="a hair over the limit, as speedometers allow",
             speed_ratio=1.04,
             over_limit_max_kmh=2,
-            top_speed_kmh=130,
-            headway_s=1.4,
-            min_gap_m=2.5,
-            acceleration_mps2=2.6,
-            deceleration_mps2=4.5,
-            early_mps2=EARLY_MPS2,
             imperfection=0.1,
-            overtaking=1.0,
-            reaction_s=1.1,
-            compliance=0.95,
-            caution=1.0,
         ),
-        DriverProfile(
+        replace(
+            AVERAGE,
             name="pressing",
             about="keeps the limit, close behind whoever is ahead, and does not pass",
-            speed_ratio=1.0,
-            over_limit_max_kmh=0,
-            top_speed_kmh=130,
             headway_s=0.5,
             min_gap_m=1.5,
             acceleration_mps2=2.9,
-            deceleration_mps2=4.5,
             early_mps2=4.5,
             imperfection=0.1,
             overtaking=0.0,
             reaction_s=0.9,
-            compliance=0.95,
             caution=0.0,
         ),
-        DriverProfile(
-            name="careless",
-            about="keeps the limit in any weather",
-            speed_ratio=1.0,
-            over_limit_max_kmh=0,
-            top_speed_kmh=130,
-            headway_s=1.4,
-            min_gap_m=2.5,
-            acceleration_mps2=2.6,
-            deceleration_mps2=4.5,
-            early_mps2=EARLY_MPS2,
-            imperfection=0.1,
-            overtaking=1.0,
-            reaction_s=1.1,
-            compliance=0.95,
-            caution=0.0,
-        ),
-        DriverProfile(
+        replace(AVERAGE, name="careless", about="keeps the limit in any weather", imperfection=0.1, caution=0.0),
+        replace(
+            AVERAGE,
             name="tailgating",
             about="a little over the limit and close behind whoever is ahead",
             speed_ratio=1.1,
@@ -174,7 +138,6 @@ PROFILES: Mapping[str, DriverProfile] = {
             headway_s=0.5,
             min_gap_m=1.5,
             acceleration_mps2=2.9,
-            deceleration_mps2=4.5,
             early_mps2=4.5,
             imperfection=0.1,
             overtaking=2.0,
@@ -182,16 +145,13 @@ PROFILES: Mapping[str, DriverProfile] = {
             compliance=0.85,
             caution=0.0,
         ),
-        DriverProfile(
+        replace(
+            AVERAGE,
             name="drowsy",
             about="uneven in speed and late to react",
-            speed_ratio=1.0,
-            over_limit_max_kmh=0,
             top_speed_kmh=120,
             headway_s=1.6,
-            min_gap_m=2.5,
             acceleration_mps2=2.0,
-            deceleration_mps2=4.5,
             early_mps2=HURRIED_MPS2,
             imperfection=0.9,
             overtaking=0.3,

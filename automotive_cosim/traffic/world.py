@@ -102,7 +102,7 @@ class World:
         self._limits_mps = self._read_limits() if setup.flow_s is not None else {}
         self._sample_steps = max(1, round(SAMPLE_PERIOD_S / self.step_s))
         self._sensor: Sensor | None = None
-        self._is_watched = True
+        self._looks_around = True
 
     def _mapped(self, roads: Network, setup: Setup) -> Network:
         """The network with what is around it, on its side of the road and at the scenario's place."""
@@ -219,7 +219,7 @@ class World:
 
     def look_away(self) -> None:
         """From here on nobody asks what is around the ego or how dense the traffic is: only the drive counts."""
-        self._is_watched = False
+        self._looks_around = False
         if self._sensor is not None:
             self._sensor.looks_around = False
 
@@ -279,7 +279,7 @@ class World:
             self._emergency.difference_update(arrived, sumo.teleporting())
         self._steps += 1
         is_due = sampling and self._steps % self._sample_steps == 0
-        if is_due and self._is_watched:
+        if is_due and self._looks_around:
             self.congestion.sample()
         if self._has_incidents and self._steps % self._second_steps == 0:
             self.happened = self._incidents.tick(now_s)

@@ -81,7 +81,7 @@ CASES = {
     "sensitivity": Smallest(("--seeds", "1", "--points", "16")),
     "studies": Smallest(("--studies", "2")),
     "towns": Smallest(("4",)),
-    "watch_tables": Smallest(("--help",)),
+    "drive_tables": Smallest(("--help",)),
 }
 
 

@@ -16,16 +16,21 @@ from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import settings_in, takes
 from automotive_cosim.cli.main import app
 from automotive_cosim.cli.options import DriveChanges, LimitSettings
+from automotive_cosim.doors.settings import A2aSettings, McpSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.episode.settings import EpisodeSettings
 from automotive_cosim.errors import UserError
+from automotive_cosim.exchange.settings import ExportFormats
 from automotive_cosim.formats.annotations import OneOf, Option
 from automotive_cosim.formats.docs import inherited_field_docs
 from automotive_cosim.formats.options import option
 from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
-from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
+from automotive_cosim.proof.settings import ProofSettings
+from automotive_cosim.publish.settings import VerifySettings
+from automotive_cosim.run.settings import BenchSettings, Budget, EvaluationSettings, RunSettings
 from automotive_cosim.safety.settings import SearchSettings
 from automotive_cosim.scenarios.settings import EquilibriumSettings
+from automotive_cosim.serve.settings import ServeSettings
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings, SuiteSettings
 from tests.laws import over
 
@@ -49,6 +54,13 @@ COMMANDS = (
     ("study suite", SuiteSettings, {"scenario", "warm_up_s"}),
     ("study congestion", CongestionSettings, set()),
     ("study days", DaysSettings, set()),
+    ("tasks validate", ProofSettings, set()),
+    ("mcp", McpSettings, set()),
+    ("a2a", A2aSettings, set()),
+    ("serve", ServeSettings, set()),
+    ("bench", BenchSettings, set()),
+    ("export", ExportFormats, set()),
+    ("publish verify", VerifySettings, set()),
 )
 """Commands, what they can be told, and the fields of it that are no options."""
 
@@ -84,6 +96,8 @@ class Settings:
     """How loud."""
     tone: Annotated[Tone, OneOf(Tone, "tone of voice")] = Tone.KIND
     """How it sounds."""
+    sign: Annotated[str, Option(variable="GREETING_SIGN")] = ""
+    """What to sign with."""
 
 
 def told(*arguments: str) -> tuple[dict[str, Any], str]:
@@ -124,9 +138,15 @@ def test_each_form_is_read_as_its_field_has_it() -> None:
     }
 
 
+def test_a_variable_gives_what_the_option_does_not(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("GREETING_SIGN", "E.")
+    assert told()[0]["sign"] == "E."
+    assert told("--sign", "Eva")[0]["sign"] == "Eva"
+
+
 def test_help_is_the_docstring_with_the_default() -> None:
     shown = " ".join(told("--help")[1].replace("│", " ").split())
-    for text in ("Seconds to wait before it. [default: (2.5)]", "[default: (0-2)]", "[default: (the car's)]"):
+    for text in ("Seconds to wait before it. [default: 2.5]", "[default: 0-2]", "[default: (the car's)]"):
         assert text in shown
 
 

@@ -4,9 +4,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from automotive_cosim.cli.options import PartOf
 from automotive_cosim.cli.validate import _summary
 from automotive_cosim.proof.prover import GATES, Proof
+from automotive_cosim.proof.settings import PartOf
 
 
 @pytest.mark.parametrize(

@@ -32,7 +32,7 @@ from automotive_cosim.interface.spaces import action_space, decode_action
 from automotive_cosim.models.replay import Replay
 from automotive_cosim.osm import extract
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.moments import judged_file, read_judged
+from automotive_cosim.run.moments import Judged, judged_file, read_judged
 from automotive_cosim.run.plan import make_plan, read_plan
 from automotive_cosim.run.road import read_record
 from automotive_cosim.run.script import read_script
@@ -147,7 +147,9 @@ def _kinds(folder: Path) -> Iterator[tuple[str, Kind]]:
     judged_file(results, "a").parent.mkdir(parents=True, exist_ok=True)
     name = str(judged_file(results, "a").relative_to(folder))
     yield kind(
-        name, json.dumps({"classes": [], "pool": [], "value": ["d", []]}), lambda _: read_judged(results, "a")
+        name,
+        json.dumps({"classes": [], "pool": [], "value": ["d", []]}),
+        lambda _: read_judged(results, "a", Judged),
     )
     Memory(folder / "memory.db").keep(Strategy("P", "open the map", "now", "click"), worked=True)
     data = (folder / "memory.db").read_bytes()

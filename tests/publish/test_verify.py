@@ -21,7 +21,7 @@ from automotive_cosim.publish.problems import ROWS
 from automotive_cosim.publish.replays import replay
 from automotive_cosim.publish.verify import PLAN_ON_TRUST, STARTS_ON_TRUST, hash_problems, verify
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.moments import read_judged
+from automotive_cosim.run.moments import Judged, read_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import judged_again
 from automotive_cosim.run.row import from_line
@@ -346,7 +346,7 @@ def test_elsewhere_a_verdict_rests_on_the_sign_that_stands_there(ran):
     row = next(row for row in read_rows(ran, EpisodeRow).values() if row.success is not None)
     instance = draw(CATALOGUE["road_speed_80_in_50"], "first", 0)
     half, given = instance.half, instance.parameters
-    stored = replace(read_judged(ran, row.id), allowed_writes=half.allowed_writes, parameters=given)
+    stored = replace(read_judged(ran, row.id, Judged), allowed_writes=half.allowed_writes, parameters=given)
     elsewhere = replace(row, task=instance.task.id, half="first")
     assert judged_again(elsewhere, stored).rule == bound(half, stored.trace[0].context) != half.rule
     assert judged_again(replace(elsewhere, scenario=half.start.scenario), stored).rule == half.rule

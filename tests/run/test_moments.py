@@ -25,7 +25,7 @@ from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
-from automotive_cosim.run.moments import MOVED, judged_file, read_judged, write_judged
+from automotive_cosim.run.moments import MOVED, Judged, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.settings import Pictures
@@ -57,7 +57,7 @@ def kept(collected, tmp_path):
 def test_moments_come_back_as_they_were(kept):
     folder, judged = kept
     first = judged_file(folder, "a").read_bytes()
-    again = read_judged(folder, "a")
+    again = read_judged(folder, "a", Judged)
     assert again == judged
     # Types too; but a set has no order.
     same = replace(judged, parameters=dict(judged.parameters), allowed_writes=frozenset())
@@ -69,7 +69,7 @@ def test_moments_come_back_as_they_were(kept):
 
 
 def test_judging_the_stored_moments_gives_the_same_verdict(kept, collected):
-    judged = read_judged(kept[0], "a")
+    judged = read_judged(kept[0], "a", Judged)
     task = CATALOGUE["phenomenon_front_window_fogged"]
     instance = Instance(task, "first", judged.goal, judged.parameters)
     again = judge(
@@ -109,21 +109,21 @@ def test_a_file_with_the_old_name_of_the_baseline_run_is_read(kept):
     names = next(names for kind, names in whole["classes"] if kind.endswith(":Judged"))
     names[names.index("baseline")] = "idle"
     path.write_bytes(lzma.compress(json.dumps(whole).encode()))
-    assert read_judged(folder, "a") == judged
+    assert read_judged(folder, "a", Judged) == judged
 
 
 def test_the_counterfactual_is_stored_and_an_older_file_without_it_refused(kept):
     folder, judged = kept
     other = {**judged.trace[-1].commands, "horn": 7}
     write_judged(folder, "a", replace(judged, counterfactual=other))
-    assert read_judged(folder, "a").counterfactual == other
+    assert read_judged(folder, "a", Judged).counterfactual == other
     path = judged_file(folder, "a")
     whole = json.loads(lzma.decompress(path.read_bytes()))
     names = next(names for kind, names in whole["classes"] if kind.endswith(":Judged"))
     names[names.index("counterfactual")] = "a_field_of_old"
     path.write_bytes(lzma.compress(json.dumps(whole).encode()))
     with pytest.raises(UserError, match="without the counterfactual"):
-        read_judged(folder, "a")
+        read_judged(folder, "a", Judged)
 
 
 def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):
@@ -133,7 +133,7 @@ def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):
 
     def stored(changed):
         path.write_bytes(lzma.compress(json.dumps(changed).encode()))
-        return read_judged(folder, "a")
+        return read_judged(folder, "a", Judged)
 
     (number, (_, names)) = next(
         (number, kept) for number, kept in enumerate(whole["classes"]) if kept[0].endswith(":DrivingState")
@@ -153,9 +153,9 @@ def test_fields_that_come_and_go_are_borne_and_other_classes_refused(kept):
             stored(other)
     path.write_bytes(b"nothing")
     with pytest.raises(UserError, match="cannot read"):
-        read_judged(folder, "a")
+        read_judged(folder, "a", Judged)
     with pytest.raises(UserError, match="does not exist"):
-        read_judged(folder, "b")
+        read_judged(folder, "b", Judged)
 
 
 def test_requests_to_the_road_come_back_and_those_of_an_older_format_are_refused(kept):
@@ -164,11 +164,11 @@ def test_requests_to_the_road_come_back_and_those_of_an_older_format_are_refused
     requests = [Reroute("A 4"), SlowDown(30.0), PullOver()]
     asked = replace(judged, trace=(*before, replace(last, commands={**last.commands, "requests": requests})))
     write_judged(folder, "a", asked)
-    assert read_judged(folder, "a").trace[-1].commands["requests"] == requests
+    assert read_judged(folder, "a", Judged).trace[-1].commands["requests"] == requests
     texts = {**last.commands, "requests": [repr(request) for request in requests]}
     write_judged(folder, "a", replace(judged, trace=(*before, replace(last, commands=texts))))
     with pytest.raises(UserError, match="older format"):
-        read_judged(folder, "a")
+        read_judged(folder, "a", Judged)
 
 
 def test_classes_that_have_moved_since_are_found(kept):
@@ -179,7 +179,7 @@ def test_classes_that_have_moved_since_are_found(kept):
         assert new in text
         text = text.replace(new, old)
     path.write_bytes(lzma.compress(text.encode()))
-    assert read_judged(folder, "a") == judged
+    assert read_judged(folder, "a", Judged) == judged
 
 
 HAMBURG = GpsFix(True, 10.0, 53.55, 3.0, 0.0, 0.0)

@@ -3,8 +3,9 @@ import os
 import pytest
 
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.record import check_folder, default_folder, write_whole
+from automotive_cosim.run.record import check_folder, default_folder
 
 
 def test_an_empty_or_missing_folder_will_do(tmp_path):

@@ -34,7 +34,7 @@ def driven(small: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> tuple[
     (job,) = replace(small, step_s=STEP_S).jobs()
     scene = job.plan.scene(job.share)
     with closing(Forked(scene, job.seed, allow_unprojected=True, outputs=outputs)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         return run_drive(job, simulation, ()), outputs
 
 
@@ -94,7 +94,7 @@ def test_they_say_the_same_where_cars_stop_and_waver(tmp_path: Path) -> None:
     plan = StudyPlan("grid", trips=("round",), least_delay_s=0.0, per_drive=1)
     job = plan.jobs()[0]
     with closing(Forked(plan.scene(0.6), 3, outputs=tmp_path)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         simulation.run_on(100.0)
         row = run_drive(job, simulation, ())
     told = futures(row)
@@ -140,7 +140,7 @@ def test_branches_without_a_choice_stay_the_same_to_the_last(tmp_path: Path) -> 
     """Everybody's trip, as SUMO writes it to the sixth digit, and the ego's whole way."""
     scenario = load("grid")
     with closing(Forked(scenario, 2, outputs=tmp_path)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         simulation.run_on(60.0)
         traffic = simulation.depart(EgoPlan(scenario.trip("round"), seed=1))
         traffic.advance(30.0)
@@ -180,7 +180,7 @@ def rows(path: Path) -> list[bytes]:
 def test_a_choice_changes_nothing_before_it(small: StudyPlan) -> None:
     (job,) = small.jobs()
     with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         traffic = simulation.depart(EgoPlan(job.trip, "steady"))
         before = traffic.advance(20.0).states
         with closing(traffic), closing(traffic.branch()) as branch:
@@ -199,7 +199,7 @@ def test_old_news_is_what_was_known_then(small: StudyPlan) -> None:
     scene = job.plan.scene(0.0)
     scene = replace(scene, sumo=replace(scene.sumo, warm_up_s=60.0))
     with closing(Forked(scene, 0, allow_unprojected=True)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         simulation.run_on(120.0)
         with closing(simulation.depart(EgoPlan(job.trip, "steady"))) as traffic:
             now, old = traffic.alternatives(0.0), traffic.alternatives(900.0)
@@ -213,7 +213,7 @@ def test_old_news_is_what_was_known_then(small: StudyPlan) -> None:
 def test_traffic_that_leaves_nothing_to_chance_has_one_future(small: StudyPlan) -> None:
     (job,) = replace(small, replicates=3).jobs()
     with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         assert simulation.fresh() is Fresh.SEED_UNSEEN
         row = run_drive(job, simulation, ())
     (decision,) = row.decisions
@@ -230,7 +230,7 @@ def test_a_replicate_is_another_future_and_its_seed_gives_it_again(fresh: Fresh 
     """Both by true seeds, which the shipped SUMO allows, and where it does not."""
     scenario = load("grid")
     with closing(Forked(scenario, 2)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         proven = simulation.fresh()
         assert proven is Fresh.SEED
         with closing(simulation.depart(EgoPlan(scenario.trip("round"), seed=1))) as traffic:
@@ -253,7 +253,7 @@ def test_a_library_without_the_symbols_is_replaced_by_jitter(
 ) -> None:
     (job,) = small.jobs()
     with closing(Forked(job.plan.scene(0.0), 0, allow_unprojected=True)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         monkeypatch.setattr(simulation._source, "sampled", refused)
         assert simulation.fresh() is Fresh.JITTER
         row = run_drive(job, simulation, ())

@@ -107,7 +107,7 @@ def test_a_warm_process_that_dies_as_it_is_copied_costs_a_reload(grid: Scenario,
 def test_what_was_asked_of_a_warm_process_is_asked_of_the_next(grid: Scenario, hurried: EgoPlan) -> None:
     short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
     with closing(Forked(short, seed=1)) as simulation:
-        simulation.watch()
+        simulation.keep_ledger()
         simulation.run_on(20.0)
         with closing(simulation.depart(hurried)) as traffic:
             expected = traffic.state, traffic.others()

@@ -9,8 +9,8 @@ from importlib.resources import files
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.formats.files import write_whole
 from automotive_cosim.report.templates import render
-from automotive_cosim.run.record import write_whole
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.store import cannot_write
 from automotive_cosim.safety.dossier.document import Dossier, dossier

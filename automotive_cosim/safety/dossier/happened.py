@@ -8,8 +8,9 @@ from statistics import median
 
 import numpy as np
 
+from automotive_cosim.contracts.plain import clock
 from automotive_cosim.drives.events import KINDS
-from automotive_cosim.drives.faults import clock, faults
+from automotive_cosim.drives.faults import faults
 from automotive_cosim.drives.judge import EventOutcome
 from automotive_cosim.measures import DEFAULT_THRESHOLDS
 from automotive_cosim.report.stats import CONFIDENCE

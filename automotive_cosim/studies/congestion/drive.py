@@ -92,7 +92,7 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
             scenario, job.seed, warming_up, allow_unprojected=True, outputs=Path(scratch), flow_s=INTERVAL_S
         )
         stack.enter_context(closing(warm))
-        warm.watch(consumptions=plan.emissions)
+        warm.keep_ledger(consumptions=plan.emissions)
         running: list[RemoteFlow] = []
         for name in names:
             copy = stack.enter_context(closing(warm.copy()))

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import csv
 import gzip
-import io
 import xml.etree.ElementTree as ET
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from automotive_cosim.formats.csvs import write_packed_csv
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
 from automotive_cosim.studies.congestion.rows import EdgeRow, FlowCell, FlowSums
 from automotive_cosim.traffic.network import Network
@@ -126,19 +126,13 @@ def write_edges(folder: Path, job: str, measured: Sequence[Sequence[EdgeFlow]]) 
     Raises:
         OSError: it cannot be written.
     """
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
-    for measure, flows in enumerate(measured):
-        for each in flows:
-            if not each.edge.startswith(":"):
-                flow = rounded(each.flow)
-                row = measure, each.edge, f"{each.from_s:g}", flow.time_s, flow.lost_s, flow.distance_m
-                writer.writerow(row)
-    folder.mkdir(parents=True, exist_ok=True)
-    draft = folder / f".{job}.part"
-    draft.write_bytes(gzip.compress(text.getvalue().encode(), mtime=0))
-    draft.replace(folder / f"{job}.csv.gz")
+    lines = (
+        (measure, each.edge, f"{each.from_s:g}", flow.time_s, flow.lost_s, flow.distance_m)
+        for measure, flows in enumerate(measured)
+        for each in flows
+        if not each.edge.startswith(":") and (flow := rounded(each.flow))
+    )
+    write_packed_csv(folder / f"{job}.csv.gz", COLUMNS, lines)
 
 
 def read_edges(path: Path) -> Iterator[EdgeRow]:

@@ -20,11 +20,10 @@ from pathlib import Path
 
 import numpy as np
 
-from automotive_cosim.contracts import Json
-from automotive_cosim.run.store import read_manifest, read_rows
 from automotive_cosim.studies.congestion.outputs import EDGES, read_edges
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S, CongestionPlan, make_congestion
 from automotive_cosim.studies.congestion.rows import CongestionRow, EdgeRow, FlowCell, FlowSums, MeasureOutcome
+from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.intervals import SeedMean, seed_mean
 
 LATE = 0.95
@@ -34,19 +33,8 @@ HOUR_S = 3_600.0
 
 
 @dataclass(frozen=True)
-class CongestionStudy:
-    """The content of a congestion study's folder."""
-
-    folder: Path
-    manifest: Json
-    plan: CongestionPlan
-    rows: tuple[CongestionRow, ...]
-    """One row per seed, in the order of the plan."""
-
-    @property
-    def errors(self) -> tuple[CongestionRow, ...]:
-        """Seeds that ended in an infrastructure error."""
-        return tuple(row for row in self.rows if row.error is not None)
+class CongestionStudy(StudyContent[CongestionPlan, CongestionRow]):
+    """The content of a congestion study's folder, with a row per seed."""
 
     @property
     def measures(self) -> tuple[str, ...]:
@@ -90,10 +78,7 @@ def read_congestion(folder: Path) -> CongestionStudy:
     Raises:
         UserError: it is not a congestion study's folder, or is damaged.
     """
-    manifest = read_manifest(folder)
-    plan = make_congestion(manifest["plan"])
-    rows = read_rows(folder, CongestionRow)
-    return CongestionStudy(folder, manifest, plan, tuple(rows[job.id] for job in plan.jobs() if job.id in rows))
+    return CongestionStudy.read(folder, make_congestion, CongestionRow)
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,7 +1,7 @@
 """Whether a drive can be scored without watching: by stopping, by crawling, by tables of words.
 
-    python benchmarks/watch_tables.py                          # five families, seed 0
-    python benchmarks/watch_tables.py grid_june --seeds 0 1 --unseen 2 --keep runs/tables
+    python benchmarks/drive_tables.py                          # five families, seed 0
+    python benchmarks/drive_tables.py grid_june --seeds 0 1 --unseen 2 --keep runs/tables
 
 Three things are tried:
 

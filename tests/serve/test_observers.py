@@ -6,15 +6,15 @@ import time
 from pathlib import Path
 
 from automotive_cosim.run.road_recorder import is_being_written
-from automotive_cosim.serve.spectators import Spectators
+from automotive_cosim.serve.observers import StudyObservers
 
 
 def test_a_mark_holds_while_somebody_asks_and_goes_by_itself(tmp_path: Path) -> None:
     path = tmp_path / "watched"
     path.touch()
-    spectators = Spectators(patience_s=0.2)
+    observers = StudyObservers(patience_s=0.2)
     for _ in range(3):
-        spectators.watch(path)
+        observers.observe(path)
         assert is_being_written(path)
         time.sleep(0.1)
     assert is_being_written(path)
@@ -27,12 +27,12 @@ def test_a_mark_holds_while_somebody_asks_and_goes_by_itself(tmp_path: Path) -> 
 def test_two_servers_watch_the_same_and_one_of_them_ends(tmp_path: Path) -> None:
     path = tmp_path / "watched"
     path.touch()
-    one, other = Spectators(), Spectators()
-    one.watch(path)
-    other.watch(path)
+    one, other = StudyObservers(), StudyObservers()
+    one.observe(path)
+    other.observe(path)
     one.close()
     assert not is_being_written(path)
-    other.watch(path)
+    other.observe(path)
     assert is_being_written(path)
     other.close()
     assert not is_being_written(path)

@@ -1,4 +1,4 @@
-"""Tells running programs that they are being watched, by a lock that the system releases with this process."""
+"""Tells running programs that somebody observes them, by a lock that the system releases with this process."""
 
 from __future__ import annotations
 
@@ -10,19 +10,19 @@ from typing import IO
 from automotive_cosim.run.road_recorder import mark_as_written
 
 PATIENCE_S = 10.0
-"""A spectator that has not asked for this long has left."""
+"""An observer that has not asked for this long has left."""
 
 
-class Spectators:
-    """Locks the files of what is watched; nothing is written into them."""
+class StudyObservers:
+    """Locks the files of what is observed; nothing is written into them."""
 
     def __init__(self, patience_s: float = PATIENCE_S) -> None:
-        """Starts without spectators."""
+        """Starts without observers."""
         self._patience_s = patience_s
         self._marked: dict[Path, tuple[IO[bytes], threading.Timer]] = {}
         self._lock = threading.Lock()
 
-    def watch(self, path: Path) -> None:
+    def observe(self, path: Path) -> None:
         """Locks a file for some seconds, unless another program has already locked it.
 
         Raises:

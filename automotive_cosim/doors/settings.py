@@ -1,0 +1,60 @@
+"""What can be set about the servers that others connect to. Each field is an option of ``mcp`` or ``a2a``."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from annotated_types import Ge, Le
+
+from automotive_cosim.contracts.given import Interface
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.annotations import OneOf, Option
+
+
+def read_address(text: str) -> tuple[str, int]:
+    """A host and a port.
+
+    Raises:
+        UserError: it is no address.
+    """
+    host, _, port = text.rpartition(":")
+    if not host or not port.isdecimal() or not 0 < int(port) < 65536:
+        raise UserError(f"--http: {text!r} is not an address; give HOST:PORT, such as 127.0.0.1:8000")
+    return host, int(port)
+
+
+@dataclass(frozen=True, slots=True)
+class McpSettings:
+    """How the Model Context Protocol is served."""
+
+    http: Annotated[tuple[str, int] | None, Option(form="HOST:PORT", read=read_address)] = None
+    """Serve streamable HTTP at http://HOST:PORT/mcp, for whoever has the token, instead of standard input and
+    output."""
+    token: Annotated[str, Option(default="a new one each time", variable="AUTOMOTIVE_COSIM_MCP_TOKEN")] = ""
+    """What requests over HTTP have to give, in the address or as a bearer token."""
+    episodes: Annotated[int, Ge(1), Le(1000)] = 16
+    """Maximum number of concurrent episodes."""
+    idle_s: Annotated[float, Ge(1), Le(1e6), Option("idle-s", form="SECONDS")] = 900.0
+    """Seconds after which an idle episode is closed."""
+    interface: Annotated[Interface, OneOf(Interface, "interface"), Option(form="|".join(Interface))] = (
+        Interface.TOUCH
+    )
+    """How assistants act: on the screen (act), by functions of the car as tools, or by both."""
+
+
+@dataclass(frozen=True, slots=True)
+class A2aSettings:
+    """Where the evaluating agent is served over A2A."""
+
+    host: str = "127.0.0.1"
+    """Address to listen at; 0.0.0.0 for every one."""
+    port: Annotated[int, Ge(1), Le(65535)] = 9009
+    """Port."""
+    card_url: Annotated[str, Option(default="http://HOST:PORT/")] = ""
+    """Its address as others see it, for its card."""
+
+    @property
+    def url(self) -> str:
+        """The address on its card."""
+        return self.card_url or f"http://{self.host}:{self.port}/"
