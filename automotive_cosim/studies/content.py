@@ -18,6 +18,7 @@ class JobsPlan(Protocol):
 
     def jobs(self) -> Iterable[Job]:
         """All of them, in order."""
+        ...
 
 
 PlanT = TypeVar("PlanT", bound=JobsPlan)
