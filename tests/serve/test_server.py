@@ -219,6 +219,6 @@ def test_the_command_refuses_in_one_line(tmp_path: Path, serving: Serving) -> No
         ([record], 0, True, "give a folder of records"),
     ):
         with pytest.raises(UserError, match=why):
-            serve(folders, "127.0.0.1", port, play)
+            serve(folders, port=port, play=play)
     with pytest.raises(UserError, match="cannot listen"):
-        serve([tmp_path], "no.such.host.invalid")
+        serve([tmp_path], host="no.such.host.invalid")
