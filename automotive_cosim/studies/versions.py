@@ -5,6 +5,7 @@ Every seed is run by both, so differences are paired by seed, and most rows shou
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -62,18 +63,26 @@ class Pair:
 
 
 def pairs(first: Path, second: Path) -> tuple[Pair, ...]:
-    """The studies of two folders; of two suites, those with the same name.
+    """The studies of two folders; of two suites, those of the same network, wherever it stands in the list.
 
     Raises:
         UserError: a folder has no study, or the two have none in common.
     """
     if (first / "manifest.json").is_file() or (second / "manifest.json").is_file():
         return (_pair(f"{first} and {second}", first, second),)
-    names = [sorted(path.parent.name for path in folder.glob("*/manifest.json")) for folder in (first, second)]
-    common = [name for name in names[0] if name in names[1]]
+    ones, twos = _suite(first), _suite(second)
+    common = [name for name in ones if name in twos]
     if not common:
         raise UserError(f"{first} and {second} have no study in common; give two folders of `study`")
-    return tuple(_pair(name, first / name, second / name) for name in common)
+    return tuple(_pair(name, ones[name], twos[name]) for name in common)
+
+
+def _suite(folder: Path) -> dict[str, Path]:
+    """A suite's studies by the name of their network; with its place in the list, if there are several."""
+    paths = sorted(path.parent for path in folder.glob("*/manifest.json"))
+    short = {path: path.name.lstrip("0123456789").removeprefix("_") for path in paths}
+    often = Counter(short.values())
+    return {path.name if often[short[path]] > 1 else short[path]: path for path in paths}
 
 
 def _pair(name: str, first: Path, second: Path) -> Pair:

@@ -267,8 +267,13 @@ def test_two_versions_are_compared_row_by_row(driven: Path, tmp_path: Path) -> N
     shutil.copytree(driven, tmp_path / "other" / "again")
     (pair,) = pairs(tmp_path / "suite", tmp_path / "other")
     assert (pair.name, pair.rows) == ("again", (1, 0, 0))
-    with pytest.raises(UserError, match="no study in common"):
-        pairs(tmp_path, tmp_path / "other")
+    for suite, place in ("five", "05_town"), ("two", "01_town"):
+        shutil.copytree(driven, tmp_path / suite / place)
+    assert [pair.name for pair in pairs(tmp_path / "five", tmp_path / "two")] == ["town"]
+    shutil.copytree(driven, tmp_path / "two" / "02_town")
+    for other in ("other", "two"):
+        with pytest.raises(UserError, match="no study in common"):
+            pairs(tmp_path / "five", tmp_path / other)
 
 
 def test_the_report_is_whole(driven: Path) -> None:
