@@ -114,7 +114,7 @@ DRY = ("--dry-run",)
 HELP = ("--help",)
 
 TREATED: list[tuple[str, tuple[str, ...], str]] = [
-    (r"eval .*failures/", HELP, "needs a search; tests/safety/test_trying.py has one"),
+    (r"eval .*(failures/|suite.toml)", HELP, "needs a search; tests/safety/test_trying.py has one"),
     (
         r"(search|measures)",
         HELP,
@@ -152,7 +152,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"scenarios calibrate", HELP, "takes minutes; tests/calibration try it on the grid"),
     (r"scenarios equilibrate", HELP, "takes minutes; tests/scenarios/test_equilibrium.py tries it"),
     (r"scenarios import pass", HELP, "needs a scenario of the reader's; tests/exchange has one"),
-    (r"scenarios import city", HELP, "needs a map of the reader's; the hamlet is imported"),
+    (r"scenarios import (city|paris)", HELP, "needs a map of the reader's; the hamlet is imported"),
     (r"scenarios import", ("--force",), ""),
     (r"replay", AS_IT_IS, ""),
     (r"", AS_IT_IS, ""),
