@@ -111,7 +111,7 @@ FOR_A_BEGINNER = pair(
         "New driver in a minute! Leave her the car as the factory meant it for cautious people.",
         "One of my settings isn't for a novice, and now one gets the key. Make that safe again.",
         "Set the thing back that would frighten a learner's mother.",
-        "She drives home from here, for the first time. Whatever isn't set as beginners need it, put right, please.",
+        "She drives home from here, for the first time. Whatever isn't right for a beginner, set right, please.",
     ),
     act(
         parked("border", "old_road", **{DRIVE.MODE.path: "SPORT"}),

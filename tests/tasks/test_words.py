@@ -32,11 +32,12 @@ STANDING = re.compile(
 )
 """Wishes to be watched over: nobody can say at once that there is no need for it."""
 AT_ONCE_S = 30.0
+GONE = re.compile(r"\bI('ve| have) (just )?(left the seat|got out)\b")
+"""The car shows the driver in the seat as long as a task runs."""
 HOURS = {
     r"it's noon|middle of the day": range(10, 15),
     r"since breakfast|long day": range(12, 24),
-    r"too late to get home|that's it for today|for the night, from here": range(17, 24),
-    r"(pair of eyes|nobody comes by .*|too weary) (tonight|at night)": range(18, 24),
+    r"too late to get home|that's it for today": range(17, 24),
 }
 """What drivers say of the hour, and at which hours it is true."""
 DATED = re.compile(r"^(Mon|Tue|Wed|Thu|Fri|Sat|Sun) (\d{1,2} [A-Z][a-z]{2}):")
@@ -80,6 +81,11 @@ def needs_nothing_soon(half: Half) -> bool:
 @over([task for task in CATALOGUE.values() if any(needs_nothing_soon(task.half(name)) for name in task.halves)])
 def test_no_wish_to_be_watched_over_ends_at_once(task):
     assert not [text for text in map(str, task.templates) if STANDING.search(text)]
+
+
+@over(CATALOGUE.values())
+def test_no_driver_has_got_out(task):
+    assert not [text for text in map(str, task.templates) if GONE.search(text)]
 
 
 @over(HALVES)
