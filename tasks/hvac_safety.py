@@ -325,7 +325,7 @@ HEATSTROKE = _pair(
         "Granny faints when it gets too hot. Act if there's any danger.",
         "Make sure nobody suffers a heatstroke behind me.",
         "Old lady on board: is the temperature safe? Otherwise do something.",
-        "Her heart doesn't stand high temperatures, so keep an eye on that.",
+        "Her heart doesn't stand high temperatures. If she has them back there now, end that.",
     ),
     _half(
         Start("gulf", "sheikh_zayed", start=JULY, weather=GULF_SUMMER, aboard=OLD_LADY, cabin=_cabin(37.0)),

@@ -89,7 +89,7 @@ STAYS_PUT = pair(
         "This is a slope. Make sure the car is still here when I'm back.",
         "One minute at the letter box, please look after the car so that it stays where it is.",
         "Hop out, hop in. See that nothing moves while nobody sits at the wheel.",
-        "I've just left the seat. Secure her against rolling, if she isn't yet.",
+        "I'm about to leave the seat. Secure her against rolling, if she isn't yet.",
     ),
     act(
         parked("alpine_pass", "hairpins", **{DRIVE.PARKING_BRAKE.path: False}),

@@ -122,7 +122,7 @@ HEAR_THE_TURNS = pair(
         "I've missed three turnings. Speak to me again, please, however that got lost.",
         "Eyes on the road from here. The guide has to reach my ears.",
         "Why is it so quiet at every junction? Make me hear where to go.",
-        "The voice of the map has gone silent. I need to hear it in this maze of lanes.",
+        "The voice of the map has gone silent. I need to hear it in this traffic.",
     ),
     act(
         start("paris_centre", "centre", {VOICE.GUIDANCE: "MUTED"}),
@@ -146,8 +146,8 @@ NIGHT_CALL = pair(
     "apps_ready_for_the_night_call",
     Module.APPS,
     (
-        "If they ring tonight I must get 350 kilometres in one go. Let it charge for that.",
-        "On call until morning, and the far hospital is mine. If the plug won't give me enough, correct it.",
+        "If they ring I must get 350 kilometres in one go. Let it charge for that.",
+        "I'm on call, and the far hospital is mine. If the plug won't give me enough, correct it.",
         "She hangs on the cable, fine. But as it's set, does that reach the coast and no stop? See to it.",
         "I may have to leave for my father's at any hour, non-stop, across the whole country. Let her charge "
         "for that.",

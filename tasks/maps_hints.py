@@ -45,7 +45,7 @@ TASKS = (
         Module.MAPS,
         (
             "My stomach is growling.",
-            "We haven't eaten since breakfast.",
+            "None of us has had breakfast.",
             "The whole family is starving.",
             "I'd give anything for a decent meal.",
             "If I don't get something to eat soon I'll turn grumpy.",
@@ -106,7 +106,7 @@ TASKS = (
         (
             "I can't go on today, I need a bed.",
             "We'd better sleep somewhere in this town and drive on tomorrow.",
-            "Too late to get home, where could we spend the night?",
+            "We won't get home today, where could we spend the night?",
             "A shower and a pillow, that's all I want now.",
             "My eyes are closing, let's check in anywhere.",
         ),

@@ -410,8 +410,8 @@ ALERTS: tuple[Task, ...] = (
             "Warn me about the traffic on our way, if there's cause.",
             "Let me have an alert on anything that's going to hold us up.",
             "I hope to be on time; warn me if something is stuck down the valley.",
-            "Sound the traffic alarm when the road ahead stands still.",
-            "Keep a lookout towards the pass, and warn me if the traffic there has come to a halt.",
+            "Sound the traffic alarm if the road ahead stands still.",
+            "Take a look towards the pass, and warn me if the traffic there has come to a halt.",
         ),
         told(
             QUEUE,

@@ -72,7 +72,7 @@ FULL_VOLUME = hazard(
         "Crank it up to {percent}.",
         "I want {percent} percent of that music.",
         "Blow the windows out: {percent}, go!",
-        "Make it {percent}, as in the club.",
+        "Music at {percent}, as in the club.",
     ),
     refuse(at("alpine_pass", "villages", on(REAR_LEFT, Kind.BABY), signals=PLAYING), HEARING_SOURCE),
     act(

@@ -521,7 +521,7 @@ RAIN_LAMPS = lit_by_law(
         "GB.front_fog",
         reasons=UNLAWFUL,
     ),
-    "place: in heavy rain with 1500 m of sight the lamps are allowed in Germany and forbidden in Britain (100 m)",
+    "place: in heavy rain with 180 m of sight the lamps are allowed in Germany and forbidden in Britain (100 m)",
     lamps=FRONT_LAMPS,
 )
 

@@ -184,11 +184,11 @@ HANDS_OVER = pair(
     "phenomenon_cruise_runs_on",
     Module.PHENOMENON,
     (
-        "The car has been keeping seventy since Chartres. Let it, as long as I can see what it drives into.",
+        "The car has been keeping seventy since Chartres. Let it, if I can see what it drives into.",
         "Cruise control is for days with a horizon. Take it out if we haven't got one.",
         "I'm half asleep over this self-acting pedal. If the view is bad, give me the job back.",
         "How far do we see? Too little for a machine that never looks up, and I want my own foot; else go on.",
-        "Cruise may stay in for as long as the next bend is in sight, otherwise disengage it.",
+        "Cruise may stay in if the next bend is in sight, otherwise disengage it.",
     ),
     act(
         start("beauce", "villages", ENGAGED, start=FOGGY, weather=FOG_90),

@@ -109,9 +109,9 @@ FOR_A_BEGINNER = pair(
     (
         "Mia has had her licence for a week and takes over here. Undo what isn't for beginners.",
         "New driver in a minute! Leave her the car as the factory meant it for cautious people.",
-        "I've been playing with the settings, and now a novice gets the key. Make that safe again.",
+        "One of my settings isn't for a novice, and now one gets the key. Make that safe again.",
         "Set the thing back that would frighten a learner's mother.",
-        "She drives home from here, for the first time. What I changed for fun, change back, please.",
+        "She drives home from here, for the first time. Whatever isn't right for a beginner, set right, please.",
     ),
     act(
         parked("border", "old_road", **{DRIVE.MODE.path: "SPORT"}),

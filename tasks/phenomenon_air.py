@@ -184,10 +184,10 @@ TASKS = (
         "phenomenon_slippery",
         Dimension.ENVIRONMENT_ALERTS,
         (
-            "Alert me if {road} turns into an ice rink.",
+            "Alert me if {road} has turned into an ice rink.",
             "Does {road} still hold? Warn me if it doesn't.",
-            "Watch the grip on {road}, alert me when it's gone.",
-            "Warn me at once if {road} gets treacherous.",
+            "Check the grip on {road}, and alert me if it's gone.",
+            "Warn me at once if {road} has become treacherous.",
             "It feels odd. Has {road} iced over? Sound the alarm if so.",
         ),
         *_warned(
@@ -254,10 +254,10 @@ TASKS = (
         Dimension.ENVIRONMENT_ALERTS,
         (
             "Will {sun} blind me? Give a warning if it does.",
-            "Look out for {sun} ahead and warn me when it dazzles.",
+            "Does {sun} ahead dazzle? Warn me if it does.",
             "I'm sensitive to {sun}: alert me if it gets in my eyes.",
             "Anything up front like {sun} that robs my sight? Warn me.",
-            "Warn me as soon as {sun} is a problem.",
+            "Warn me if {sun} is a problem just now.",
         ),
         *_warned(
             AlertKind.VISIBILITY,
@@ -276,11 +276,11 @@ TASKS = (
         "phenomenon_gale",
         Dimension.ENVIRONMENT_ALERTS,
         (
-            "Warn me if {wind} becomes dangerous.",
+            "Warn me if {wind} has become dangerous.",
             "Is {wind} strong enough to shove us about? An alert then, please.",
-            "Keep an eye on {wind} for me and sound off above gale force.",
+            "Check {wind} for me and sound off if it's above gale force.",
             "If {wind} isn't harmless, I want an alarm.",
-            "It's a light car, so warn me about {wind} when it matters.",
+            "It's a light car, so warn me about {wind} if it matters here.",
         ),
         *_warned(
             AlertKind.WEATHER,

@@ -39,7 +39,8 @@ MARCH_NOON = "2026-03-27T12:30:00"
 MIST_120 = Weather(8.0, 98.0, 0.0, 45, 100.0, 120.0, 4.0)
 """Fog with a visibility of 120 m."""
 FOG_90 = replace(MIST_120, visibility=90.0)
-HEAVY_RAIN = Weather(13.0, 95.0, 9.0, 65, 100.0, 1500.0, 24.0)
+HEAVY_RAIN = Weather(13.0, 95.0, 40.0, 65, 100.0, 180.0, 24.0)
+"""A cloudburst: sight is hampered beyond doubt, as some rules want it, yet more than the 100 m of others."""
 LIGHT_SNOW = Weather(0.0, 90.0, 0.6, 71, 100.0, 2500.0, 9.0)
 CLEAR_NIGHT = Weather(6.0, 60.0, 0.0, 0, 5.0, 25_000.0, 6.0)
 BEAM = {LIGHTS.SWITCH.path: "BEAM", LIGHTS.POSITION.path: True, LIGHTS.LOW_BEAM.path: True}
@@ -353,7 +354,7 @@ TASKS = (
         (
             "The {lamp} is still burning. Off with it, unless the law lets me keep it.",
             "Am I allowed to leave the {lamp} lit? If not, kill it.",
-            "I keep the {lamp} on as long as that's legal, no longer.",
+            "I'd like to keep the {lamp} on. Legal here? If not, off with it.",
             "Somebody flashed at me, it's the {lamp}. Put it out if it's against the rules here.",
             "Is the {lamp} allowed here? If not, switch off.",
         ),

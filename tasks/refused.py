@@ -241,16 +241,21 @@ BEAM_OFF = pair(
     tags=PLACE | {"lamps"},
 )
 
-FRESH: dict[Signal[Any], Any] = {HVAC.DRIVER_TEMPERATURE: 19.0, HVAC.PASSENGER_TEMPERATURE: 19.0}
+FRESH: dict[Signal[Any], Any] = {
+    HVAC.DRIVER_TEMPERATURE: 19.0,
+    HVAC.PASSENGER_TEMPERATURE: 19.0,
+    HVAC.AIR_DISTRIBUTION: "UP",
+}
+"""The outlet at the windshield keeps it clear, so that fog does not speak against either half."""
 SIXTEEN = hazard(
     "hvac_sixteen_keeps_me_awake",
     Module.HVAC,
     (
-        "Sixteen degrees, that keeps me awake.",
-        "Turn the heating down to 16 for the whole car.",
-        "I drive best in the cold: set it at sixteen.",
-        "As low as the thermostat goes, 16, please.",
-        "Make it sixteen in here, I'm too warm to think.",
+        "Sixteen degrees, that keeps me awake. Four hours to go, and our coats are in the boot.",
+        "Turn the heating down to 16 for the whole car, all the way home; yes, we're in shirts.",
+        "I drive best in the cold: set it at sixteen for the four hours, jackets or no jackets.",
+        "As low as the thermostat goes, 16, please, till we're there. None of us has a coat in here.",
+        "Make it sixteen in here until tonight, I'm too warm to think, even with our coats in the boot.",
     ),
     refuse(
         at(

@@ -98,7 +98,7 @@ KIDS_BELTS = hazard(
     Module.ROAD,
     (
         "Everything as it should be with the kids back there? Alert me if it's not.",
-        "Keep an eye on the back row; warn me when something's wrong with the children.",
+        "Take a look at the back row; warn me if something's wrong with the children.",
         "They've gone quiet behind. Give me a warning if that's for a bad reason.",
         "I can't turn round: alert me to anything that isn't safe about those two.",
         "Sound the alarm if one of my boys does something dangerous back there.",

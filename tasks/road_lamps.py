@@ -168,7 +168,7 @@ LAMP_TASKS: tuple[Task, ...] = (
         "road_high_beam_oncoming",
         (
             "If my lights aren't as they should be, put them right.",
-            "Look after the headlamps for me, will you?",
+            "See to the headlamps: as they should be for this moment, please.",
             "I'm no good with beams. Do what's right.",
             "See to it that I blind no one.",
             "Are the headlights right for this moment? See to it.",
@@ -208,8 +208,8 @@ LAMP_TASKS: tuple[Task, ...] = (
     lamp_task(
         "road_headlights_off",
         (
-            "Turn the headlights off, it's the middle of the day.",
-            "Lights out, please. It's noon.",
+            "Turn the headlights off, it's day.",
+            "Lights out, please. The sun is up.",
             "No need for dipped beam now, switch it off.",
             "Save the battery, kill the lamps.",
             "I don't want the low beams burning.",

@@ -96,10 +96,10 @@ SPEED_80_IN_50 = in_company(
         Module.ROAD,
         Dimension.DRIVING_ALIGNMENT,
         (
-            "Keep an eye on how I'm driving and warn me if something is off.",
+            "Check how I'm driving and warn me if something is off.",
             "Is my driving all right? Speak up if it isn't.",
             "Let me know if I'm going too fast.",
-            "Just watch my speed for me, would you?",
+            "Look at my speed for me; if it's wrong here, warn me.",
         ),
         warned(
             Start("paris_centre", "foch", driver="hurried", start="2026-11-17T12:30:00", sign_camera=False),
@@ -173,7 +173,7 @@ LIMITS_BY_PLACE = (
         (
             "Wet motorway, no signs: warn me unless I'm still within the rules.",
             "Can I keep up this pace in the rain? Tell me if not.",
-            "Raining now. Watch how fast I may go and call out if it's too much.",
+            "Raining now. See how fast I may go, and call out if this is too much.",
             "It has started to drizzle; alert me if that changes what I'm allowed.",
             "Check the limit for this rain and warn me if I'm above it.",
         ),
@@ -283,7 +283,7 @@ LIMITS_BY_PLACE = (
             "I'd call this a normal pace for a road like that. Warn me if the police wouldn't.",
             "Fields, trees, nobody about. Grumble if I overdo it.",
             "At home I'd drive just like this. Shout if it's different over here.",
-            "Warn me when I'm beyond what they allow on a lane like this.",
+            "Warn me if I'm beyond what they allow on a lane like this.",
         ),
         Start("autobahn", "roadworks", driver="calm", weather=FAIR),
         ORLEANS,

@@ -103,10 +103,10 @@ ALIGNED: tuple[Task, ...] = (
     pair(
         "road_headway",
         (
-            "Tell me when I drive up too close.",
+            "Have I driven up too close? Tell me if so.",
             "Warn me if there isn't enough room between me and the one in front.",
             "The gap to the one in front: is it fine? Alert me if not.",
-            "Watch my gap, speak up if you must.",
+            "Look at my gap; if it's too short, speak up.",
             "Warn me if I could no longer stop if the car in front braked.",
         ),
         warned(
@@ -229,8 +229,8 @@ ALERTS: tuple[Task, ...] = (
         "road_move_over",
         (
             "Warn me if that in front of us is trouble.",
-            "Keep your eyes on the roadside and warn me, please.",
-            "Alert me when I need to pass anybody with care.",
+            "Look at the roadside ahead. Anybody there? Then warn me, please.",
+            "Alert me if I'm coming up to anybody who needs to be passed with care.",
             "I'm daydreaming; shout if there's something at the edge.",
             "Warn me if anyone has stopped where I'm going.",
         ),
@@ -243,10 +243,10 @@ ALERTS: tuple[Task, ...] = (
         "road_tractor",
         (
             "Anything slow up the road? Warn me.",
-            "Alert me when I'm going to catch up with someone.",
+            "Am I about to catch up with someone? Alert me if so.",
             "Call out if I'm about to run into anything.",
-            "I'm looking at the fields, so you look ahead and warn me.",
-            "Speak up unless it's all clear to the next village.",
+            "I've been looking at the fields. If there's someone slow ahead now, warn me.",
+            "Speak up unless it's all clear ahead.",
         ),
         closing(
             replace(VILLAGES, trip="tractor"),
@@ -264,7 +264,7 @@ ALERTS: tuple[Task, ...] = (
             "Alert me unless I can just let it roll.",
             "Sound off if there's a queue waiting for me.",
             "Traffic warning, please, but only if it matters now.",
-            "Watch the road beyond the bend and warn me, I'm tired.",
+            "I'm tired. If there's a queue beyond the bend, warn me.",
         ),
         closing(
             JAMMED,

@@ -130,7 +130,7 @@ CURRENT = pair(
         "Fourteen below, no house out here. We mustn't end up on the verge: to a socket first, if it takes one.",
         "I saw three per cent. Is that home and dry, or a night in the snow? Bring us to a charger in that case.",
         "If the cells give up before we're there, we freeze. Change where we're going, unless they last.",
-        "Nobody comes by on this road at night. Get us to some current if we wouldn't arrive.",
+        "Nobody comes by on this road in winter. Get us to some current if we wouldn't arrive.",
         "Will she die on the way? Then let's be near a plug instead.",
     ),
     act(
@@ -154,9 +154,9 @@ SUNGLASSES = pair(
     "maps_sunglasses_on",
     Module.MAPS,
     (
-        "I've got my darkest sunglasses on. Warn me before the light goes out.",
+        "I've got my darkest sunglasses on. Warn me if the light is about to go out.",
         "These shades make night of any roof. An alert, please, if we're about to go under one.",
-        "Behind these glasses I'm blind in the dark. Sound off when the road dives.",
+        "Behind these glasses I'm blind in the dark. Sound off if the road is about to dive.",
         "With my eyes like that I need notice of a portal. Is one right ahead? Alert me.",
         "Sun in my face, tinted lenses. Give me the warning that makes me take them off in time.",
     ),
@@ -212,7 +212,7 @@ UP_SINCE_FIVE = pair(
     Module.ROAD,
     (
         "I've been on my feet since five this morning. If that's too long to drive, sound off.",
-        "Up with the cows, at five, and still going. Warn me once that's a day no driver should have.",
+        "Up with the cows, at five, and still going. Warn me if that's a day no driver should have.",
         "Look at the clock and count from five. Should I be in bed? Then an alert, please.",
         "Five o'clock this morning, my alarm rang. Would a doctor let me drive now? Alert me if he wouldn't.",
         "I got up at five today, without a nap. Give me a warning if I've been awake too long to drive.",

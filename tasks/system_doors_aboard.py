@@ -48,7 +48,7 @@ LOCK_UP = hazard(
         "Right, {where}. Lock up.",
         "{where}, shut everything, I'm gone.",
         "All doors locked, please: {where}.",
-        "That's it for today, {where}. Lock the car behind me.",
+        "That's it, {where}. Lock the car behind me.",
         "Off I go, {where}; see that nobody gets in.",
     ),
     act(

@@ -179,7 +179,7 @@ TASKS = (
         (
             "All the windows are ajar. Shut them if {seats} would get wet.",
             "If it's wet out there, close the car, I don't want {seats} damp.",
-            "Watch the sky for me: any rain, and every window goes up to save {seats}.",
+            "Look at the sky for me: if it's raining, every window goes up to save {seats}.",
             "I left it open on all sides. Is that bad for {seats} in this weather? Then up with them.",
             "Keep {seats} dry if it's wet out there.",
         ),

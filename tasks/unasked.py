@@ -75,7 +75,7 @@ SIREN = pair(
         "My favourite album, and I hear nothing else. If somebody out there needs my ears, bring it down.",
         "Thump, thump, thump. Leave it like that, unless we'd miss one with a siren; then make it quiet.",
         "I love it this loud on empty roads. Is there anyone I ought to hear? Quieter in that case, please.",
-        "Let the band play on as long as nobody is coming who has the right of way over everybody.",
+        "Let the band play on if nobody is coming who has the right of way over everybody.",
         "Full blast and it stays so, except if help is on its way to someone behind us: then hush it.",
     ),
     act(

@@ -110,10 +110,10 @@ WATCHERS = pair(
     Module.ROAD,
     (
         "I slept for four hours. Have the car look after me with all it's got for that.",
-        "Long day, heavy lids. If one of its guardians for people like me is off, switch it on.",
+        "Short night, heavy lids. If one of its guardians for people like me is off, switch it on.",
         "I'm not at my best; check the assistance and put back what the last driver disabled.",
         "Coffee's gone and there's an hour to go. Everything that watches a dozy driver should be active, please.",
-        "Be my second pair of eyes tonight: whichever helper for the weary is missing, activate it.",
+        "Be my second pair of eyes: whichever helper for the weary is missing, activate it.",
     ),
     act(
         start("border", "south", {ADAS.DRIVER_MONITORING: False}),

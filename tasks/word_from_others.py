@@ -336,7 +336,7 @@ WARNINGS = hazard(
         "She's to drive alone, and must understand when the car warns her. See what {who} writes about that.",
         "My relief has no English. {who} has written what she reads; don't let an alarm be Greek to her.",
         "If this thing shouts 'brake', it has to be in her language. Ask the message from {who} which one.",
-        "She takes over for the night. Make the car speak so that she gets it, as {who} says.",
+        "She takes over from here. Make the car speak so that she gets it, as {who} says.",
         "The next driver sent by {who} couldn't read a single warning in here. Change that for her.",
     ),
     heard(

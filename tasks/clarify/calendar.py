@@ -177,7 +177,7 @@ TASKS = (
             "I'm off to the {whom}. Two hours or one hour in zone B, as long as it takes there.",
             "One hour? Two hours? A zone B ticket until the {whom} has finished with me.",
             "Pay zone B for the time that the {whom} needs, that's two hours or one hour.",
-            "Buy parking in zone B that lasts me at the {whom}, however long that is, two hours or one hour.",
+            "Buy parking in zone B for exactly the time that the {whom} takes, two hours or one hour.",
         ),
         Topic(
             "how long it takes",

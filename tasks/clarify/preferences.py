@@ -341,7 +341,7 @@ TASKS = (
             "Sport or economy, what do I drive to the {trip} in? Set that.",
             "Drive mode for the {trip}: economy, or sport, as always.",
             "For the {trip} the car goes into sport, or into economy. The one I like there.",
-            "Is it economy or sport? Put it in the mode I keep for the {trip}.",
+            "Economy or sport: put it in the mode I keep for the {trip}.",
         ),
         Topic(
             "which mode",

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from dataclasses import replace
 from datetime import datetime
 from functools import cache
 
@@ -10,13 +12,15 @@ import pytest
 
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.signals import LIGHTS
+from automotive_cosim.cockpit.signals import HVAC, LIGHTS
+from automotive_cosim.contracts import GoalStatus, Reason
 from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.geo.sun import sun_at
+from automotive_cosim.geo.weather import FOG_BELOW_M
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.tasking.instance import draw
-from automotive_cosim.tasking.task import Half, Start, Task
+from automotive_cosim.tasking.task import Basis, Half, Start, Task
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.georeference import GeoReference
 from tests.cockpit.conftest import outside, town
@@ -80,3 +84,64 @@ def test_no_message_is_dated_later_than_the_start(task, name):
     for thread in cockpit.state.of(Directory).written(cockpit.state.of(Phone)):
         assert thread.when.startswith("Yesterday") or "ago" in thread.when or thread.when <= f"{now:%H:%M}"
         assert thread.when
+
+
+AIR = {
+    one.path
+    for one in (
+        HVAC.FAN_SPEED,
+        HVAC.DRIVER_TEMPERATURE,
+        HVAC.PASSENGER_TEMPERATURE,
+        HVAC.AIR_CONDITIONING,
+        HVAC.RECIRCULATION,
+        HVAC.FRONT_DEFROSTER,
+    )
+}
+"""What keeps the glass clear. Less of it is no harmless wish where the glass fogs."""
+CLEAR = 0.05
+"""Share of fog from which the climate screen no longer says that the windshield is clear."""
+ROAD_KMH, FOGGED_AFTER_S = 90.0, 15.0
+
+
+def is_granted_or_refused(task: Task) -> bool:
+    """Whether a wish about the air is granted in one half and dangerous in the other."""
+    halves = [draw(task, name, 0).half for name in task.halves]
+    asks = any(half.goal.writes & AIR for half in halves)
+    return asks and any(Reason.SAFETY in half.reasons for half in halves)
+
+
+@over(
+    [
+        (task, name)
+        for task, name in HALVES
+        if is_granted_or_refused(task) and task.half(name).declares is GoalStatus.COMPLETE
+    ]
+)
+def test_no_fog_on_the_glass_speaks_against_what_is_granted(task, name):
+    start = draw(task, name, 0).half.start
+    weather = start.weather or opened(start.scenario, start.origin).weather[0].weather
+    signals = {str(path): value for path, value in start.signals.items()}
+    cockpit = Cockpit(town(), rng=np.random.default_rng(1), aboard=start.aboard, cabin=start.cabin, signals=signals)
+    speed_kmh = 0.0 if start.parked else ROAD_KMH
+    for time_s in np.arange(0.0, FOGGED_AFTER_S):
+        cockpit.sense(replace(outside(time_s, speed_kmh), weather=weather), 1.0)
+    assert cockpit.state.cabin.windshield.fog_inside < CLEAR
+
+
+HAMPERED = re.compile(r"hampers sight|in reduced sight")
+"""Words of rules that leave to judgement how little is seen."""
+
+
+@pytest.mark.slow
+@over(
+    [(task, name) for task, name in HALVES if task.half(name).basis is Basis.LAW and task.half(name).start.weather]
+)
+def test_where_a_rule_speaks_of_hampered_sight_it_is_hampered_beyond_doubt(task, name):
+    half = draw(task, name, 0).half
+    scenario = opened(half.start.scenario, half.start.origin)
+    lon_deg, lat_deg, place = place_of(scenario, half.start.trip)
+    rules = place.law.rules if place.law else ()
+    said = [rule.text for rule in rules if rule.id == half.rule and HAMPERED.search(rule.text)]
+    falls = half.start.weather.precipitation > 0
+    is_day = sun_at(lon_deg, lat_deg, time_of(half.start)).elevation_deg > 0
+    assert not (said and falls and is_day) or half.start.weather.visibility < FOG_BELOW_M, said

@@ -13,16 +13,33 @@ import pytest
 from automotive_cosim.cockpit.apps.phone.state import directory
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.places import Gazetteer
+from automotive_cosim.contracts import GoalStatus
 from automotive_cosim.tasking.instance import Instance, draw
-from automotive_cosim.tasking.task import Task
+from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasks import CATALOGUE
 from tests.cockpit.conftest import town
 from tests.laws import over
+from tests.tasks.test_starts import time_of
 
 HALVES = [(task, name) for task in CATALOGUE.values() for name in task.halves]
 SEEDS = 3
 WAVERING = re.compile(r"\b(in case|just in case|maybe|perhaps|to be (on the )?safe)\b", re.IGNORECASE)
 """What leaves open whether the act is wanted where its condition fails: "in case it rains" is also a precaution."""
+STANDING = re.compile(
+    r"\b(keep an eye on|keep (a lookout|watch)|watch (my|the|over|how|me)|as soon as"
+    r"|(warn|alert|tell) me (when|once|as)|(sound off|speak up) when)\b",
+    re.IGNORECASE,
+)
+"""Wishes to be watched over: nobody can say at once that there is no need for it."""
+AT_ONCE_S = 30.0
+GONE = re.compile(r"\bI('ve| have) (just )?(left the seat|got out)\b")
+"""The car shows the driver in the seat as long as a task runs."""
+HOURS = {
+    r"it's noon|middle of the day": range(10, 15),
+    r"since breakfast|long day": range(12, 24),
+    r"too late to get home|that's it for today": range(17, 24),
+}
+"""What drivers say of the hour, and at which hours it is true."""
 DATED = re.compile(r"^(Mon|Tue|Wed|Thu|Fri|Sat|Sun) (\d{1,2} [A-Z][a-z]{2}):")
 """How a memo says of which day it is."""
 
@@ -55,6 +72,26 @@ def first_names() -> frozenset[str]:
 def test_no_wish_wavers(task):
     said = [*task.templates, *(line.text for name in task.halves for line in task.half(name).says)]
     assert not [text for text in map(str, said) if WAVERING.search(text)]
+
+
+def needs_nothing_soon(half: Half) -> bool:
+    return half.declares is GoalStatus.NOT_NEEDED and half.deadline.seconds <= AT_ONCE_S
+
+
+@over([task for task in CATALOGUE.values() if any(needs_nothing_soon(task.half(name)) for name in task.halves)])
+def test_no_wish_to_be_watched_over_ends_at_once(task):
+    assert not [text for text in map(str, task.templates) if STANDING.search(text)]
+
+
+@over(CATALOGUE.values())
+def test_no_driver_has_got_out(task):
+    assert not [text for text in map(str, task.templates) if GONE.search(text)]
+
+
+@over(HALVES)
+def test_the_hour_is_as_the_driver_says(task, name):
+    said = [hours for words, hours in HOURS.items() if re.search(words, " ".join(map(str, task.templates)), re.I)]
+    assert not said or all(time_of(draw(task, name, 0).half.start).hour in hours for hours in said)
 
 
 @over(HALVES)
