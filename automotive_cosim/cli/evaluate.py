@@ -141,8 +141,8 @@ def evaluate(
     size_mb = megabytes(folder)
     if as_json:
         counts = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
-        counts |= {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}
-        print_json(counts | {"answer": answer(found), "agents": agents_as_json(found)})
+        made = {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}
+        print_json({**counts, **made, "answer": answer(found), "agents": agents_as_json(found)})
     else:
         console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")
