@@ -66,7 +66,8 @@ class UnknownNameError(UserError):
         choices = sorted(known)
         came = name if len(name) <= SHOWN else name[:SHOWN] + "…"
         close = (
-            get_close_matches(came, choices, n=1, cutoff=SURE)
+            [each for each in choices if each.casefold() == came.casefold()][:CLOSE]
+            or get_close_matches(came, choices, n=1, cutoff=SURE)
             or [each for each in choices if len(came) > 2 and came in each][:CLOSE]
             or (get_close_matches(came, choices, n=1, cutoff=0.5) if len(choices) > FEW else [])
         )

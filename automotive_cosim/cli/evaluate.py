@@ -188,7 +188,8 @@ def _short(found: Results, at_least: float) -> list[str]:
     for each, rows in grouped(found.drives).items():
         points = whole(rows).value
         if points < 100 * at_least:
-            told.append(f"{each.label}: score {points:.0f}, less than {at_least:g} of 100 points")
+            score = f"{points:.0f}".replace("-", "−")
+            told.append(f"{each.label}: score {score}, less than {100 * at_least:g} of 100 points")
     if found.drives_not_run:
         told.append(f"{counted(len(found.drives_not_run), 'drive')} not run")
     return told

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import sys
+import threading
+import time
+from collections.abc import Callable
 
 from rich.console import RenderableType
 from rich.live import Live as Display
@@ -14,7 +17,7 @@ from rich.text import Text
 from automotive_cosim.cli.console import Console
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
-from automotive_cosim.contracts.plain import counted, megabytes_in_words
+from automotive_cosim.contracts.plain import clock, counted, megabytes_in_words
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.geo.breaches import limit_at
@@ -35,6 +38,33 @@ from automotive_cosim.traffic.options import read_configuration
 
 PLAIN_EVERY_S = 10.0
 """Without a terminal, the drive is reported this often, in simulated seconds."""
+
+
+WAITING_S = 30.0
+"""Without a terminal, an agent that takes longer for an action is waited for aloud, this often: a model may be slow."""
+
+
+class Waiting:
+    """Says every half a minute how long something has been waited for."""
+
+    def __init__(self, tell: Callable[[str], None]) -> None:
+        self._tell = tell
+        self._has_come = threading.Event()
+
+    def start(self, of: str) -> None:
+        """Waits for something from now on."""
+        self.stop()
+        self._has_come = threading.Event()
+        threading.Thread(target=self._wait, args=(of, self._has_come), daemon=True).start()
+
+    def stop(self) -> None:
+        """It has come, or nobody waits any more."""
+        self._has_come.set()
+
+    def _wait(self, of: str, has_come: threading.Event) -> None:
+        begun_s = time.monotonic()
+        while not has_come.wait(WAITING_S):
+            self._tell(f"         waiting for {of}, {clock(time.monotonic() - begun_s)} so far")
 
 
 class Notes(EpisodeObserver):
@@ -73,6 +103,7 @@ class Live(EpisodeObserver):
         self._said_s: float | None = None
         self._begins: Moment | None = None
         """When the next action begins."""
+        self._waiting = Waiting(lambda told: self._console.print(told, soft_wrap=True))
         self._held: list[str] = []
         """Lines about the drive since then: the action is known when it ends, and its line comes first."""
 
@@ -122,10 +153,12 @@ class Live(EpisodeObserver):
             moment = shot.step.moment
             self._console.print(f"{self._clock(moment)}  hand-over: {_drive(moment)}", soft_wrap=True)
             self._console.print(f"         the driver says: “{self._goal}”", soft_wrap=True)
+            self._waiting.start("the agent's action")
 
     def stepped(self, shot: Shot) -> None:
         """The last action and the agent's reason."""
         step = shot.step
+        self._waiting.stop()
         self._action = f"{step.number}  {action_in_words(step.action, shot.seen)}"
         self._thought = shot.thought
         self._goal = " ".join([self._goal, *step.said])
@@ -141,10 +174,13 @@ class Live(EpisodeObserver):
             for text in step.said:
                 self._console.print(f"         the driver says: “{text}”", soft_wrap=True)
             self._release()
+            if not declares:
+                self._waiting.start("the agent's action")
         self._begins = None if declares else step.moment
 
     def finished(self, result: EpisodeResult) -> None:
         """The verdict and the timeline."""
+        self._waiting.stop()
         if self._display is not None:
             self._display.stop()
         self._release()

@@ -77,6 +77,15 @@ def search(
             show_default=False,
         ),
     ] = None,
+    at_most: Annotated[
+        int | None,
+        typer.Option(
+            min=0,
+            help="Exit with code 1 if more samples fail than this, or if nothing was due in any.",
+            metavar="N",
+            show_default=False,
+        ),
+    ] = None,
     dry_run: Annotated[
         bool, typer.Option("--dry-run", help="Say how long it will take, and what is missing, and exit.")
     ] = False,
@@ -201,6 +210,20 @@ def search(
         _tell_found(console, found, agent, page)
     if found.interrupted:
         raise KeyboardInterrupt
+    if at_most is not None and (many := too_many(found, at_most)):
+        typer.echo(many, err=True)
+        raise typer.Exit(1)
+
+
+def too_many(found: Hunt, at_most: int) -> str:
+    """Why a search is not passed if so many samples may fail; empty if it is."""
+    from automotive_cosim.safety.findings import judged
+
+    samples = judged(found.samples)
+    failed = sum(each.outcome.failed for each in samples)
+    if not samples:
+        return "nothing was due in any sample, so that nothing is known"
+    return f"{failed} of {counted(len(samples), 'sample')} failed, more than {at_most}" if failed > at_most else ""
 
 
 def _tell_found(console: Output, found: Hunt, agent: str, page: Path) -> None:

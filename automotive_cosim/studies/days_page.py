@@ -98,10 +98,9 @@ def answer(study: DaysStudy) -> str:
             parts.append(f"{far if abs(share) >= LEAST_SHARE else 'as long as'} {what}")
     beside = f", {' and '.join(filter(None, [', '.join(parts[:-1]), parts[-1]]))}" if parts else ""
     over = counted(found[best].seeds, "seed")
-    return (
-        f"A trip is shortest with {best:.0%} of the drivers advised: {least_s:.0f} s{beside}; "
-        f"{_settled(study, best)}, over {over}."
-    )
+    advised = f"with {best:.0%} of the drivers advised"
+    lead = f"A trip is shortest {advised}: " if len(found) > 1 else f"A trip takes, {advised}, "
+    return f"{lead}{least_s:.0f} s{beside}; {_settled(study, best)}, over {over}."
 
 
 def beaten_by(study: DaysStudy) -> list[Drivers]:

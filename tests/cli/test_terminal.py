@@ -12,6 +12,7 @@ import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 
 import pytest
 import typer
@@ -24,7 +25,7 @@ from rich.text import Text
 import automotive_cosim.cli
 from automotive_cosim import scenarios
 from automotive_cosim.cli.console import Console
-from automotive_cosim.cli.live import Live
+from automotive_cosim.cli.live import Live, Waiting
 from automotive_cosim.cli.main import CLOSED_PIPE
 from automotive_cosim.cli.terminal import Plain, escaped
 from automotive_cosim.formats.plain import plain
@@ -206,3 +207,20 @@ def test_what_loads_is_told_before_anything_is_imported(tmp_path: Path) -> None:
 
 def test_every_command_that_loads_long_is_one() -> None:
     assert set(LOADING) <= {" ".join(path) for path in every_command()}
+
+
+def test_who_waits_is_told_how_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("automotive_cosim.cli.live.WAITING_S", 0.02)
+    told: list[str] = []
+    twice = Event()
+
+    def tell(line: str) -> None:
+        told.append(line.strip())
+        if len(told) == 2:
+            twice.set()
+
+    waiting = Waiting(tell)
+    waiting.start("the agent's action")
+    assert twice.wait(10.0)
+    waiting.stop()
+    assert told[0] == "waiting for the agent's action, 0:00 so far"

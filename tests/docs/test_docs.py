@@ -114,7 +114,7 @@ DRY = ("--dry-run",)
 HELP = ("--help",)
 
 TREATED: list[tuple[str, tuple[str, ...], str]] = [
-    (r"eval .*(failures/|suite.toml)", HELP, "needs a search; tests/safety/test_trying.py has one"),
+    (r"eval .*failures/", HELP, "needs a search; tests/safety/test_trying.py has one"),
     (
         r"(search|measures)",
         HELP,

@@ -269,7 +269,7 @@ def test_a_share_of_the_score_is_asked_of_drives(tmp_path):
 
     done = read_results(scored(tmp_path / "a", [100, 100, 100, 100, 100, -20]))
     assert _short(done, 0.8) == []
-    assert "score 80, less than 0.9 of 100 points" in _short(done, 0.9)[0]
+    assert "score 80, less than 90 of 100 points" in _short(done, 0.9)[0]
     stopped = read_results(scored(tmp_path / "b", [100, 100, 100, 100, 100, None]))
     assert _short(stopped, 0.8) == ["1 drive not run"]
 

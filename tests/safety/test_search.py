@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 from numpy.random import default_rng
 
+from automotive_cosim.cli.search import too_many
 from automotive_cosim.drives.judge import EventOutcome, JudgedAct, JudgedEvent, Worth
 from automotive_cosim.drives.score import together
 from automotive_cosim.errors import BudgetSpentError, UserError
@@ -101,8 +102,17 @@ def test_a_failure_is_repeated_and_made_small() -> None:
     assert found.run == 64
 
 
+def test_a_search_passes_with_as_many_failures_as_are_allowed() -> None:
+    found = searched()
+    failed = as_json(found)["failed"]
+    assert failed > 0
+    assert too_many(found, failed) == ""
+    assert too_many(found, failed - 1) == f"{failed} of 64 samples failed, more than {failed - 1}"
+
+
 def test_nothing_is_found_where_nothing_fails() -> None:
     found = searched(of=lambda point: 0.5)
+    assert too_many(found, 0) == ""
     assert not found.minimal
     bound = unseen(found)
     assert bound.failed == 0
@@ -170,6 +180,7 @@ def test_where_nothing_is_ever_due_nothing_is_known() -> None:
     assert min(told) > 1, "further from failing than any pass"
     assert (as_json(found)["samples"], unseen(found).upper) == (0, None)
     assert sentence(found, "me") == "Nothing was due in all 9 samples, so that nothing is known about me."
+    assert too_many(found, 9) == "nothing was due in any sample, so that nothing is known"
 
 
 def test_an_interrupted_search_keeps_what_it_has() -> None:

@@ -116,6 +116,13 @@ def test_the_answer_stands_first_and_is_paired_by_seed() -> None:
     unsure = study(*(3600.0 if seed % 2 else -1800.0 for seed in range(10)))
     assert "cannot be told from 0" in answer(unsure)
     saved = study(*[-1800.0] * 10)
+    fewer = replace(saved.rows[0].outcomes[1], kept_in=2)
+    kept = replace(
+        saved, rows=(replace(saved.rows[0], outcomes=(saved.rows[0].outcomes[0], fewer)), *saved.rows[1:])
+    )
+    assert "leaves out 0.5 (0.5 to 0.5) vehicle-hours" in answer(kept), (
+        "a road that is closed to some saves nothing"
+    )
     assert "saves 0.5 (0.5 to 0.5) vehicle-hours an hour: 0.5 fewer of delay (−50%)" in answer(saved)
     assert [str(row[0]) for row in whole(found).rows] == ["none", "c1c2 closed"]
 
@@ -339,5 +346,7 @@ def test_a_study_that_was_stopped_says_how_much_is_missing() -> None:
 def test_a_report_says_who_did_not_get_to_a_closed_road() -> None:
     (row,) = study(60.0).rows
     row = replace(row, outcomes=(row.outcomes[0], replace(row.outcomes[1], cut_short=1, kept_in=2)))
-    told = warnings(CongestionStudy(Path(), {}, PLAN, (row,)))
+    closed = CongestionStudy(Path(), {}, PLAN, (row,))
+    assert "2 vehicles that would have set out on it did not drive, whose way is in no figure." in answer(closed)
+    told = warnings(closed)
     assert any("1 trip ended before the closed road" in each and "2 vehicles" in each for each in told)

@@ -74,12 +74,11 @@ def answer(study: CongestionStudy) -> str:
     assert total is not None, "so there are seeds"
     assert added is not None
     of = f", of {len(plan.measures)} measures the one that changes most," if len(plan.measures) > 1 else ""
-    lost_h = round(added.value, 1)
-    driven_h = round(round(total.value, 1) - lost_h, 1)
+    lost_h, driven_h = added.value, total.value - added.value
     driven = (
         f" and {abs(driven_h):.1f} {'more' if driven_h > 0 else 'fewer'} driven, on other routes or by getting "
         f"{'further' if driven_h > 0 else 'less far'} in the time"
-        if driven_h
+        if f"{driven_h:.1f}" not in ("0.0", "-0.0")
         else ""
     )
     share = f" ({told(added.value / before_h, '+.0%')})" if before_h else ""
@@ -88,27 +87,35 @@ def answer(study: CongestionStudy) -> str:
         if f"{found.travel_time:.2f}" != f"{after.travel_time:.2f}"
         else f"the travel time index stays at {after.travel_time:.2f}"
     )
-    cut = sum(outcome.cut_short for _, outcome in study.outcomes(best))
-    lacks = (
-        f"; {counted(cut, 'trip')} ended before the closed road, and the rest of their way is in no figure"
-        if cut
-        else ""
-    )
+    away = _kept_away(study, best)
+    lacks = f"; {away}, whose way is in no figure" if away else ""
     return (
-        f"“{name_of(best)}”{of} {_told(total)}: {abs(lost_h):.1f} {'more' if lost_h >= 0 else 'fewer'} of "
-        f"delay{share}{driven}; {index}, {over}{lacks}."
+        f"“{name_of(best)}”{of} {_told(total, 'saves' if not away else 'leaves out')}: {abs(lost_h):.1f} "
+        f"{'more' if lost_h >= 0 else 'fewer'} of delay{share}{driven}; {index}, {over}{lacks}."
     )
 
 
-def _told(total: SeedMean) -> str:
-    """What a measure costs, if that can be told."""
+def _kept_away(study: CongestionStudy, measure: str) -> str:
+    """Who could not drive with a measure, in words; empty if everybody could."""
+    outcomes = [outcome for _, outcome in study.outcomes(measure)]
+    cut, kept = sum(each.cut_short for each in outcomes), sum(each.kept_in for each in outcomes)
+    if not cut and not kept:
+        return ""
+    return (
+        f"{counted(cut, 'trip')} ended before the closed road, where no way led round it, and "
+        f"{counted(kept, 'vehicle')} that would have set out on it did not drive"
+    )
+
+
+def _told(total: SeedMean, saves: str) -> str:
+    """What a measure costs, if that can be told, or what it saves."""
     value, bounds = total.value, total.interval
     if bounds and bounds.low < 0 < bounds.high:
         low, high = told(bounds.low, "+.1f"), told(bounds.high, "+.1f")
         return f"changes {told(value, '+.1f')} vehicle-hours an hour, which cannot be told from 0 ({low} to {high})"
     low_h, high_h = sorted((abs(bounds.low), abs(bounds.high))) if bounds else (0.0, 0.0)
     sure = f" ({low_h:.1f} to {high_h:.1f})" if bounds else ""
-    return f"{'costs' if value >= 0 else 'saves'} {abs(value):.1f}{sure} vehicle-hours an hour"
+    return f"{'costs' if value >= 0 else saves} {abs(value):.1f}{sure} vehicle-hours an hour"
 
 
 def warnings(study: CongestionStudy) -> list[str]:
@@ -152,13 +159,8 @@ def _found(study: CongestionStudy) -> Iterator[str]:
         teleported = [outcome.states[-1].teleported for _, outcome in study.outcomes(measure)]
         if sum(teleported):
             yield f"{where}, SUMO moved {counted(sum(teleported), 'vehicle')} on that stood too long."
-        cut = sum(outcome.cut_short for _, outcome in study.outcomes(measure))
-        kept = sum(outcome.kept_in for _, outcome in study.outcomes(measure))
-        if cut or kept:
-            yield (
-                f"{where}, {counted(cut, 'trip')} ended before the closed road, where no way led round it, and "
-                f"{counted(kept, 'vehicle')} that would have set out on it did not drive."
-            )
+        if away := _kept_away(study, measure):
+            yield f"{where}, {away}."
         if measure and isinstance(measure_in(measure, "--measure"), Jam):
             yield f"“{name_of(measure)}” brings cars of its own, whose delay is counted."
         pairs = [(dict(study.outcomes(""))[seed], outcome) for seed, outcome in study.outcomes(measure)]
