@@ -41,7 +41,7 @@ PLAIN_EVERY_S = 10.0
 
 
 WAITING_S = 30.0
-"""Without a terminal, an agent that takes longer for an action is waited for aloud, this often: a model may be slow."""
+"""Without a terminal, this often it is said that an action takes longer: a model may be slow."""
 
 
 class Waiting:
