@@ -45,7 +45,7 @@ TASKS = (
         Module.MAPS,
         (
             "My stomach is growling.",
-            "None of us has had breakfast.",
+            "We left without any breakfast.",
             "The whole family is starving.",
             "I'd give anything for a decent meal.",
             "If I don't get something to eat soon I'll turn grumpy.",
