@@ -52,6 +52,7 @@ def test_every_package_is_found(given):
 def test_hints_name_an_extra_as_one_installs_it_from_here(monkeypatch, tmp_path):
     """No index has the package for those who have a checkout; a wheel has no constraints."""
     extra = "report"
+    monkeypatch.setattr(errors, "CHECKOUT", ROOT)
     assert errors.install_hint(extra) == "pip install -c constraints.txt -e '.[report]'"
     assert errors.install_hint() in (ROOT / "README.md").read_text(encoding="utf-8").replace("python -m ", "")
     monkeypatch.setattr(errors, "CHECKOUT", tmp_path)

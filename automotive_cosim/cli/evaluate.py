@@ -142,7 +142,8 @@ def evaluate(
     if as_json:
         counts = {"planned": end.planned, "judged": end.judged, "successes": end.successes, "errors": end.errors}
         made = {"ran": end.ran, "megabytes": round(size_mb, 1), "out": str(folder)}
-        print_json({**counts, **made, "answer": answer(found), "agents": agents_as_json(found)})
+        broken = {"agent_failures": list(_failures((*found.rows, *found.drives)))}
+        print_json({**counts, **made, "answer": answer(found), "agents": agents_as_json(found), **broken})
     else:
         console.print(answer(found), soft_wrap=True, style="bold")
         console.print(f"{end.successes:,} succeeded; {found.coverage}")

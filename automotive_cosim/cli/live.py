@@ -44,7 +44,7 @@ WAITING_S = 30.0
 """Without a terminal, this often it is said that an action takes longer: a model may be slow."""
 
 
-class Waiting:
+class LongWait:
     """Says every half a minute how long something has been waited for."""
 
     def __init__(self, tell: Callable[[str], None]) -> None:
@@ -103,7 +103,7 @@ class Live(EpisodeObserver):
         self._said_s: float | None = None
         self._begins: Moment | None = None
         """When the next action begins."""
-        self._waiting = Waiting(lambda told: self._console.print(told, soft_wrap=True))
+        self._waiting = LongWait(lambda told: self._console.print(told, soft_wrap=True))
         self._held: list[str] = []
         """Lines about the drive since then: the action is known when it ends, and its line comes first."""
 

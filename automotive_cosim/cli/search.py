@@ -100,6 +100,7 @@ def search(
     """
     from automotive_cosim.cli.console import Console
     from automotive_cosim.formats.files import write_whole
+    from automotive_cosim.report.stats import distributions
     from automotive_cosim.run.plan import make_plan
     from automotive_cosim.run.settings import Budget
     from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
@@ -121,6 +122,7 @@ def search(
         raise UserError(
             f"{model} costs nothing, so that {budget} never ends; give points or hours, as in 64,{budget}"
         )
+    distributions()
     space = read_space(file)
     plan = make_plan({"agents": [agent], "models": [model], "trials": [_plain(trial_of(space.nominal))]})
     plan.check()
@@ -189,7 +191,11 @@ def search(
                 tell=tell,
             )
         except UserError as error:
-            raise UserError(f"{error}; its trial is in {folder}, which `report` reads") from error
+            told = f"{error}; its trial is in {folder}, which `report` reads"
+            if at_most is None:
+                raise UserError(told) from error
+            typer.echo(told, err=True)
+            raise typer.Exit(1) from error
         found.interrupted |= bool(run.stop)
         if found.minimal and agent not in CAREFUL and not found.interrupted:
             careful = make_plan({"agents": [CAREFUL["task" in space.nominal]], "trials": plan.as_json()["trials"]})

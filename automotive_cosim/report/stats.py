@@ -11,8 +11,11 @@ from collections.abc import Hashable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import comb, sqrt
 from statistics import NormalDist
+from typing import Any
 
 import numpy as np
+
+from automotive_cosim.errors import SetupError, install_hint
 
 CONFIDENCE = 0.95
 LEAST_CLUSTERS = 5
@@ -95,6 +98,19 @@ def wilson(successes: float, count: float, confidence: float = CONFIDENCE) -> In
     return Interval(max(0.0, middle - reach), min(1.0, middle + reach))
 
 
+def distributions() -> Any:
+    """``scipy.stats``, for the bounds of rates.
+
+    Raises:
+        SetupError: scipy is not installed.
+    """
+    try:
+        from scipy import stats
+    except ImportError as error:
+        raise SetupError(f"bounds of rates need scipy: {install_hint('report')}") from error
+    return stats
+
+
 def upper_bound(count: int, total: int, confidence: float = CONFIDENCE) -> float:
     """The one-sided upper bound of a rate (Clopper and Pearson 1934, Biometrika 26); 3 / total if none was seen.
 
@@ -103,9 +119,7 @@ def upper_bound(count: int, total: int, confidence: float = CONFIDENCE) -> float
     """
     if total <= 0 or not 0 <= count <= total:
         raise ValueError(f"{count} of {total}")
-    from scipy.stats import beta
-
-    return 1.0 if count == total else float(beta.ppf(confidence, count + 1, total - count))
+    return 1.0 if count == total else float(distributions().beta.ppf(confidence, count + 1, total - count))
 
 
 def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE) -> float:
@@ -117,9 +131,7 @@ def rate_upper_bound(count: int, exposure: float, confidence: float = CONFIDENCE
     """
     if exposure <= 0 or count < 0:
         raise ValueError(f"{count} in {exposure}")
-    from scipy.stats import chi2
-
-    return float(chi2.ppf(confidence, 2 * count + 2)) / 2 / exposure
+    return float(distributions().chi2.ppf(confidence, 2 * count + 2)) / 2 / exposure
 
 
 def rate(

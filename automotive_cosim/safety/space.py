@@ -11,6 +11,7 @@ from typing import Annotated, Any
 from annotated_types import Ge, Le
 
 from automotive_cosim.contracts.plain import rounded
+from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -249,6 +250,12 @@ def read_space(path: Path) -> Space:
     if misplaced:
         of = "drives" if "task" in names else "tasks"
         raise UserError(f"{path}: {', '.join(misplaced)} can be varied for {of} alone; remove it")
+    for kind in table.failure.events:
+        if kind not in KINDS:
+            raise UserError(
+                f"{document.refused(('failure', 'events'), 'has an unknown kind')}: "
+                f"{UnknownNameError('kind of event', kind, KINDS, 'automotive-cosim show events')}"
+            )
     return Space(made, table.failure, table.about, table.occurs, table.sources, table.note)
 
 

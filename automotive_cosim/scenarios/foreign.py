@@ -48,6 +48,9 @@ RANDOM_PER_KM_H = 15.0
 FAIR = Weather(20.0, 55.0, 0.0, 1, 25.0, 20_000.0, 10.0)
 """The weather if the place, and so the climate, is unknown."""
 
+BALLISTIC = "step-method.ballistic"
+"""Without it, SUMO 1.28 changes from Euler's integration to the ballistic one if an action step length is given."""
+
 TRAVELLERS = frozenset(["vehicle", "trip", "flow"])
 """Elements of an additional file that are traffic."""
 
@@ -134,6 +137,8 @@ def _overridden(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
         for name, value in run.items()
         if configuration.options.get(name) != value
     ]
+    if BALLISTIC not in configuration.options and "default.action-step-length" not in configuration.options:
+        settings.append("the ballistic integration that SUMO chooses with an action step length")
     yield f"{configuration.path.name} runs with {', '.join(settings)}, and with the run's seed"
     if ignored := [name for name in configuration.ignored if name not in QUIET]:
         yield f"{configuration.path.name} runs without its {', '.join(ignored)}"

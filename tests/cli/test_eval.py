@@ -160,6 +160,7 @@ def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_backgrou
 @pytest.mark.sumo
 def test_a_stored_episode_is_run_again_and_compared_step_by_step(cli, tmp_path):
     ran = json.loads(cli("eval", "--agents", "always-alert", *GRID, "--out", "e", "--json").out)
+    assert ran["agent_failures"] == []
     assert ran["judged"] == 1
     (trace,) = (tmp_path / "e" / "traces").glob("*.jsonl.gz")
     name = trace.name.removesuffix(".jsonl.gz")

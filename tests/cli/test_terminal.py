@@ -25,7 +25,7 @@ from rich.text import Text
 import automotive_cosim.cli
 from automotive_cosim import scenarios
 from automotive_cosim.cli.console import Console
-from automotive_cosim.cli.live import Live, Waiting
+from automotive_cosim.cli.live import Live, LongWait
 from automotive_cosim.cli.main import CLOSED_PIPE
 from automotive_cosim.cli.terminal import Plain, escaped
 from automotive_cosim.formats.plain import plain
@@ -219,7 +219,7 @@ def test_who_waits_is_told_how_long(monkeypatch: pytest.MonkeyPatch) -> None:
         if len(told) == 2:
             twice.set()
 
-    waiting = Waiting(tell)
+    waiting = LongWait(tell)
     waiting.start("the agent's action")
     assert twice.wait(10.0)
     waiting.stop()

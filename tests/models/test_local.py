@@ -14,7 +14,7 @@ from automotive_cosim.agents import AgentSettings, make_agent, model_of
 from automotive_cosim.agents.guest import Guest
 from automotive_cosim.contracts import BoundingBox, Element, Feedback, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.episode.conditions import Conditions
-from automotive_cosim.errors import ModelError, SetupError, UserError
+from automotive_cosim.errors import ModelError, SetupError, UserError, install_hint
 from automotive_cosim.models import ChatMessage, Local, local, make_model
 from automotive_cosim.run.fit import misfit
 
@@ -132,7 +132,7 @@ def test_what_is_missing_is_named_with_the_command_that_installs_it(tmp_path, mo
         make_agent("t3a", "local")
     (tmp_path / "small.gguf").write_bytes(b"GGUF")
     monkeypatch.setattr(local, "find_spec", lambda name: None)
-    with pytest.raises(SetupError, match=r"automotive-cosim\[local\]"):
+    with pytest.raises(SetupError, match=re.escape(install_hint("local"))):
         make_model(f"local/{tmp_path}/small.gguf")
 
 

@@ -21,7 +21,7 @@ from automotive_cosim.agents.native.grid import GuiScreen
 from automotive_cosim.agents.native.verbs import Hand, actions
 from automotive_cosim.agents.settings import T3A
 from automotive_cosim.contracts import Action
-from automotive_cosim.errors import ActionError, ModelError, SetupError, UserError
+from automotive_cosim.errors import ActionError, ModelError, SetupError, UserError, install_hint
 from automotive_cosim.models import ChatMessage, make_model
 from automotive_cosim.models.apis import Chat, ChatTools
 from automotive_cosim.models.remote import _Endpoint
@@ -526,7 +526,7 @@ def test_wrong_settings_are_told(server, query, said):
 
 def test_without_the_package_it_says_what_to_install(server, monkeypatch):
     monkeypatch.setitem(sys.modules, "openai", None)
-    with pytest.raises(SetupError, match=r"automotive-cosim\[llm\]"):
+    with pytest.raises(SetupError, match=re.escape(install_hint("llm"))):
         make_model("local/m")
 
 

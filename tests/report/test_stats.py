@@ -1,10 +1,13 @@
 import itertools
+import re
+import sys
 
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.report import stats
 
 
@@ -154,3 +157,10 @@ def test_a_mean_of_few_tasks_or_of_equal_ones_has_no_interval_of_no_width():
     assert stats.clustered_mean(few).interval is None
     assert stats.clustered_mean([*few, (9, 9.0)]).interval is not None
     assert stats.clustered_mean([(task, 2.0) for task in range(9)]).interval is None
+
+
+def test_without_scipy_bounds_name_what_brings_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy", None)
+    for bound in (stats.upper_bound, stats.rate_upper_bound):
+        with pytest.raises(SetupError, match=re.escape(install_hint("report"))):
+            bound(0, 10)

@@ -407,6 +407,7 @@ def test_the_regression_suite_is_a_plan_with_both_sides(tmp_path: Path) -> None:
         ("[factors]\ndrive = ['grid_june']\nhour = { least = 9, most = 3 }", "hour is empty"),
         ("[factors]\nhour = [3]", "give one of the two"),
         ("[factors]\ndrive = ['grid_yune']", "did you mean 'grid_june'"),
+        ("[factors]\ndrive = ['grid_june']\n[failure]\nevents = ['blue_ligt']", "did you mean 'blue_light'"),
         ("[factors]\ntask = ['hvac_fan_max']\nlanguage = ['xx']", "language has a value that does not exist"),
     ],
 )

@@ -82,6 +82,7 @@ def test_a_configuration_is_read_for_what_it_says(foreign: Path) -> None:
     assert "collision.action remove" in runs_with
     assert "ignore-junction-blocker 20" in runs_with
     assert "step-length" not in runs_with
+    assert "the ballistic integration that SUMO chooses" in runs_with
     assert without == "town.sumocfg runs without its end, summary-output, fcd-output"
 
 
