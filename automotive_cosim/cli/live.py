@@ -91,7 +91,14 @@ class Notes(EpisodeObserver):
 class Live(EpisodeObserver):
     """Shows an episode as it runs and, at the end, the verdict and the timeline."""
 
-    def __init__(self, console: Console | None = None) -> None:
+    def __init__(self, console: Console | None = None, *, by_hand: bool = False) -> None:
+        """Starts with nothing shown.
+
+        Args:
+            console: where to.
+            by_hand: a person acts, whose typing no line may interrupt.
+        """
+        self._by_hand = by_hand
         self._console = console or Console(highlight=False)
         self._display: Display | None = None
         self._episode: Episode | None = None
@@ -153,7 +160,7 @@ class Live(EpisodeObserver):
             moment = shot.step.moment
             self._console.print(f"{self._clock(moment)}  hand-over: {_drive(moment)}", soft_wrap=True)
             self._console.print(f"         the driver says: “{self._goal}”", soft_wrap=True)
-            self._waiting.start("the agent's action")
+            self._wait()
 
     def stepped(self, shot: Shot) -> None:
         """The last action and the agent's reason."""
@@ -175,7 +182,7 @@ class Live(EpisodeObserver):
                 self._console.print(f"         the driver says: “{text}”", soft_wrap=True)
             self._release()
             if not declares:
-                self._waiting.start("the agent's action")
+                self._wait()
         self._begins = None if declares else step.moment
 
     def finished(self, result: EpisodeResult) -> None:
@@ -188,6 +195,10 @@ class Live(EpisodeObserver):
             self._console.print(Text(lost, style="yellow"), soft_wrap=True)
         if result.steps or result.verdict:
             self._console.print(_verdict(result), soft_wrap=True)
+
+    def _wait(self) -> None:
+        if not self._by_hand:
+            self._waiting.start("the agent's action")
 
     def _release(self) -> None:
         for line in self._held:

@@ -195,7 +195,8 @@ def _recorded(
 
     recorder = Recorder(folder, setup, {**arguments, "out": str(folder)})
     # A panel that redraws itself would interfere with a person who types.
-    view = Live(Console(force_terminal=False, highlight=False)) if player.name == "human" else Live()
+    by_hand = player.name == "human"
+    view = Live(Console(force_terminal=False, highlight=False) if by_hand else None, by_hand=by_hand)
     observers = [recorder, RoadRecorder(folder, setup.about), Film(folder), Notes() if as_json else view, *more]
     try:
         result = run_episode(setup, player, observers, simulations=simulations, wall_s=wall_s)

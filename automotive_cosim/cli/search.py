@@ -81,7 +81,7 @@ def search(
         int | None,
         typer.Option(
             min=0,
-            help="Exit with code 1 if more samples fail than this, or if nothing was due in any.",
+            help="Exit with code 1 if more samples fail than this, or the nominal point, or if nothing was due in any.",
             metavar="N",
             show_default=False,
         ),
@@ -105,7 +105,7 @@ def search(
     from automotive_cosim.run.settings import Budget
     from automotive_cosim.safety.budget import LAID, SearchBudget, progress_in_words
     from automotive_cosim.safety.findings import as_json as findings_json
-    from automotive_cosim.safety.hunt import hunt, try_carefully
+    from automotive_cosim.safety.hunt import NominalFailureError, hunt, try_carefully
     from automotive_cosim.safety.page import suite, write_findings
     from automotive_cosim.safety.samplers import even_points, make_sampler
     from automotive_cosim.safety.space import read_space, space_file
@@ -122,7 +122,7 @@ def search(
         raise UserError(
             f"{model} costs nothing, so that {budget} never ends; give points or hours, as in 64,{budget}"
         )
-    distributions()
+    distributions()  # without which the findings cannot be told, after all runs
     space = read_space(file)
     plan = make_plan({"agents": [agent], "models": [model], "trials": [_plain(trial_of(space.nominal))]})
     plan.check()
@@ -190,9 +190,9 @@ def search(
                 most_failures=how.failures,
                 tell=tell,
             )
-        except UserError as error:
+        except NominalFailureError as error:
             told = f"{error}; its trial is in {folder}, which `report` reads"
-            if at_most is None:
+            if at_most is None or not error.is_judged:
                 raise UserError(told) from error
             typer.echo(told, err=True)
             raise typer.Exit(1) from error

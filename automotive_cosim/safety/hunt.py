@@ -28,6 +28,19 @@ Evaluate = Callable[[SearchPoint, int], TriedOutcome]
 """Runs a point; the number says which repeat."""
 
 
+class NominalFailureError(UserError):
+    """An agent that does not pass where every factor is nominal, so that no factor can be to blame.
+
+    Args:
+        message: what happened, and what to do.
+        is_judged: whether the trial was judged, and failed.
+    """
+
+    def __init__(self, message: str, *, is_judged: bool) -> None:
+        super().__init__(message)
+        self.is_judged = is_judged
+
+
 class Phase(StrEnum):
     """Why a point was run."""
 
@@ -157,7 +170,7 @@ def hunt(
         What it found; after an interruption, what it had found by then.
 
     Raises:
-        UserError: the nominal point fails, or cannot be run.
+        NominalFailureError: the nominal point fails, or cannot be run.
         BudgetSpentError: ``evaluate`` refused the nominal point; a later refusal ends the search.
         KeyboardInterrupt: interrupted in the nominal point; a later interruption ends the search.
     """
@@ -166,8 +179,9 @@ def hunt(
     nominal = run(Phase.NOMINAL, space.nominal).outcome
     if not nominal.held:
         why = f"fails ({nominal.why})" if nominal.failed else f"is not judged ({nominal.error})"
-        raise UserError(
-            f"the nominal point {why}; give nominal values, the first of each list, under which the agent passes"
+        raise NominalFailureError(
+            f"the nominal point {why}; give nominal values, the first of each list, under which the agent passes",
+            is_judged=nominal.failed,
         )
     stale = 0
     for _ in range(MOST_ASKED * budget):

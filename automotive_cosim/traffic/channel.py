@@ -10,8 +10,8 @@ from contextlib import suppress
 from typing import Any
 
 LOADING_LIMIT_S = 300.0
-"""Processor time that the simulation may take to load a network without a sign of life. A city of 50,000 edges
-takes 36 s."""
+"""Processor time that the simulation may take to load a network without a sign of life, or wall time where the
+system does not tell it. A city of 50,000 edges takes 36 s."""
 
 _LENGTH = struct.Struct("!Q")
 

@@ -224,3 +224,11 @@ def test_who_waits_is_told_how_long(monkeypatch: pytest.MonkeyPatch) -> None:
     assert twice.wait(10.0)
     waiting.stop()
     assert told[0] == "waiting for the agent's action, 0:00 so far"
+
+
+def test_no_line_interrupts_who_acts_by_hand(monkeypatch: pytest.MonkeyPatch) -> None:
+    started: list[str] = []
+    monkeypatch.setattr(LongWait, "start", lambda self, of: started.append(of))
+    for by_hand in (True, False):
+        Live(Console(file=io.StringIO()), by_hand=by_hand)._wait()
+    assert started == ["the agent's action"]

@@ -22,7 +22,7 @@ from automotive_cosim.run.settings import Budget
 from automotive_cosim.safety.budget import SearchBudget, SearchLimit, progress_in_words
 from automotive_cosim.safety.curves import curves, means
 from automotive_cosim.safety.findings import as_json, coverage, prevented, sensitivity, sentence, tables, unseen
-from automotive_cosim.safety.hunt import REPEATS, Hunt, Phase, hunt, try_carefully
+from automotive_cosim.safety.hunt import REPEATS, Hunt, NominalFailureError, Phase, hunt, try_carefully
 from automotive_cosim.safety.objective import TriedOutcome, outcome_of
 from automotive_cosim.safety.page import suite
 from automotive_cosim.safety.samplers import SAMPLERS, RandomSampler, even_points, make_sampler
@@ -130,8 +130,14 @@ def test_what_fails_only_once_is_no_failure() -> None:
 
 
 def test_a_nominal_point_that_fails_is_refused() -> None:
-    with pytest.raises(UserError, match=r"the nominal point fails \(late\); give nominal values"):
+    with pytest.raises(
+        NominalFailureError, match=r"the nominal point fails \(late\); give nominal values"
+    ) as failed:
         searched(of=lambda point: -1.0)
+    assert failed.value.is_judged
+    with pytest.raises(NominalFailureError, match="is not judged") as lost:
+        hunt(SPACE, lambda *_: TriedOutcome(None, False, error="SUMO"), RandomSampler(SPACE, 9, default_rng(0)), 9)
+    assert not lost.value.is_judged
 
 
 def test_combinations_that_cannot_be_run_cost_nothing() -> None:
