@@ -81,7 +81,7 @@ def search(
         int | None,
         typer.Option(
             min=0,
-            help="Exit with code 1 if more samples fail than this, or the nominal point, or if nothing was due in any.",
+            help="Exit with code 1 if more samples fail, or the nominal point does, or nothing was due in any.",
             metavar="N",
             show_default=False,
         ),
