@@ -60,8 +60,9 @@ class Forked:
         by_replay: bool = not CAN_FORK,
         outputs: Path | None = None,
         flow_s: float | None = None,
+        alike: Forked | None = None,
     ) -> None:
-        """Loads the scenario and warms up its traffic.
+        """Loads the scenario and warms up its traffic, or copies that of one that has the same.
 
         Args:
             scenario: the scenario to run.
@@ -73,6 +74,7 @@ class Forked:
             outputs: an empty folder for SUMO's own outputs; the warm traffic writes to ``warm`` in it, each drive
                 and branch to its ``drive-N``, from the start of the simulation, complete when it is closed.
             flow_s: write the flow on every edge in intervals of this length instead, from the end of the warm-up.
+            alike: warm traffic of a setup with the same ``Setup.traffic``, of which this becomes a copy by fork.
 
         Raises:
             ScenarioError: the scenario cannot be loaded.
@@ -80,7 +82,8 @@ class Forked:
             TrafficError: the process died or hung.
         """
         setup = Setup(scenario, seed, allow_unprojected, outputs, flow_s)
-        self._source = _Source(setup, timeout_s, by_replay=by_replay, progress=progress)
+        source = None if alike is None else alike._source
+        self._source = _Source(setup, timeout_s, by_replay=by_replay, progress=progress, alike=source)
         self._is_closed = False
         self._fresh: Fresh | None = None
 
@@ -365,7 +368,13 @@ class _Source:
     """The source of copies of a warm simulation."""
 
     def __init__(
-        self, setup: Setup, timeout_s: float, *, by_replay: bool, progress: WarmUpProgress | None = None
+        self,
+        setup: Setup,
+        timeout_s: float,
+        *,
+        by_replay: bool,
+        progress: WarmUpProgress | None = None,
+        alike: _Source | None = None,
     ) -> None:
         self.by_replay = by_replay
         self._setup = setup
@@ -376,9 +385,14 @@ class _Source:
         """Lock for copying the warm process: threads may depart at the same time."""
         self._warm_calls: list[tuple[str, tuple[object, ...]]] = []
         self._warm: RemoteProcess | None
-        self._warm, self.network = RemoteProcess.start(
-            self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
-        )
+        if alike is None:
+            self._warm, self.network = RemoteProcess.start(
+                self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
+            )
+        else:
+            with alike._lock:
+                self._warm = alike._copied()
+            self.network: RoadNetwork = self._warm.call("move", setup.scenario)
 
     def departed(self, plan: EgoPlan, calls: Sequence[Call] = ()) -> RemoteTraffic:
         """A drive in a process of its own, after the calls."""
@@ -513,7 +527,10 @@ class Simulations:
         """
         setup = Setup(scenario, seed, allow_unprojected)
         if setup not in self._kept:
-            self._kept[setup] = Forked(scenario, seed, progress, allow_unprojected=allow_unprojected)
+            same = (kept for other, kept in self._kept.items() if CAN_FORK and other.traffic == setup.traffic)
+            self._kept[setup] = Forked(
+                scenario, seed, progress, allow_unprojected=allow_unprojected, alike=next(same, None)
+            )
             self._make_room()
         self._kept.move_to_end(setup)
         return self._kept[setup]

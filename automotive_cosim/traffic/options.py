@@ -10,13 +10,14 @@ import math
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
+from datetime import UTC, timedelta
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file
-from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.scenario import Ego, Scenario, Trip
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
@@ -67,6 +68,8 @@ OUTPUTS = ("fcd.xml", "tripinfo.xml", EDGE_FLOWS, QUEUES)
 QUEUE_PERIOD_S = 10.0
 """Simulated time between two measurements of the queues."""
 
+NO_EGO = Ego((Trip("", "", ""),))
+
 FLOW_ATTRIBUTES = "sampledSeconds timeLoss waitingTime speed entered left"
 """What is written of the flow on an edge."""
 
@@ -86,6 +89,25 @@ class Setup:
     flow_s: float | None = None
     """Length of the intervals in which the flow on every edge (``edges.xml``) and the queues (``queues.xml``) are
     written instead, from the end of the warm-up; None for the ego's outputs."""
+
+    @property
+    def traffic(self) -> Setup:
+        """The setup without what only counts once an ego departs: simulations of which this is the same have the
+        same warm traffic, wherever on earth they are and whatever the ego is."""
+        scenario = self.scenario
+        warm_up = timedelta(seconds=scenario.sumo.warm_up_s)
+        began = (scenario.start.astimezone(UTC) - warm_up).astimezone(scenario.start.tzinfo)
+        at_home = replace(
+            scenario,
+            origin=None,
+            country="",
+            language="",
+            notes=(),
+            ego=NO_EGO,
+            start=began.replace(tzinfo=UTC),  # by its own clock, by which roads open and close
+            weather=scenario.weather[:1],
+        )
+        return replace(self, scenario=at_home)
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,6 +24,7 @@ from typing import Any
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, ScenarioError, TrafficError
 from automotive_cosim.formats.incidents import Incident
+from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
@@ -118,6 +119,13 @@ class Server:
         self._world.prepare_copies()
         gc.collect()
         gc.freeze()  # collecting garbage would copy every page that the children share
+        return self._world.network.map
+
+    def do_move(self, scenario: Scenario) -> RoadNetwork:
+        """Moves the warm traffic to where that scenario has it; returns the network there."""
+        assert self._world is not None
+        self._world.move(scenario)
+        gc.freeze()  # as after loading
         return self._world.network.map
 
     def do_fork(self, outputs: Path | None) -> int:

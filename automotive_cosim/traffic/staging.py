@@ -137,7 +137,7 @@ class _Jam(StagedIncident):
                     self._stage.car("jam", route, lane, position_m, "0")
                 position_m -= CAR_SPACE_M
                 left_m -= CAR_SPACE_M
-        return f"a jam of {self._incident.length_m:.0f} m{_on(self._edges[-1])}"
+        return f"a jam of {self._incident.length_m:.0f} m{_on(self._stage.edge(self._edges[-1].edge_id))}"
 
     def tick(self, local_time: datetime) -> str:
         stage, last = self._stage, self._edges[-1]
@@ -168,6 +168,10 @@ class _Closure(StagedIncident):
         self._stage = stage
         self._edge = stage.edge(incident.edge)
 
+    @property
+    def _called(self) -> str:
+        return self._stage.edge(self._edge.edge_id).name or self._edge.edge_id
+
     def begin(self) -> str:
         sumo, edge = self._stage.sumo, self._edge
         self._allowed = {lane: sumo.lane.getAllowed(lane) for lane in edge.lane_ids}
@@ -178,7 +182,7 @@ class _Closure(StagedIncident):
             ahead = sumo.route(vehicle)[sumo.route_index(vehicle) :]
             if vehicle != self._stage.ego_id and edge.edge_id in ahead:  # the ego has a driver of its own
                 self._stage.detours.send_round(vehicle)
-        return f"{edge.name or edge.edge_id} is closed"
+        return f"{self._called} is closed"
 
     def tick(self, local_time: datetime) -> str:
         return self._turn_off()
@@ -187,7 +191,7 @@ class _Closure(StagedIncident):
         self._stage.detours.open(self._edge.edge_id)
         for lane, allowed in self._allowed.items():
             self._stage.sumo.lane.setAllowed(lane, allowed)
-        return f"{self._edge.name or self._edge.edge_id} is open again"
+        return f"{self._called} is open again"
 
     def _turn_off(self) -> str:
         """The ego's driver sees the sign on the previous edge and follows the detour to the destination."""
@@ -206,7 +210,7 @@ class _Closure(StagedIncident):
             return ""
         sumo.set_route(ego, way)
         self._stage.route_changed = True
-        return f"driver goes round {self._edge.name or self._edge.edge_id}, which is closed"
+        return f"driver goes round {self._called}, which is closed"
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident:
         return RoadIncident(IncidentKind.CLOSURE, self._edge.edge_id, 0.0)

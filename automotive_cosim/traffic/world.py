@@ -12,7 +12,7 @@ from pathlib import Path
 from automotive_cosim.contracts import EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.formats.incidents import Incident
-from automotive_cosim.formats.scenario import Trip
+from automotive_cosim.formats.scenario import Scenario, Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, WarmUpProgress
 from automotive_cosim.traffic.conflicts import LOOK_S, Conflicts
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDOW_S, Congestion
@@ -76,7 +76,8 @@ class World:
         """Whether SUMO writes outputs, which are completed on closing."""
         self._sumo = load_library()
         with self._configuration.named_as_given():
-            self.network = self._mapped(reader.network(), setup)
+            self._roads = read_mapped(self._configuration, reader.network())
+            self.network = self._placed(setup)
             self.always_open = self.network.open_at_all_hours()
             """The network with the ways only that are open at any hour."""
             options = run_options(self._configuration, setup, self.network)
@@ -104,10 +105,10 @@ class World:
         self._sensor: Sensor | None = None
         self._looks_around = True
 
-    def _mapped(self, roads: Network, setup: Setup) -> Network:
-        """The network with what is around it, on its side of the road and at the scenario's place."""
+    def _placed(self, setup: Setup) -> Network:
+        """The network on its side of the road and at the scenario's place."""
         scenario = setup.scenario
-        network = placed(read_mapped(self._configuration, roads), scenario)
+        network = placed(self._roads, scenario)
         if network.unplaced and scenario.has_place and not setup.allow_unprojected:
             raise ScenarioError(
                 f"{self._configuration.given['net-file'][0].name} {network.unplaced}, so it has no position on "
@@ -135,6 +136,20 @@ class World:
             self._notice(sampling=(steps - step) * self.step_s <= max(3 * MEMORY_S, WINDOW_S))
         if progress is not None:
             progress(total_s, total_s)
+
+    def move(self, scenario: Scenario) -> None:
+        """Moves the traffic to where another scenario has it, before the ego departs.
+
+        What was made so far goes by edges, lanes and metres, which stay; names and places are read when the ego
+        departs, and when incidents are told.
+
+        Args:
+            scenario: one with the same warm traffic (``Setup.traffic``).
+        """
+        self._scenario = scenario
+        self.network = placed(self._roads, scenario)
+        self.always_open = self.network.open_at_all_hours()
+        self._incidents.move(scenario.start, self.network)
 
     def prepare_copies(self) -> None:
         """Makes SUMO build its router's table of all edges, which copies of this process then share.

@@ -4,16 +4,19 @@ from __future__ import annotations
 
 import xml.etree.ElementTree as ET
 from collections.abc import Callable
+from contextlib import closing
 from dataclasses import replace
+from datetime import UTC
 from pathlib import Path
 
 import pytest
 
 from automotive_cosim.contracts import Alert, AlertKind, Cruise, DrivingState, Hazards, Reroute, SlowDown
-from automotive_cosim.scenarios import Scenario, WeatherAt, load
+from automotive_cosim.scenarios import Scenario, WeatherAt, load, open_scenario
 from automotive_cosim.traffic.base import EgoPlan, Event, Simulation, Traffic
-from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.fork import CAN_FORK, Forked, Simulations
 from automotive_cosim.traffic.in_process import InProcess
+from automotive_cosim.traffic.options import Setup
 
 pytestmark = pytest.mark.sumo
 
@@ -226,3 +229,43 @@ def test_a_shipped_scenario_is_found_from_any_folder(
         drive.close()
     elsewhere.close()
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.skipif(not CAN_FORK, reason="copies are made by fork")
+def test_traffic_moved_to_another_place_is_the_traffic_that_was_warmed_up_there(
+    variant: Callable[[Edit], Scenario], grid: Scenario
+) -> None:
+    """Berlin, then Madrid with streets in Spanish, as if each had been warmed up: positions, names, clock, events."""
+
+    def shut(folder: Path) -> None:
+        with (folder / "scenario.toml").open("a", encoding="utf-8") as file:
+            file.write('\n[[incidents]]\nkind = "closure"\nedge = "n2n3"\nfrom_s = 5.0\n')
+
+    folder, weather = variant(shut).folder, grid.weather
+    places = [open_scenario(folder, origin=origin) for origin in ((13.4, 52.5), (-3.7, 40.4), (-0.1, 51.5))]
+    plans = [EgoPlan(there.trip("avenue"), "hurried", 7, weather, there.start) for there in places]
+    assert [Setup(there).traffic == Setup(places[0]).traffic for there in places] == [True, True, False], "left"
+    with closing(Simulations()) as shared:
+        moved = [drive_and_branch(shared.warm(there, 1), plan) for there, plan in zip(places, plans, strict=True)]
+        for there, plan, record in zip(places, plans, moved, strict=True):
+            with closing(Forked(there, 1)) as anew, closing(anew.depart(plan)) as drive:
+                assert drive_and_branch(anew, plan) == record
+                with closing(shared.warm(there, 1).depart(plan)) as same:
+                    assert same.network == drive.network
+    told = [{event.text for event in record[0][1] if "closed" in event.text} for record in moved]
+    assert all(told)
+    assert len(set(map(frozenset, told))) == 3, "streets have names in the language of the place"
+
+
+def test_traffic_of_other_weather_hours_or_sides_is_not_the_same(grid: Scenario) -> None:
+    (now,) = grid.weather
+    others = [
+        replace(grid, start=grid.start.replace(hour=3)),
+        replace(grid, weather=(replace(now, weather=replace(now.weather, precipitation=2.0)),)),
+        replace(grid, mirrored=True),
+        replace(grid, sumo=replace(grid.sumo, scale=0.5)),
+        replace(grid, incidents=load("autobahn").incidents),
+    ]
+    assert all(Setup(other).traffic != Setup(grid).traffic for other in others)
+    assert Setup(grid, 1).traffic != Setup(grid, 2).traffic
+    assert Setup(replace(grid, start=grid.start.replace(tzinfo=UTC))).traffic == Setup(grid).traffic
