@@ -15,7 +15,6 @@ from automotive_cosim.formats.incidents import EgoIncident, Incident
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.base import EgoPlan, Event
 from automotive_cosim.traffic.detours import Detours
-from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.sensing import Sensor
 from automotive_cosim.traffic.stage import IncidentStage
 from automotive_cosim.traffic.staged import StagedIncident
@@ -55,10 +54,9 @@ class Incidents:
         """The other vehicles' ways round what is closed."""
         return self._stage.detours
 
-    def move(self, start: datetime, network: Network) -> None:
-        """Takes clock and street names of another place."""
+    def move(self, start: datetime) -> None:
+        """Takes the clock of another place."""
         self._start = start
-        self._stage.network = network
 
     def expect(self, plan: EgoPlan, now_s: float) -> None:
         """Opens and closes roads and turns for the clock of an ego that is about to depart, whose route depends on

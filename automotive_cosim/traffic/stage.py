@@ -27,7 +27,7 @@ class IncidentStage:
     def __init__(self, sumo: LibSumo, network: Network, surface: Surface, ego_id: str) -> None:
         self.sumo = sumo
         self.network = network
-        """At the scenario's place, which may change until the ego departs; names are read from it when they are told."""
+        """Its edges change: limits by time or an incident, names as the traffic is moved (``World.move``)."""
         self._surface = surface
         self.ego_id = ego_id
         self.sensor: Sensor | None = None

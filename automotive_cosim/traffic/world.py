@@ -140,16 +140,18 @@ class World:
     def move(self, scenario: Scenario) -> None:
         """Moves the traffic to where another scenario has it, before the ego departs.
 
-        What was made so far goes by edges, lanes and metres, which stay; names and places are read when the ego
-        departs, and when incidents are told.
+        What was made so far goes by edges and metres, which stay, as do the limits in force.
 
         Args:
             scenario: one with the same warm traffic (``Setup.traffic``).
         """
         self._scenario = scenario
-        self.network = placed(self._roads, scenario)
+        there, edges = placed(self._roads, scenario), self.network.edges
+        for edge_id, edge in edges.items():
+            edges[edge_id] = replace(edge, name=there.edges[edge_id].name)
+        self.network = replace(there, edges=edges)
         self.always_open = self.network.open_at_all_hours()
-        self._incidents.move(scenario.start, self.network)
+        self._incidents.move(scenario.start)
 
     def prepare_copies(self) -> None:
         """Makes SUMO build its router's table of all edges, which copies of this process then share.

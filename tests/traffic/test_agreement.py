@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
 from datetime import UTC
@@ -231,30 +231,53 @@ def test_a_shipped_scenario_is_found_from_any_folder(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.skipif(not CAN_FORK, reason="copies are made by fork")
-def test_traffic_moved_to_another_place_is_the_traffic_that_was_warmed_up_there(
-    variant: Callable[[Edit], Scenario], grid: Scenario
-) -> None:
-    """Berlin, then Madrid with streets in Spanish, as if each had been warmed up: positions, names, clock, events."""
+def moved_and_warmed_up(places: Sequence[Scenario], trip: str) -> list[Record]:
+    """A drive at each place in traffic that was moved there, which is as the one in traffic warmed up there."""
+    records = []
+    with closing(Simulations()) as shared:
+        for there in places:
+            plan = EgoPlan(there.trip(trip), "hurried", 7, load("grid").weather, there.start)
+            moved = shared.warm(there, 1)
+            record = drive_and_branch(moved, plan)
+            with closing(Forked(there, 1)) as anew, closing(anew.depart(plan)) as drive:
+                assert drive_and_branch(anew, plan) == record
+                with closing(moved.depart(plan)) as same:
+                    assert same.network == drive.network
+            records.append(record[0])
+    return records
 
+
+@pytest.mark.skipif(not CAN_FORK, reason="copies are made by fork")
+def test_traffic_moved_to_another_place_is_as_if_it_had_been_warmed_up_there(
+    variant: Callable[[Edit], Scenario],
+) -> None:
     def shut(folder: Path) -> None:
         with (folder / "scenario.toml").open("a", encoding="utf-8") as file:
             file.write('\n[[incidents]]\nkind = "closure"\nedge = "n2n3"\nfrom_s = 5.0\n')
 
-    folder, weather = variant(shut).folder, grid.weather
-    places = [open_scenario(folder, origin=origin) for origin in ((13.4, 52.5), (-3.7, 40.4), (-0.1, 51.5))]
-    plans = [EgoPlan(there.trip("avenue"), "hurried", 7, weather, there.start) for there in places]
-    assert [Setup(there).traffic == Setup(places[0]).traffic for there in places] == [True, True, False], "left"
-    with closing(Simulations()) as shared:
-        moved = [drive_and_branch(shared.warm(there, 1), plan) for there, plan in zip(places, plans, strict=True)]
-        for there, plan, record in zip(places, plans, moved, strict=True):
-            with closing(Forked(there, 1)) as anew, closing(anew.depart(plan)) as drive:
-                assert drive_and_branch(anew, plan) == record
-                with closing(shared.warm(there, 1).depart(plan)) as same:
-                    assert same.network == drive.network
-    told = [{event.text for event in record[0][1] if "closed" in event.text} for record in moved]
+    folder = variant(shut).folder
+    berlin, madrid, london = (
+        open_scenario(folder, origin=origin) for origin in ((13.4, 52.5), (-3.7, 40.4), (-0.1, 51.5))
+    )
+    assert Setup(berlin).traffic == Setup(madrid).traffic != Setup(london).traffic, "on the left"
+    told = [
+        {event.text for event in events if "closed" in event.text}
+        for _, events, _ in moved_and_warmed_up((berlin, madrid, london), "avenue")
+    ]
     assert all(told)
     assert len(set(map(frozenset, told))) == 3, "streets have names in the language of the place"
+
+
+@pytest.mark.skipif(not CAN_FORK, reason="copies are made by fork")
+def test_moved_traffic_keeps_the_limits_that_came_into_force_while_it_warmed_up() -> None:
+    scenario = load("autobahn")
+    short = replace(scenario.sumo, warm_up_s=30.0)
+    places = [
+        replace(open_scenario("autobahn", origin=origin), sumo=short) for origin in ((113.3, 23.1), (8.62, 49.93))
+    ]
+    assert Setup(places[0]).traffic == Setup(places[1]).traffic
+    delays_s = [states[-1].ahead.delay_s for states, _, _ in moved_and_warmed_up(places, "south")]
+    assert delays_s[0] == delays_s[1] > 0
 
 
 def test_traffic_of_other_weather_hours_or_sides_is_not_the_same(grid: Scenario) -> None:
