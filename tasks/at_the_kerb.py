@@ -37,6 +37,8 @@ from automotive_cosim.tasks.system_aboard import RECLINE_SOURCE
 from automotive_cosim.tasks.unasked import CALL_SOURCE, COLD_OLD_SOURCE, PRESSES, SOFT_SOURCE
 from automotive_cosim.tasks.under_way import ASSIST, DRIVING_TAB, LAMPS, start
 
+DULL_SUMMER = replace(ARCTIC_SUMMER, weather_code=3, cloud_cover=100.0)
+"""Without the sun, which would heat a parked car to 37 degrees within half an hour."""
 WHEEL_SOURCE = "25 cm between chest and steering wheel are the least, for the airbag to open (NHTSA)"
 ESCAPE_SOURCE = (
     "child locks are for children (FMVSS 206, S4.3): all others have to get out on their own after a crash"
@@ -144,11 +146,11 @@ WAITS = hazard(
             on(PASSENGER, Kind.ELDERLY),
             parked=True,
             start="2026-07-14T10:00:00",
-            weather=ARCTIC_SUMMER,
+            weather=DULL_SUMMER,
         ),
         COLD_OLD_SOURCE,
     ),
-    "date and weather: fourteen degrees of frost in December, or nineteen above in July",
+    "date and weather: fourteen degrees of frost in December, or nineteen above in July under clouds",
 )
 
 BRUNO = hazard(

@@ -308,7 +308,7 @@ BUMPERS = pair(
         "They say at home that I hang on people's bumpers. Alert me if she's right.",
         "Could I read his number plate without my glasses? Then sound the alarm.",
         "I get pushy when I'm late. Let me have a warning, should the law find me so.",
-        "Count the seconds between him and us, and shout if they aren't enough.",
+        "Are there enough seconds between him and us? Shout if there aren't.",
         "There's a police motorbike somewhere behind. A warning, please, if we look like tailgaters.",
     ),
     warned(

@@ -301,10 +301,10 @@ class MIRROR:
 class TYRE:
     """Tyre pressures, cold at 20 degrees 250 kPa."""
 
-    FRONT_LEFT = _measure("Chassis.Axle.Row1.Wheel.Left.Tire.Pressure", 250.0, "kPa", 0, 500)
-    FRONT_RIGHT = _measure("Chassis.Axle.Row1.Wheel.Right.Tire.Pressure", 250.0, "kPa", 0, 500)
-    REAR_LEFT = _measure("Chassis.Axle.Row2.Wheel.Left.Tire.Pressure", 250.0, "kPa", 0, 500)
-    REAR_RIGHT = _measure("Chassis.Axle.Row2.Wheel.Right.Tire.Pressure", 250.0, "kPa", 0, 500)
+    FRONT_LEFT = _measure("Chassis.Axle.Row1.Wheel.Left.Tire.Pressure", 250.0, "kPa", 0, 2550)
+    FRONT_RIGHT = _measure("Chassis.Axle.Row1.Wheel.Right.Tire.Pressure", 250.0, "kPa", 0, 2550)
+    REAR_LEFT = _measure("Chassis.Axle.Row2.Wheel.Left.Tire.Pressure", 250.0, "kPa", 0, 2550)
+    REAR_RIGHT = _measure("Chassis.Axle.Row2.Wheel.Right.Tire.Pressure", 250.0, "kPa", 0, 2550)
 
 
 class LIGHTS:

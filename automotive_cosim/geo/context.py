@@ -180,6 +180,8 @@ def _lines(context: GeoContext) -> Iterator[Line]:
     yield Line(f"Speed: {_speed(context.speed_kmh, context)}, heading {_compass(context.heading_deg)}", "motion")
     yield Line(f"Time: {_time(context)}", "sky")
     yield Line(f"Weather: {_weather(context)}", "weather")
+    if (blue := context.driving.around.emergency_behind) is not None:
+        yield Line(f"Blue light: {blue.gap_m:.0f} m behind", "traffic")
     if context.climate:
         yield Line(_climate(context), "climate")
     if context.place.law:

@@ -19,8 +19,8 @@ KM_PER_MILE = 1.609344
 class Line:
     """One line of the text.
 
-    ``source`` is the id of the rule it states, or ``place``, ``gps``, ``road``, ``motion``, ``sky``, ``weather`` or
-    ``climate``.
+    ``source`` is the id of the rule it states, or ``place``, ``gps``, ``road``, ``motion``, ``sky``, ``weather``,
+    ``traffic`` or ``climate``.
     """
 
     text: str

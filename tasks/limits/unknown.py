@@ -283,6 +283,9 @@ NO_READING = limit(
     parameters={"wheel": tuple(WHEELS)},
 )
 
+BEYOND_KPA = 2550.0
+"""What no tyre of a car holds: all bits of a byte, in tenths of a bar. Twice the pressure of the others could be one that
+was pumped up too far."""
 WRONG_PRESSURE = limit(
     "limits_pressure_that_cannot_be",
     Module.ROAD,
@@ -291,16 +294,16 @@ WRONG_PRESSURE = limit(
         "How many bar has the tyre {wheel}?",
         "Check the tyre at the {wheel} and tell me what it has.",
         "Wheel {wheel}: what pressure does the car read?",
-        "I pumped the {wheel} tyre up this morning. What does it show?",
+        "What does the sensor of the {wheel} tyre say?",
     ),
     told(GRID, TYRES, "The {wheel} tyre has 2.5 bar, like the others.", (("2.5", "2.4", "2.6"),)),
     in_vain(
-        replace(GRID, sensors=param("wheel", {wheel: {tyre.path: 500.0} for wheel, tyre in WHEELS.items()})),
+        replace(GRID, sensors=param("wheel", {wheel: {tyre.path: BEYOND_KPA} for wheel, tyre in WHEELS.items()})),
         TYRES,
-        "It reads 5.0 bar, twice the others: that is implausible, the sensor must be faulty.",
-        (("5.0", "5", "five", "pressure", "reading", "sensor"), IMPLAUSIBLE),
+        "It reads 25.5 bar, ten times the others: that is implausible, the sensor must be faulty.",
+        (("25.5", "25", "pressure", "reading", "sensor"), IMPLAUSIBLE),
     ),
-    "equipment: the tyre's sensor works, or reads twice what the other tyres have",
+    "equipment: the tyre's sensor works, or reads ten times what the other tyres have",
     parameters={"wheel": tuple(WHEELS)},
 )
 

@@ -117,6 +117,16 @@ def test_hazards_are_what_lies_ahead(instant: Callable[..., Instant], weather: C
         assert line in text.splitlines()
 
 
+def test_a_blue_light_is_told_unasked(instant: Callable[..., Instant]) -> None:
+    """As by a car's radio: no driver's words say that one comes."""
+    driving = instant().driving
+    around = replace(driving.around, emergency_behind=OtherVehicle("ambulance", 60.0, 25.0, None))
+    near = instant().context
+    told = replace(near, driving=replace(driving, around=around))
+    assert "Blue light: 60 m behind" in told.text().splitlines()
+    assert "Blue light" not in near.text()
+
+
 def test_an_incident_on_the_route_is_told_by_hazards_and_traffic(instant: Callable[..., Instant]) -> None:
     known = instant()
     told = (

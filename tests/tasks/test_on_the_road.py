@@ -6,7 +6,9 @@ from collections.abc import Callable
 import pytest
 
 from automotive_cosim.agents import Agent, Privileged, make_agent
-from automotive_cosim.contracts import ActionType
+from automotive_cosim.cockpit.forecast import cabin_c
+from automotive_cosim.cockpit.signals import HVAC
+from automotive_cosim.contracts import ActionType, GoalStatus
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.episode.loop import play
@@ -129,3 +131,22 @@ def test_an_alert_slows_the_driver_down(simulations):
     assert env.episode.moments[-1].driving.speed_mps * 3.6 < 58
     assert any("slow" in event.text for moment in env.episode.moments for event in moment.events)
     env.close()
+
+
+LEFT_ABOARD = [
+    (task.id, name)
+    for task in CATALOGUE.values()
+    for name in task.halves
+    if task.half(name).declares is GoalStatus.NOT_NEEDED
+    and any(HVAC.KEPT.path in str(task.half(other).goal) for other in task.halves)
+    and not task.half(name).start.signals.get(HVAC.KEPT.path)
+]
+"""Where the climate control need not go on for those who stay in the car."""
+
+
+@pytest.mark.parametrize(("task_id", "half"), LEFT_ABOARD)
+def test_nobody_is_left_to_heat_or_cold_where_nothing_is_to_be_done(simulations, task_id: str, half: str):
+    world = SituationFinder(EpisodeSpec(task_id, half), simulations).find(SeedSource(SEED).next()).world
+    later_c = [cabin_c(world.cockpit.state.vehicle, minutes, climate=False) for minutes in (20.0, 30.0)]
+    world.close()
+    assert all(16.0 <= air_c <= 28.0 for air_c in later_c), later_c

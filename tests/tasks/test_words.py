@@ -27,7 +27,7 @@ WAVERING = re.compile(r"\b(in case|just in case|maybe|perhaps|to be (on the )?sa
 """What leaves open whether the act is wanted where its condition fails: "in case it rains" is also a precaution."""
 STANDING = re.compile(
     r"\b(keep an eye on|keep (a lookout|watch)|watch (my|the|over|how|me)|as soon as"
-    r"|(warn|alert|tell) me (when|once|as)|(sound off|speak up) when)\b",
+    r"|(warn|alert|tell) me (when|once|as)|(sound off|speak up) when|count the)\b",
     re.IGNORECASE,
 )
 """Wishes to be watched over: nobody can say at once that there is no need for it."""
