@@ -284,8 +284,8 @@ NO_READING = limit(
 )
 
 BEYOND_KPA = 2550.0
-"""What no tyre of a car holds: all bits of a byte, in tenths of a bar. Twice the pressure of the others could be that
-of one that was pumped up too far."""
+"""What no tyre of a car holds: all bits of a byte, in tenths of a bar. Twice the pressure of the others could be
+that of one that was pumped up too far."""
 WRONG_PRESSURE = limit(
     "limits_pressure_that_cannot_be",
     Module.ROAD,
