@@ -2,6 +2,7 @@
 
     pip install 'automotive-cosim[rl]' matplotlib
     python benchmarks/ppo_drive.py --out docs/images
+    python benchmarks/ppo_drive.py --film docs/images/ppo_drive_imitation.npz      # ppo_drive_imitation.webp
 
 Without a GPU, install torch first, in its CPU build. The policy is a network of two small layers over the numbers
 of ``FlatDriveEnv``: two waits and one action per kind of alert. It starts as it is ("scratch") or as an imitation
@@ -26,6 +27,7 @@ from pathlib import Path
 
 import gymnasium as gym
 import numpy as np
+from PIL import Image, ImageDraw, ImageFont
 
 from automotive_cosim.drives.score import LEAST_WORTH, Score, score, together
 from automotive_cosim.drives.watchers import AlertOnWake, RulePerfect
@@ -43,6 +45,8 @@ GAMMA = 0.97
 CHEAP = {"scratch": 0.05, "imitation": 0.5}
 """The share of a nuisance's cost at the beginning of training, by what it starts from. It rises to the whole cost
 by two thirds of the steps: whoever pays in full from the first step learns silence."""
+BEFORE, AFTER, FRAME_MS = 2, 3, 700
+"""Steps that a film shows before and after an alert, and how long each."""
 WAITS = sum(action.kind is None for action in ACTIONS)
 
 
@@ -90,6 +94,17 @@ class Network:
         for number, (weights, biases) in enumerate(self.layers):
             seen = weights @ (np.tanh(seen) if number else seen) + biases
         return int(np.argmax(seen))
+
+    @classmethod
+    def read(cls, path: Path) -> Network:
+        arrays = np.load(path)
+        return cls([(arrays[f"weights{at}"], arrays[f"biases{at}"]) for at in range(len(arrays) // 2)])
+
+    def write(self, path: Path) -> None:
+        np.savez_compressed(path, **{
+            f"{kind}{at}": each for at, pair in enumerate(self.layers)
+            for kind, each in zip(("weights", "biases"), pair, strict=True)
+        })  # fmt: skip
 
     @classmethod
     def of(cls, model) -> Network:
@@ -271,9 +286,7 @@ def train(chosen: argparse.Namespace, start: str, bench: Bench, steps: Sequence[
         print(f"{start:>9}  {point['steps']:7.0f} steps  {told(point)}  {trained_s:5.0f} s", flush=True)
     model.get_env().close()
     if chosen.out:
-        arrays = {f"{kind}{at}": each for at, pair in enumerate(Network.of(model).layers)
-                  for kind, each in zip(("weights", "biases"), pair, strict=True)}  # fmt: skip
-        np.savez_compressed(chosen.out / f"ppo_drive_{start}.npz", **arrays)
+        Network.of(model).write(chosen.out / f"ppo_drive_{start}.npz")
     return curve
 
 
@@ -306,6 +319,51 @@ def plot(found: dict, path: Path) -> None:
     figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
 
 
+def film(policy, family: str, seed: int, minutes: float, path: Path) -> None:
+    """The screen and what the policy does, around each of its alerts, as an animation."""
+    frames: list[Image.Image] = []
+    before: list[Image.Image] = []
+    after = 0
+    with closing(FlatDriveEnv(family, minutes=minutes, render_mode="rgb_array")) as env:
+        seen, _ = env.reset(seed=seed)
+        over, earned = False, 0.0
+        while not over:
+            number = policy.act(env, seen)
+            action, now = ACTIONS[number], env.episode.observation
+            seen, reward, terminated, truncated, info = env.step(np.int64(number))
+            earned += reward
+            said = "waits" if action.kind is None else f"alert: {action.kind.value.replace('_', ' ')}"
+            frame = captioned(env.render(), f"{clock(now.time_s)}  {said}", f"reward so far {earned:+.2f}")
+            if action.kind is not None:
+                frames += [*before[-BEFORE:], frame]
+                before, after = [], AFTER
+            elif after:
+                frames.append(frame)
+                after -= 1
+            else:
+                before.append(frame)
+            over = terminated or truncated
+    print(f"{family}, seed {seed}: score {info['score']:.0f}, {len(frames)} frames", flush=True)
+    if not frames:
+        raise SystemExit("the policy gave no alert, so there is nothing to film")
+    frames[0].save(path, save_all=True, append_images=frames[1:], duration=FRAME_MS, loop=0, quality=60, method=6)
+
+
+def clock(time_s: float) -> str:
+    return f"{time_s // 60:.0f}:{time_s % 60:02.0f}"
+
+
+def captioned(screen: np.ndarray, said: str, earned: str) -> Image.Image:
+    """A screenshot with a strip below it."""
+    width, height = 800, 450
+    picture = Image.new("RGB", (width, height + 44), "#ffffff")
+    picture.paste(Image.fromarray(screen).resize((width, height), Image.Resampling.LANCZOS))
+    draw, font = ImageDraw.Draw(picture), ImageFont.load_default(22)
+    draw.text((16, height + 9), said, "#b3261e" if "alert" in said else "#333333", font)
+    draw.text((width - 16, height + 9), earned, "#333333", font, anchor="ra")
+    return picture
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--families", nargs="+", default=list(FAMILIES), help="families of drives to train on")
@@ -322,7 +380,17 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2, help="processes")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--out", type=Path, default=None, help="folder for the curve and the policies")
+    parser.add_argument(
+        "--film",
+        type=Path,
+        default=None,
+        help="play this policy, as --out writes them, on an unseen drive of --unseen, and film it",
+    )
     chosen = parser.parse_args()
+    if chosen.film:
+        path = chosen.film.with_suffix(".webp")
+        film(Network.read(chosen.film), chosen.unseen, FIRST_UNSEEN, chosen.minutes, path)
+        return
     if chosen.out:
         chosen.out.mkdir(parents=True, exist_ok=True)
     with closing(Bench(chosen)) as bench:

@@ -6,11 +6,16 @@ import json
 import shutil
 import subprocess
 import sys
+from contextlib import closing
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
 import pytest
+from PIL import Image
+
+from automotive_cosim.envs.flat_drive import ACTIONS, FlatDriveEnv
 
 FOLDER = Path(__file__).parents[2] / "benchmarks"
 GRID = FOLDER.parent / "sumo_scenarios" / "grid" / "grid.net.xml"
@@ -115,3 +120,22 @@ def test_it_measures(name: str, tmp_path: Path) -> None:
     if name == "peers":  # a way that fails is a line of its table, as where sumo-rl is not installed
         failed = [line.split("  ")[0] for line in done.stdout.splitlines() if "Error" in line]
         assert set(failed) <= {"sumo-rl, libsumo", "sumo-rl, traci"}, done.stdout
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_a_policy_is_filmed_around_its_alerts(tmp_path: Path) -> None:
+    if not FOLDER.is_dir():
+        pytest.skip("not run from a checkout")
+    with closing(FlatDriveEnv("grid_june")) as env:
+        (size,) = env.observation_space.shape
+    biases = np.zeros(len(ACTIONS))
+    biases[-1] = 1.0
+    np.savez(tmp_path / "loud.npz", weights0=np.zeros((len(ACTIONS), size)), biases0=biases)
+    words = ("--film", "loud.npz", "--unseen", "grid_june", "--minutes", "0.2")
+    done = subprocess.run(
+        [sys.executable, FOLDER / "ppo_drive.py", *words], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    with Image.open(tmp_path / "loud.webp") as film:
+        assert film.n_frames == int(done.stdout.split()[-2]) > 3  # type: ignore[attr-defined]
