@@ -127,6 +127,7 @@ _LINES: Mapping[str, frozenset[Facet]] = {
     "gps": frozenset({Facet.PLACE, Facet.VIEW}),
     "road": frozenset({Facet.ROAD, Facet.SIGN, Facet.VIEW, Facet.PLACE}),
     "motion": frozenset({Facet.SPEED, Facet.VIEW, Facet.PLACE}),
+    "traffic": frozenset({Facet.TRAFFIC}),
     "sky": frozenset({Facet.CLOCK, Facet.PLACE, Facet.VIEW}),
     "weather": frozenset({Facet.WEATHER, Facet.PLACE}),
     "climate": frozenset({Facet.PLACE, Facet.CLOCK}),
