@@ -10,7 +10,7 @@ from __future__ import annotations
 import os
 import sys
 import threading
-from collections import OrderedDict
+from collections import Counter, OrderedDict
 from collections.abc import Iterator, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import replace
@@ -558,9 +558,14 @@ class Simulations:
             self._kept.popitem()[1].close()
 
     def _make_room(self) -> None:
-        for setup in list(self._kept)[:-1]:
-            memory_bytes = sum(simulation.memory_bytes for simulation in self._kept.values())
-            if len(self._kept) <= self._count_limit and memory_bytes <= self._memory_limit_bytes:
+        while len(self._kept) > self._count_limit or self._memory_bytes > self._memory_limit_bytes:
+            free = [setup for setup in list(self._kept)[:-1] if self._kept[setup] not in self._held]
+            if not free:
                 break
-            if self._kept[setup] not in self._held:
-                self._kept.pop(setup).close()
+            traffics = Counter(setup.traffic for setup in self._kept)
+            # first one whose traffic is kept elsewhere on earth: it comes back by a fork
+            self._kept.pop(next((setup for setup in free if traffics[setup.traffic] > 1), free[0])).close()
+
+    @property
+    def _memory_bytes(self) -> int:
+        return sum(simulation.memory_bytes for simulation in self._kept.values())

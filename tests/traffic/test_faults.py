@@ -16,11 +16,12 @@ from threading import Timer
 import pytest
 
 from automotive_cosim.errors import NoRoomError, ScenarioError, SetupError, TrafficError, UnknownNameError
-from automotive_cosim.scenarios import Scenario
+from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.fork import Forked, Simulations
+from automotive_cosim.traffic.fork import CAN_FORK, Forked, Simulations
 from automotive_cosim.traffic.in_process import InProcess
+from automotive_cosim.traffic.options import Setup
 
 pytestmark = pytest.mark.sumo
 
@@ -262,6 +263,18 @@ def test_the_pool_keeps_the_latest(grid: Scenario, hurried: EgoPlan) -> None:
     traffic.close()
     pool.close()
     pool.close()
+
+
+@pytest.mark.skipif(not CAN_FORK, reason="elsewhere each place is warmed up")
+def test_of_one_traffic_at_two_places_the_pool_gives_up_one_first(grid: Scenario) -> None:
+    elsewhere = open_scenario("grid", origin=(-3.7, 40.4))
+    assert Setup(elsewhere).traffic != Setup(grid).traffic, "its weather is drawn"
+    there = open_scenario("grid", origin=(13.4, 52.5))
+    with closing(Simulations(count_limit=2)) as pool:
+        home = pool.warm(grid, 1)
+        pool.warm(elsewhere, 1)
+        pool.warm(there, 1)
+        assert pool.warm(grid, 1) is home, "used longest ago, but its traffic would have to be warmed up"
 
 
 def test_a_process_holds_one_simulation_of_its_own(grid: Scenario, hurried: EgoPlan) -> None:
