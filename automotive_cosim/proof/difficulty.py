@@ -36,9 +36,8 @@ from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
-Floats: TypeAlias = NDArray[np.float64]
-Names: TypeAlias = Sequence[str]
-Seen: TypeAlias = Mapping[str, Outcomes]
+Reals: TypeAlias = NDArray[np.float64]
+OutcomesByHalf: TypeAlias = Mapping[str, Outcomes]
 """Outcomes by task and half."""
 
 TOLD = frozenset({"oracle", "rule-perfect"})
@@ -69,7 +68,7 @@ SAVED_EVERY = 100
 
 
 @dataclass(frozen=True, slots=True)
-class Fit:
+class Rasch:
     """What the model makes of outcomes."""
 
     difficulties: Mapping[str, tuple[float, float]]
@@ -80,19 +79,14 @@ class Fit:
     """Standard deviation of the difficulties."""
 
 
-def fit(seen: Seen) -> Fit:
+def fit(seen: OutcomesByHalf) -> Rasch:
     """Fits the model."""
     who = sorted({name for outcomes in seen.values() for name in outcomes.won})
     counts = np.array([[outcomes.won.get(name, (0, 0)) for name in who] for outcomes in seen.values()], dtype=float)
     won, lost = counts[..., 0], counts[..., 1] - counts[..., 0]
     abilities, spread = np.zeros(len(who)), 1.5
-    prior = np.exp(-(GRID**2) / 2)
     for _ in range(ROUNDS):
-        before, at = abilities, GRID * spread
-        chances = _chances(abilities, at)
-        weight = won @ np.log(chances) + lost @ np.log1p(-chances)
-        weight = np.exp(weight - weight.max(axis=1, keepdims=True)) * prior
-        weight /= weight.sum(axis=1, keepdims=True)
+        before, weight, at = abilities, _weights(won, lost, abilities, spread), GRID * spread
         wins, trials = won.T @ weight, (won + lost).T @ weight  # expected, by contestant and difficulty
         for _ in range(4):
             chances = _chances(abilities, at)
@@ -101,22 +95,32 @@ def fit(seen: Seen) -> Fit:
         spread = float(np.sqrt((weight @ at**2).mean()))
         if np.abs(abilities - before).max() < TO_WITHIN:
             break
+    weight, at = _weights(won, lost, abilities, spread), GRID * spread
     mean = weight @ at
     error = np.sqrt(weight @ at**2 - mean**2)
     found = {name: (float(logits), float(by)) for name, logits, by in zip(seen, mean, error, strict=True)}
-    return Fit(found, dict(zip(who, map(float, abilities), strict=True)), spread)
+    return Rasch(found, dict(zip(who, map(float, abilities), strict=True)), spread)
 
 
-def _chances(abilities: Floats, difficulties: Floats) -> Floats:
+def _weights(won: Reals, lost: Reals, abilities: Reals, spread: float) -> Reals:
+    """How likely each difficulty on the grid is, by half."""
+    chances = _chances(abilities, GRID * spread)
+    likely = won @ np.log(chances) + lost @ np.log1p(-chances) - GRID**2 / 2
+    likely = np.exp(likely - likely.max(axis=1, keepdims=True))
+    weights: Reals = likely / likely.sum(axis=1, keepdims=True)
+    return weights
+
+
+def _chances(abilities: Reals, difficulties: Reals) -> Reals:
     """Of winning, by ability and difficulty."""
-    chances: Floats = 1 / (1 + np.exp(difficulties[None, :] - abilities[:, None]))
+    chances: Reals = 1 / (1 + np.exp(difficulties[None, :] - abilities[:, None]))
     return chances
 
 
 # --- the core subset --------------------------------------------------------------------------------------
 
 
-def core(seen: Seen, fitted: Fit, size: int = CORE_SIZE) -> tuple[str, ...]:
+def core(seen: OutcomesByHalf, fitted: Rasch, size: int = CORE_SIZE) -> tuple[str, ...]:
     """Ids of the tasks that tell the contestants apart best, in the catalogue's order.
 
     Suites and subsets get their shares of the eligible tasks: those of which ``LEAST_CONTESTANTS`` have tried each
@@ -143,7 +147,7 @@ def core(seen: Seen, fitted: Fit, size: int = CORE_SIZE) -> tuple[str, ...]:
     return tuple(task_id for task_id in CATALOGUE if task_id in chosen)
 
 
-def _is_eligible(seen: Seen, name: str) -> bool:
+def _is_eligible(seen: OutcomesByHalf, name: str) -> bool:
     return name in seen and len(seen[name].won) >= LEAST_CONTESTANTS
 
 
@@ -178,7 +182,7 @@ class Agreement:
         )
 
 
-def agreement(seen: Seen, chosen: Names, draws: int = DRAWS, seed: int = 0) -> Agreement:
+def agreement(seen: OutcomesByHalf, chosen: Sequence[str], draws: int = DRAWS, seed: int = 0) -> Agreement:
     """Compares success on some tasks with success on all; contestants that tried few halves are left out."""
     tried = Counter(name for outcomes in seen.values() for name in outcomes.won)
     who = sorted(name for name, halves in tried.items() if halves >= LEAST_SHARE * len(seen))
@@ -213,14 +217,14 @@ def agreement(seen: Seen, chosen: Names, draws: int = DRAWS, seed: int = 0) -> A
     )
 
 
-def _success(counts: Floats, tasks: NDArray[np.intp]) -> Floats:
+def _success(counts: Reals, tasks: NDArray[np.intp]) -> Reals:
     """Share won by contestant; of none tried, none."""
     won, tried = counts[tasks].sum(axis=0).T
-    share: Floats = won / np.maximum(tried, 1)
+    share: Reals = won / np.maximum(tried, 1)
     return share
 
 
-def correlation(one: Floats, other: Floats) -> float:
+def correlation(one: Reals, other: Reals) -> float:
     """Spearman's rank correlation; equal values share a rank."""
     ranks = [
         (values[:, None] > values).sum(axis=1) - (values[:, None] < values).sum(axis=1) for values in (one, other)
@@ -258,7 +262,7 @@ def contestant(agent: str, model: str) -> str:
     return agent if model in ("", "none") else f"{agent}, {model}"
 
 
-def play(tasks: Names, suite: str, record: Seen, seed: int = 0) -> Iterator[tuple[str, Outcomes]]:
+def play(tasks: Sequence[str], suite: str, record: OutcomesByHalf, seed: int = 0) -> Iterator[tuple[str, Outcomes]]:
     """Plays each half that ``BUILT_IN`` have not tried, all of them from the same hand-over.
 
     A half whose situation does not come about with this seed is left out.
@@ -291,12 +295,12 @@ def _now(name: str) -> str:
     return fingerprint(CATALOGUE[task_id], half)
 
 
-def _known(record: Seen, name: str) -> Mapping[str, tuple[int, int]]:
+def _known(record: OutcomesByHalf, name: str) -> Mapping[str, tuple[int, int]]:
     """What is on record of a half as it is now."""
     return record[name].won if name in record and record[name].half == _now(name) else {}
 
 
-def merged(record: Seen, new: Seen) -> dict[str, Outcomes]:
+def merged(record: OutcomesByHalf, new: OutcomesByHalf) -> dict[str, Outcomes]:
     """A record with new outcomes in place of the same contestants' older ones, without halves that have changed."""
     names = [f"{task.id}/{half}" for task in CATALOGUE.values() for half in task.halves]
     found = {
@@ -307,7 +311,7 @@ def merged(record: Seen, new: Seen) -> dict[str, Outcomes]:
     return {name: outcomes for name, outcomes in found.items() if outcomes.won}
 
 
-def measured(seen: Seen) -> Difficulties:
+def measured(seen: OutcomesByHalf) -> Difficulties:
     """Everything that a record says."""
     fitted = fit(seen)
     halves = {name: Difficulty(*fitted.difficulties[name], seen[name]) for name in seen}
@@ -323,7 +327,7 @@ def main() -> None:
     parser.add_argument("--suite", default=str(Suite.STANDARD), help="standard, hard, limits, clarify or all")
     parser.add_argument("--out", type=Path, default=RECORD, help="the record, by default the shipped one")
     given = parser.parse_args()
-    record: Seen = {name: each.outcomes for name, each in read(given.out).halves.items()}
+    record: OutcomesByHalf = {name: each.outcomes for name, each in read(given.out).halves.items()}
     seen = merged(record, outcomes_of(given.folders, given.name))
     if given.play:
         known = seen

@@ -13,7 +13,7 @@ from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pai
 from automotive_cosim.report.stats import bracketed, clustered_mean, compare
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
-from automotive_cosim.run.difficulty import Level, level, measured
+from automotive_cosim.run.difficulty import WonBy, level, measured
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.store import read_trace, trace_file
@@ -193,7 +193,7 @@ def by_difficulty(results: Results) -> Table:
     note = (
         "Halves by who has won them before: the rule stand-in, a large language model that answers by hand, or few."
     )
-    return by_label(results, "difficulty", "difficulty", _level, tuple(Level), note)
+    return by_label(results, "difficulty", "difficulty", _level, tuple(WonBy), note)
 
 
 def _level(row: EpisodeRow) -> Sequence[str]:

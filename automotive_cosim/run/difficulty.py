@@ -31,7 +31,7 @@ PROGRAM, CAREFUL = "asurada, rules", "careful"
 were given by hand through the same prompts."""
 
 
-class Level(StrEnum):
+class WonBy(StrEnum):
     """Who wins a half at least every other time."""
 
     PROGRAM = "a program wins it"
@@ -131,16 +131,16 @@ def hardest(task: Task) -> Difficulty | None:
     return max(known, key=lambda each: each.logits) if len(known) == len(found) else None
 
 
-def level(difficulty: Difficulty | None) -> Level:
+def level(difficulty: Difficulty | None) -> WonBy:
     """Who wins it."""
     abilities = shipped().abilities
     if difficulty is None or not abilities.keys() >= {PROGRAM, CAREFUL}:
-        return Level.UNKNOWN
+        return WonBy.UNKNOWN
     if difficulty.logits <= abilities[PROGRAM]:
-        return Level.PROGRAM
+        return WonBy.PROGRAM
     if CAREFUL not in difficulty.outcomes.won:
-        return Level.OPEN
-    return Level.CAREFUL if difficulty.logits <= abilities[CAREFUL] else Level.FEW
+        return WonBy.OPEN
+    return WonBy.CAREFUL if difficulty.logits <= abilities[CAREFUL] else WonBy.FEW
 
 
 def rated(task: Task) -> dict[str, Any]:

@@ -9,7 +9,7 @@ import pytest
 from automotive_cosim.proof import difficulty
 from automotive_cosim.proof.difficulty import agreement, core, correlation, fit, measured, merged, outcomes_of
 from automotive_cosim.run import difficulty as record
-from automotive_cosim.run.difficulty import Difficulty, Level, Outcomes
+from automotive_cosim.run.difficulty import Difficulty, Outcomes, WonBy
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.plan import choose
@@ -153,7 +153,7 @@ def test_a_half_that_has_changed_is_not_measured(monkeypatch):
     monkeypatch.setattr(record, "fingerprint", lambda task, half: "another")
     record.measured.cache_clear()
     assert record.measured(task_id, half) is None
-    assert record.level(record.hardest(CATALOGUE[task_id])) is Level.UNKNOWN
+    assert record.level(record.hardest(CATALOGUE[task_id])) is WonBy.UNKNOWN
     record.measured.cache_clear()
 
 
@@ -167,9 +167,9 @@ def test_a_task_is_as_hard_as_its_harder_half():
 def test_levels_lie_between_the_contestants_they_name():
     able = record.shipped().abilities
     at = {
-        able[record.PROGRAM] - 0.1: (Level.PROGRAM, Level.PROGRAM),
-        able[record.PROGRAM] + 0.1: (Level.CAREFUL, Level.OPEN),
-        able[record.CAREFUL] + 0.1: (Level.FEW, Level.OPEN),
+        able[record.PROGRAM] - 0.1: (WonBy.PROGRAM, WonBy.PROGRAM),
+        able[record.PROGRAM] + 0.1: (WonBy.CAREFUL, WonBy.OPEN),
+        able[record.CAREFUL] + 0.1: (WonBy.FEW, WonBy.OPEN),
     }
     for logits, levels in at.items():
         tried = [Outcomes("", {record.CAREFUL: (1, 1)}), Outcomes("", {})]
