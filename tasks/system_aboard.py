@@ -241,7 +241,7 @@ REAR_SCREEN = hazard(
     ),
     act(
         replace(_FILM, start="2026-11-18T21:30:00", weather=SUNNY),
-        SignalWithin(HMI.REAR_SCREEN, 10.0, 30.0),
+        SignalWithin(HMI.REAR_SCREEN, 10.0, 40.0),
         CABIN_SCREEN,
         Slide("cabin.rear_screen", 20.0),
         rule=SCREEN_SOURCE,

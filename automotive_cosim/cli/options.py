@@ -48,10 +48,12 @@ TasksFrom = Annotated[
 
 
 TASKS_HELP = (
-    "Ids, patterns, tags, modules, dimensions, subsets, abilities, general, safety, all; separated by commas."
+    "Ids, patterns, tags, modules, dimensions, subsets, abilities, core, general, safety, all; separated by commas."
 )
 TaskNames = Annotated[str, typer.Option("--tasks", help=TASKS_HELP)]
-SUITE_HELP = "Task suite: standard, hard, limits, clarify or all. An id selects a task in any suite."
+SUITE_HELP = (
+    "Task suite: standard, hard, limits, clarify or all. An id selects a task in any suite, and core sixty."
+)
 SuiteName = Annotated[str, typer.Option("--suite", help=SUITE_HELP)]
 """For every command that chooses tasks by words."""
 

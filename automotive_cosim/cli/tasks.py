@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 PICTURES = (".webp", ".png", ".jpg")
 PICTURE_WIDTH = 640
 NOT_MEASURED = "not measured since the situation last changed"
+NOT_TRIED = "not measured since the half last changed"
 
 app = typer.Typer(help="List, show, export and prove tasks.", no_args_is_help=True)
 app.command("validate")(validate)
@@ -40,19 +41,21 @@ def list_(
     tasks_from: TasksFrom = None,
 ) -> None:
     """List the tasks, one per line, then their counts by module and dimension, and in the hard suite by ability."""
-    from automotive_cosim.tasking.catalogue import described
+    from automotive_cosim.run.difficulty import hardest, level, rated
 
     chosen = _chosen(tasks, suite)
     chosen = chosen if subset is None else _within(chosen, subset)
     if as_json:
-        print_json([described(task) for task in chosen])
+        print_json([rated(task) for task in chosen])
         return
     width = max(len(task.id) for task in chosen)
     for task in chosen:
         halves = "pair" if task.second else "single"
         steps = counted(task.optimal_steps, "step")
         ability = "" if task.ability is None else f"{task.ability:<9}  "
-        typer.echo(f"{task.id:<{width}}  {halves:<6}  {task.dimension:<18}  {task.difficulty:<6}  {ability}{steps}")
+        typer.echo(
+            f"{task.id:<{width}}  {halves:<6}  {task.dimension:<18}  {level(hardest(task)):<23}  {ability}{steps}"
+        )
     typer.echo(f"\n{_cells(chosen)}\n{_abilities(chosen)}{_instances(chosen)}")
 
 
@@ -65,9 +68,9 @@ def export(
 ) -> None:
     """Write the catalogue to a file, one row per task."""
     from automotive_cosim.errors import UserError
-    from automotive_cosim.tasking.catalogue import described
+    from automotive_cosim.run.difficulty import rated
 
-    rows = [described(task) for task in _chosen(tasks, suite)]
+    rows = [rated(task) for task in _chosen(tasks, suite)]
     if path.suffix == ".json":
         text = json.dumps(rows, ensure_ascii=False, indent=1) + "\n"
     elif path.suffix == ".csv":
@@ -106,7 +109,7 @@ def show(
     """Show what the driver says, when the task starts, and what is right."""
     from automotive_cosim.errors import UserError
     from automotive_cosim.proof.reach import measured
-    from automotive_cosim.tasking.catalogue import described
+    from automotive_cosim.run import difficulty
     from automotive_cosim.tasking.words import choices_in_words, half_in_words
     from automotive_cosim.tasks import CATALOGUE
 
@@ -117,15 +120,19 @@ def show(
     if picture is not None:
         _draw(entry, picture, seed)
     halves = {
-        name: [*half_in_words(entry.half(name)), ("reached", str(measured(task, name) or NOT_MEASURED))]
+        name: [
+            *half_in_words(entry.half(name)),
+            ("reached", str(measured(task, name) or NOT_MEASURED)),
+            ("won by", str(difficulty.measured(task, name) or NOT_TRIED)),
+        ]
         for name in entry.halves
     }
     if as_json:
-        print_json(described(entry) | {"halves": halves})
+        print_json(difficulty.rated(entry) | {"halves": halves})
         return
     steps = counted(entry.optimal_steps, "step")
     kind = f"{entry.suite} suite, {entry.module}, {entry.dimension}, {entry.subset}"
-    typer.echo(f"{entry.id}  ({kind}, {entry.difficulty}, {steps})")
+    typer.echo(f"{entry.id}  ({kind}, {difficulty.level(difficulty.hardest(entry))}, {steps})")
     for words in entry.templates:
         typer.echo(f"  “{words}”")
     for name, choices in entry.parameters.items():

@@ -6,6 +6,7 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
+from automotive_cosim.cockpit.messages import Back
 from automotive_cosim.cockpit.signals import ADAS, LIGHTS, Signal
 from automotive_cosim.cockpit.state import AppData, Command, CommandRecord, QuestionRecord, State
 from automotive_cosim.contracts import Cruise, Feedback, FeedbackCode, Hazards
@@ -101,6 +102,18 @@ class Put(Command):
         """Changes the same fields, if all that it aims at is among the keys, so that nothing is slipped in."""
         if self.prepares or record.aims <= frozenset(keys):
             state.keep(replace(state.of(type(self.data)), **record.changes))  # type: ignore[type-var]
+
+
+@dataclass(frozen=True, slots=True)
+class Remove(Put):
+    """Remove what the page is about, say so, and leave the page."""
+
+    def perform(self, state: State) -> Feedback:
+        """The new data, on the previous screen."""
+        done = state.change(self.data, self.said)
+        if done.code is FeedbackCode.OK:
+            Back().perform(state)
+        return done
 
 
 @dataclass(frozen=True, slots=True)

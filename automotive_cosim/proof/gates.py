@@ -22,7 +22,8 @@
 | functions | by calls of functions, translated by machine, the reference solution wins too, with a wrong value it \
 loses, and to end or to warn at once wins no pair (``proof.functions``); not of tasks that need the picture |
 | trivial | no negative control wins both halves of a pair, or the only half |
-| random | random actions win at most one of twenty |
+| random | random actions win at most one of twenty, or no more than their declarations win by chance where a \
+declaration alone is right: what would come about once in a hundred times |
 | leak | without goal and solutions, every observation is the same, byte for byte |
 | road | a parked car does not reach the trigger |
 | law | what is right in one half fails in the other |
@@ -93,6 +94,8 @@ PACE = 0.7
 """Share of the deadline that a reference solution may take, so that agents have a chance."""
 RANDOM_RUNS = 20
 RANDOM_WINS = 1
+CHANCE = 0.01
+"""What comes about less often is no chance; our choice."""
 PRESSES = 60
 """Steps for pressing everything: more controls than the fullest screen has."""
 LEISURE = 1.5
@@ -391,13 +394,27 @@ def parted(grounds: dict[str, Ground]) -> Wrong:
 
 
 def random(ground: Ground) -> Wrong:
-    """Plays random actions."""
-    wins = 0
-    for number in range(RANDOM_RUNS):
-        wins += ground.play(ground.agent(Random(number)), stop_when_lost=True).success
-        if wins > RANDOM_WINS:
-            yield f"random actions win {wins} of {number + 1}"
-            return
+    """Plays random actions. Of runs that end with a declaration, chance alone wins the share of declarations that
+    win by themselves: a third where the driver has to be refused."""
+    runs = [ground.play(ground.agent(Random(number)), stop_when_lost=True) for number in range(RANDOM_RUNS)]
+    wins = sum(run.success for run in runs)
+    if wins <= RANDOM_WINS:
+        return
+    declared = sum(run.actions[-1] is not None and run.actions[-1].goal_status is not None for run in runs)
+    right = sum(ground.declares(status).success for status in GoalStatus) / len(GoalStatus)
+    most = max(RANDOM_WINS, by_chance(declared, right))
+    if wins > most:
+        yield f"random actions win {wins} of {RANDOM_RUNS}, where chance explains {most}"
+
+
+def by_chance(trials: int, share: float) -> int:
+    """The most wins of so many trials, each won with the same chance, that come about at least once in a hundred
+    times (binomial distribution)."""
+    at_least = [
+        sum(math.comb(trials, won) * share**won * (1 - share) ** (trials - won) for won in range(wins, trials + 1))
+        for wins in range(trials + 1)
+    ]
+    return max(wins for wins, chance in enumerate(at_least) if chance >= CHANCE)
 
 
 def _wins(ground: Ground, right: Played, moments: tuple[object, ...]) -> bool:

@@ -44,9 +44,10 @@ class ProofSettings:
     """What is proved."""
 
     tasks: tuple[str, ...] = ("all",)
-    """Ids, patterns, tags, modules, dimensions, subsets, abilities, general, safety, all; separated by commas."""
+    """Ids, patterns, tags, modules, dimensions, subsets, abilities, core, general, safety, all; separated by
+    commas."""
     suite: str = str(Suite.STANDARD)
-    """Task suite: standard, hard, limits, clarify or all. An id selects a task in any suite."""
+    """Task suite: standard, hard, limits, clarify or all. An id selects a task in any suite, and core sixty."""
     part: Annotated[PartOf | None, Option(form="K/N", read=PartOf.read)] = None
     """Prove only part K of N, as in 3/10; together, the parts are all tasks."""
     seeds: tuple[int, ...] = (0, 1, 2)

@@ -82,6 +82,7 @@ def all_tables(results: Results, found: Mapping[str, FailureClass]) -> list[Tabl
         findings.harm(shared),
         findings.place_effect(shared),
         *findings.by_condition(shared),
+        findings.by_difficulty(shared),
         findings.by_label(
             shared, "ability", "abilities", lambda row: () if row.ability is None else (row.ability,)
         ),

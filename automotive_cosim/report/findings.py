@@ -13,6 +13,7 @@ from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pai
 from automotive_cosim.report.stats import bracketed, clustered_mean, compare
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow
+from automotive_cosim.run.difficulty import WonBy, level, measured
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.store import read_trace, trace_file
@@ -165,9 +166,17 @@ def _effect(results: Results, full: Contestant, other: Contestant, decided: bool
     return Cell(f"{found.difference:+.0%}{bracketed(found.interval, '+.0%')}, n={found.count}", ids)
 
 
-def by_label(results: Results, name: str, plural: str, of: Callable[[EpisodeRow], Sequence[str]]) -> Table:
-    """Success by a label of which an episode may have several."""
-    values = sorted({value for row in results.rows for value in of(row)})
+def by_label(
+    results: Results,
+    name: str,
+    plural: str,
+    of: Callable[[EpisodeRow], Sequence[str]],
+    order: Sequence[str] = (),
+    note: str = "A task may count in several rows.",
+) -> Table:
+    """Success by a label of which an episode may have several; those in ``order`` come in it, others by name."""
+    found = {value for row in results.rows for value in of(row)}
+    values = [value for value in order if value in found] + sorted(found.difference(order))
     rows: list[TableRow] = [
         (
             value,
@@ -176,8 +185,19 @@ def by_label(results: Results, name: str, plural: str, of: Callable[[EpisodeRow]
         for value in values
     ]
     columns = (name.capitalize(), *(each.label for each in results.contestants))
-    note = f"A task may count in several rows. All halves. {RATES}"
-    return Table(f"by_{plural}", f"Success by {name}", columns, tuple(rows), note)
+    return Table(f"by_{plural}", f"Success by {name}", columns, tuple(rows), f"{note} All halves. {RATES}")
+
+
+def by_difficulty(results: Results) -> Table:
+    """Success by measured difficulty."""
+    note = (
+        "Halves by who has won them before: the rule stand-in, a large language model that answers by hand, or few."
+    )
+    return by_label(results, "difficulty", "difficulty", _level, tuple(WonBy), note)
+
+
+def _level(row: EpisodeRow) -> Sequence[str]:
+    return (level(measured(row.task, row.half)),)
 
 
 def prompts(results: Results) -> Table:

@@ -27,6 +27,7 @@ from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
+from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
 from automotive_cosim.run.former import plan_values
@@ -317,7 +318,8 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
 
     Args:
         asked: ids, patterns, tags and so on.
-        suite: the suite that patterns and tags select from, or ``all``; an id names its task in any.
+        suite: the suite that patterns and tags select from, or ``all``; an id names its task in any, and ``core``
+            those of the core subset.
 
     Raises:
         UnknownNameError: there is no such suite, or a word selects none of its tasks.
@@ -328,9 +330,9 @@ def choose(asked: Iterable[str], suite: str = Suite.STANDARD) -> tuple[str, ...]
     chosen: set[str] = set()
     for word in asked:
         named = {task.id for task in there if fnmatchcase(task.id, word) or word in _words(task)}
-        named |= {word} & set(CATALOGUE)
+        named |= {word, *(difficulty.shipped().core if word == difficulty.CORE else ())} & set(CATALOGUE)
         if not named:
-            known = set(CATALOGUE).union(*map(_words, there))
+            known = {difficulty.CORE, *CATALOGUE}.union(*map(_words, there))
             raise UnknownNameError("task, pattern or tag", word, known, "automotive-cosim tasks list")
         chosen |= named
     return tuple(task_id for task_id in CATALOGUE if task_id in chosen)

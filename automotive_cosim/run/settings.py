@@ -28,11 +28,11 @@ class EvaluationSettings(ConditionLists):
     models: Annotated[tuple[str, ...], MinLen(1)] = ("rules",)
     """Models for the agents that use one."""
     tasks: Annotated[tuple[str, ...], Option(default="all")] = ()
-    """Ids, patterns such as `hvac_*`, tags, modules, dimensions, subsets, abilities, `general`, `safety` or `all`;
-    none beside drives and trials unless given."""
+    """Ids, patterns such as `hvac_*`, tags, modules, dimensions, subsets, abilities, `core`, `general`, `safety` or
+    `all`; none beside drives and trials unless given."""
     suite: Annotated[str, OneOf(SUITES, "suite")] = str(Suite.STANDARD)
     """The suite they are chosen from: `standard`, `hard`, `limits`, `clarify` or `all`. An id selects a task in any
-    suite."""
+    suite, and `core` sixty."""
     drives: tuple[str, ...] = ()
     """Drives, instead of tasks or beside those that are named: families, patterns such as `grid_*`, scenarios,
     seasons or `all`."""

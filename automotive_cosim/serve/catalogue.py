@@ -9,8 +9,8 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts import Json
 from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.geo.place import shipped
+from automotive_cosim.run.difficulty import rated
 from automotive_cosim.serve.records import NotHereError
-from automotive_cosim.tasking.catalogue import described
 from automotive_cosim.tasking.parameters import FromCockpit
 from automotive_cosim.tasking.task import Basis, Half, Task
 from automotive_cosim.tasking.words import choices_in_words, half_in_words
@@ -19,7 +19,7 @@ from automotive_cosim.tasks import CATALOGUE
 
 def tasks() -> Json:
     """The catalogue, a line for each task."""
-    return {"tasks": [described(task) | {"said": _said(task)} for task in CATALOGUE.values()]}
+    return {"tasks": [rated(task) | {"said": _said(task)} for task in CATALOGUE.values()]}
 
 
 def _said(found: Task) -> str:
@@ -44,7 +44,7 @@ def task(name: str) -> Json:
         half = found.half(half_name)
         halves.append({"name": half_name, "words": list(half_in_words(half)), "laws": _laws(half)})
     return {
-        **described(found),
+        **rated(found),
         "values": {each: choices_in_words(choices) for each, choices in found.parameters.items()},
         "halves": halves,
     }

@@ -102,7 +102,6 @@ def described(task: Task) -> dict[str, Any]:
         "skills": sorted(task.skills),
         "ability": "" if task.ability is None else str(task.ability),
         "guess_loses": task.guess_loses,
-        "difficulty": task.difficulty,
         "basis": str(task.first.basis),
         "rule": task.first.rule,
         "optimal_steps": task.optimal_steps,

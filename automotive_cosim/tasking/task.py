@@ -331,19 +331,6 @@ class Task:
         return self.dimension.subset
 
     @property
-    def difficulty(self) -> str:
-        """``easy``, ``medium`` or ``hard``: no point, one, or more.
-
-        One point each for four steps, for seven, for words that do not say what to do, for a pair, and for two
-        needs or two modules at once.
-        """
-        points = (
-            (self.optimal_steps >= 4) + (self.optimal_steps >= 7) + self.is_implicit + (self.second is not None)
-        )
-        points += bool(self.tags & {"conflict", "two_modules"})
-        return ("easy", "medium", "hard")[min(points, 2)]
-
-    @property
     def skills(self) -> frozenset[str]:
         """What an agent must be able to do, derived from the reference solutions and the halves.
 

@@ -267,7 +267,7 @@ def _shopping(line: str, kept: tuple[str, ...], deletes: Moves, wrong: Moves) ->
 
 
 def _strikes(*things: str) -> Moves:
-    return tuple(move for thing in things for move in (Tap(text=thing), Tap("note.delete"), Tap("note.back")))
+    return tuple(move for thing in things for move in (Tap(text=thing), Tap("note.delete")))
 
 
 BREAD_MILK = _strikes("bread", "oat milk")

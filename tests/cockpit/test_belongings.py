@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -12,7 +14,7 @@ from automotive_cosim.cockpit.apps.trip.state import TripMeter
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.signals import CABIN, HMI
+from automotive_cosim.cockpit.signals import CABIN, HMI, LINK
 from automotive_cosim.contracts import FeedbackCode
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.errors import UnknownNameError, UserError
@@ -78,6 +80,19 @@ def test_an_appointment_is_moved_and_removed_and_nothing_else():
     assert [entry["at"] for entry in entries] == ["10:00", "14:45"]
     tap(cockpit, "appointment.remove")
     assert cockpit.commands()["calendar.entries"] == entries[:1]
+    assert cockpit.screen == "calendar"
+
+
+def test_what_cannot_be_done_now_is_disabled_and_says_why():
+    cockpit = parked(replace(BROUGHT, agenda=(Appointment("10:00", "Bank", ""),)))
+    cockpit.open_app("calendar")
+    tap(cockpit, "calendar.0")
+    assert shown(cockpit, "appointment.place") == "No place is given"
+    cockpit.open_app("parking")
+    cockpit.command(LINK.MOBILE_DATA, False)
+    pass_s(cockpit, 1)
+    (disabled,) = (widget for widget in cockpit.tree.walk() if widget.disabled)
+    assert (disabled.key, disabled.disabled) == ("parking.pay", "Paying needs a connection")
 
 
 def test_trip_b_counts_on_and_is_reset_by_itself():

@@ -8,7 +8,7 @@ from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.commands import Set
 from automotive_cosim.cockpit.lacking import Lacking
 from automotive_cosim.cockpit.registry import pages
-from automotive_cosim.cockpit.signals import ACTUATORS, BODY, HVAC, SEAT, TYRE
+from automotive_cosim.cockpit.signals import ACTUATORS, BODY, HVAC, MEDIA, SEAT, TYRE
 from automotive_cosim.cockpit.widgets import Slider
 from automotive_cosim.contracts import FeedbackCode
 from automotive_cosim.tasking.instance import draw
@@ -55,6 +55,13 @@ def test_an_empty_row_says_what_is_missing():
     cockpit = car(Lacking("rear wiper", (BODY.REAR_WIPER,)))
     cockpit.visit("vehicle")
     assert "This car has no rear wiper" in {widget.text for widget in cockpit.tree.walk()}
+
+
+def test_a_missing_part_says_so_in_its_place():
+    cockpit = car(Lacking("digital radio", (MEDIA.SOURCE,), ("DAB",), keys=("media.source.dab",)))
+    cockpit.visit("media")
+    (line,) = (each for each in cockpit.tree.walk() if each.description == "This car has no digital radio")
+    assert (line.text, line.listens) == ("Not fitted", False)
 
 
 @over(LACKS)

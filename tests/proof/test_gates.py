@@ -7,6 +7,7 @@ from datetime import timedelta
 import pytest
 
 from automotive_cosim.agents.by_calls import translated
+from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.agents.trivial import Random
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, HVAC, SEAT
 from automotive_cosim.contracts import (
@@ -314,10 +315,16 @@ def test_functions_win_what_touch_wins_and_nothing_by_themselves(ground):
     assert "complete at once wins by functions" in list(functions_are_not_enough({"first": ground(free)}))
 
 
-def test_a_task_that_luck_wins_is_seen(ground):
-    everything = frozenset(ground(SOUND).episode.moments[0].commands)
-    (wrong,) = gates.random(ground(changed(goal=NothingDone(), moves=(), may_write=everything)))
-    assert wrong.startswith("random actions win 2")
+def test_a_task_that_luck_wins_is_seen(ground, monkeypatch):
+    monkeypatch.setattr(gates, "Random", lambda number: Oracle())
+    assert list(gates.random(ground(SOUND))) == ["random actions win 20 of 20, where chance explains 1"]
+
+
+def test_a_refusal_may_be_won_by_the_declarations_of_chance(ground):
+    refused = ground(changed(goal=NothingDone(), moves=(), declares=GoalStatus.INFEASIBLE))
+    assert list(gates.random(refused)) == []
+    assert [gates.by_chance(trials, 1 / 3) for trials in (0, 1, 4, 5, 9, 20)] == [0, 1, 4, 4, 6, 12]
+    assert gates.by_chance(20, 0.0) == 0
 
 
 def test_only_what_is_lost_is_given_up(ground):

@@ -143,6 +143,8 @@ def _for_them(rect: Rect, state: State) -> Widget:
                 signals,
                 state.vehicle.held(SEAT.PASSENGER_AIRBAG),
             ),
-            slider(lower, "cabin.rear_screen", say("Rear screen"), Icon.SCREEN, HMI.REAR_SCREEN, signals),
+            slider(
+                lower, "cabin.rear_screen", say("Rear screen, brightness"), Icon.SCREEN, HMI.REAR_SCREEN, signals
+            ),
         ),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.calendar.state import Agenda, Appointment
-from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.commands import Put, Remove
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Back, Show
@@ -15,6 +15,7 @@ from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Row, Widget
 from automotive_cosim.contracts.text import joined, say
 
+NO_PLACE = say("No place is given")
 MOVES_MIN = (
     ("hour_earlier", "-1 h", -60),
     ("earlier", "-15 min", -15),
@@ -89,7 +90,7 @@ def appointment(state: State) -> tuple[Widget, ...]:
                 Label(
                     rect=where,
                     key="appointment.place",
-                    text=entry.place,
+                    text=entry.place or NO_PLACE,
                     description=say("Place"),
                     style=Type.HEADLINE,
                 ),
@@ -104,13 +105,16 @@ def appointment(state: State) -> tuple[Widget, ...]:
                     text=say("Show on the map"),
                     icon=Icon.GOAL,
                     on_tap=Show("place", entry.place),
+                    disabled="" if entry.place else NO_PLACE,
                 ),
                 Button(
                     rect=remove,
                     key="appointment.remove",
                     text=say("Remove"),
                     icon=Icon.DELETE,
-                    on_tap=put((*agenda[:at], *agenda[at + 1 :]), say("{name} is removed", name=entry.title)),
+                    on_tap=Remove(
+                        Agenda((*agenda[:at], *agenda[at + 1 :])), say("{name} is removed", name=entry.title)
+                    ),
                 ),
             ),
         ),

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 from automotive_cosim.cockpit.apps.memo.commands import Record
 from automotive_cosim.cockpit.apps.memo.state import Memos
-from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.commands import Remove
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes
 from automotive_cosim.cockpit.messages import Back, Show
@@ -94,7 +94,7 @@ def memo_note(state: State) -> tuple[Widget, ...]:
                     key="note.delete",
                     text=say("Delete"),
                     icon=Icon.DELETE,
-                    on_tap=Put(
+                    on_tap=Remove(
                         replace(state.of(Memos), kept=(*memos[:at], *memos[at + 1 :])),
                         say("{memo} is deleted", memo=memos[at]),
                     ),

@@ -12,6 +12,8 @@ from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import Quantity, say
 
+OFFLINE = say("Paying needs a connection")
+
 
 @dataclass(frozen=True, slots=True)
 class Pay(Command):
@@ -24,7 +26,7 @@ class Pay(Command):
     def perform(self, state: State) -> Feedback:
         """The ticket, if the car is online."""
         if not state.signals[LINK.ONLINE] or state.outside is None:
-            return state.refused(say("Paying needs a connection"))
+            return state.refused(OFFLINE)
         now = state.of(Parking)
         until = state.clock_at(state.outside.local_time + timedelta(minutes=now.minutes))
         ticket = Ticket(now.zone, now.minutes, now.price, until)

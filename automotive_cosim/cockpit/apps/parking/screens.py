@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.parking.commands import Pay
+from automotive_cosim.cockpit.apps.parking.commands import OFFLINE, Pay
 from automotive_cosim.cockpit.apps.parking.state import ZONES, Parking
 from automotive_cosim.cockpit.commands import Put
 from automotive_cosim.cockpit.layout import REST, column, panes
 from automotive_cosim.cockpit.parts import choices, content, heading, note, rows, title
+from automotive_cosim.cockpit.signals import LINK
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Look, Row, Widget
@@ -76,6 +77,7 @@ def parking(state: State) -> tuple[Widget, ...]:
                     style=Type.TITLE,
                     look=Look.ACCENT,
                     on_tap=Pay(),
+                    disabled="" if state.signals[LINK.ONLINE] else OFFLINE,
                 ),
             ),
         ),

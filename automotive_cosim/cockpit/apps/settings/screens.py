@@ -282,8 +282,8 @@ def connections(state: State) -> tuple[Widget, ...]:
                     rect=about,
                     key="link.about",
                     text=say(
-                        "Connect and pair while parked. A tablet adds its music;"
-                        " calls and messages stay with the phone."
+                        "Connect and pair while parked. Without Bluetooth, no phone is connected."
+                        " A tablet only adds its music."
                     ),
                     style=Type.CAPTION,
                     tone="muted",
