@@ -394,7 +394,7 @@ def test_neither_a_status_nor_many_steps_end_a_watch(begin: Begin) -> None:
     assert session.end is None
     assert session.declared is None
     played(session, Silent())
-    assert session.end is End.WATCH_OVER
+    assert session.end is End.MINUTES_OVER
     assert session.seconds == pytest.approx(60.0)
 
 
