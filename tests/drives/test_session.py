@@ -26,7 +26,7 @@ from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.driver import driver_line
 from automotive_cosim.drives.events import KINDS, DriveAct
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
+from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
 from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import Score, score
@@ -44,6 +44,7 @@ from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.tasks.spoken import FOREIGN, phrasings
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.fork import Simulations
+from tests.drives.rote import most_frequent
 from tests.drives.scenes import limit, moment, vehicle
 
 FAMILY, SEED, FOR_S = "grid_june", 43, 420.0
