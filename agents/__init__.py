@@ -6,6 +6,7 @@ if __name__ != "automotive_cosim.agents":
     raise ImportError(f"import this package as automotive_cosim.agents, not as {__name__}")
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 from automotive_cosim.agents.a2a import A2AAgent, is_remote
 from automotive_cosim.agents.base import Agent, Learner, Privileged, Stage, StageName, Thinker
@@ -30,6 +31,7 @@ __all__ = [
     "AGENTS",
     "FORMATS",
     "MODELLED",
+    "NOT_RANKED",
     "PROFILES",
     "Agent",
     "AgentPart",
@@ -55,55 +57,75 @@ __all__ = [
     "model_of",
 ]
 
-SIMPLE: Mapping[str, Callable[[AgentSettings], Agent]] = {
-    "alert-all": lambda settings: AlertAll(),
-    "alert-often": lambda settings: AlertOften(),
-    "alert-on-wake": lambda settings: AlertOnWake(),
-    "always-alert": lambda settings: AlwaysAlert(),
-    "always-ask": lambda settings: AlwaysAsk(),
-    "human": lambda settings: Human(),
-    "no-op": lambda settings: NoOp(),
-    "oracle": lambda settings: (
-        Oracle(settings.conditions.see) if settings.conditions.interface.touches else OracleByCalls()
+CONTROL, ON_DRIVES = "negative control", " on drives"
+
+
+@dataclass(frozen=True, slots=True)
+class AgentEntry:
+    """An agent without a model, as it is made and listed."""
+
+    make: Callable[[AgentSettings], Agent]
+    about: str
+    """What it does, in a line."""
+    unranked: str = ""
+    """Why it is not ranked; empty if it is."""
+    by_touch: bool = False
+    """Whether it acts on the screen alone."""
+
+
+def _control(kind: Callable[[], Agent], about: str, where: str = "", *, by_touch: bool = False) -> AgentEntry:
+    return AgentEntry(lambda settings: kind(), f"{CONTROL}{where}: {about}", CONTROL, by_touch)
+
+
+SIMPLE: Mapping[str, AgentEntry] = {
+    "alert-all": _control(AlertAll, "gives every kind of alert in turn", ON_DRIVES),
+    "alert-often": _control(AlertOften, "warns of speed twice a minute", ON_DRIVES),
+    "alert-on-wake": _control(AlertOnWake, "warns of speed whenever something changes", ON_DRIVES),
+    "always-alert": _control(AlwaysAlert, "warns at once, whatever happens"),
+    "always-ask": _control(AlwaysAsk, "asks the driver what is meant, and declares complete"),
+    "human": AgentEntry(lambda settings: Human(), "you, with numbered elements on the terminal", by_touch=True),
+    "no-op": _control(NoOp, "waits and declares nothing"),
+    "oracle": AgentEntry(
+        lambda settings: (
+            Oracle(settings.conditions.see) if settings.conditions.interface.touches else OracleByCalls()
+        ),
+        "reference: is told the task and plays its reference solution, by touch or by calls",
+        "told the answer",
     ),
-    "press-everything": lambda settings: PressEverything(),
-    "random": lambda settings: Random(settings.seed),
-    "rule-perfect": lambda settings: RulePerfect(),
-    "silent": lambda settings: Silent(),
+    "press-everything": _control(PressEverything, "presses every button", by_touch=True),
+    "random": AgentEntry(
+        lambda settings: Random(settings.seed), f"{CONTROL}: random actions", CONTROL, by_touch=True
+    ),
+    "rule-perfect": AgentEntry(
+        lambda settings: RulePerfect(),
+        "reference on drives: knows the rules and reads only what any agent may observe",
+        "told the rules",
+    ),
+    "silent": _control(Silent, "waits", ON_DRIVES),
 }
 """Agents without a model."""
 
-MODELLED = frozenset({*PROFILES, NativeAgent.name, Caller.name})
-"""Agents with a model."""
+MODELLED: Mapping[str, str] = {
+    "asurada": "elements, screenshots, GPS, geo-context; can query rules and remember (as the paper's)",
+    "caller": "calls functions, in a plain loop; what it sees is set by --see and --geo",
+    "m3a": "elements and screenshots, raw and marked (after AndroidWorld's M3A)",
+    "native": "screenshots alone, for models trained to operate screens, in their own formats",
+    "t3a": "elements as text (after AndroidWorld's T3A)",
+}
+"""Agents with a model, and what each of them sees or does, in a line."""
 
-AGENTS = tuple(sorted([*SIMPLE, *MODELLED]))
+ABOUT: Mapping[str, str] = dict(sorted([*((name, each.about) for name, each in SIMPLE.items()), *MODELLED.items()]))
+"""What each agent sees or does, in a line."""
+
+AGENTS = tuple(ABOUT)
 """Names of all agents; ``package.module:Class`` names one of your own, ``a2a:http://HOST:PORT`` one that is served
 there."""
 
+NOT_RANKED: Mapping[str, str] = {name: each.unranked for name, each in SIMPLE.items() if each.unranked}
+"""References and negative controls, and what they are: they measure the benchmark, not themselves."""
 
-BY_TOUCH = frozenset({NativeAgent.name, "human", "press-everything", "random"})
+BY_TOUCH = frozenset({NativeAgent.name, *(name for name, each in SIMPLE.items() if each.by_touch)})
 """Agents that act on the screen alone."""
-
-ABOUT: Mapping[str, str] = {
-    "alert-all": "negative control on drives: gives every kind of alert in turn",
-    "alert-often": "negative control on drives: warns of speed twice a minute",
-    "alert-on-wake": "negative control on drives: warns of speed whenever something changes",
-    "always-alert": "negative control: warns at once, whatever happens",
-    "always-ask": "negative control: asks the driver what is meant, and declares complete",
-    "asurada": "elements, screenshots, GPS, geo-context; can query rules and remember (as the paper's)",
-    "caller": "calls functions, in a plain loop; what it sees is set by --see and --geo",
-    "human": "you, with numbered elements on the terminal",
-    "m3a": "elements and screenshots, raw and marked (after AndroidWorld's M3A)",
-    "native": "screenshots alone, for models trained to operate screens, in their own formats",
-    "no-op": "negative control: waits and declares nothing",
-    "oracle": "reference: is told the task and plays its reference solution, by touch or by calls",
-    "press-everything": "negative control: presses every button",
-    "random": "negative control: random actions",
-    "rule-perfect": "reference on drives: knows the rules and reads only what any agent may observe",
-    "silent": "negative control on drives: waits",
-    "t3a": "elements as text (after AndroidWorld's T3A)",
-}
-"""What each agent sees or does, in a line."""
 
 
 def make_agent(
@@ -143,7 +165,7 @@ def make_agent(
         if own := classes_in(name):
             raise UserError(f"agent {name!r} names no class; did you mean {' or '.join(own)}?")
         raise UnknownNameError("agent", name, AGENTS, "automotive-cosim agents list")
-    return SIMPLE[name](settings)
+    return SIMPLE[name].make(settings)
 
 
 def model_of(

@@ -3,36 +3,24 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
 from automotive_cosim.errors import UserError
+from automotive_cosim.report.settings import CompareSettings
 
 
 @reads_results
+@takes(CompareSettings)
 def compare(
     before: Annotated[Path, typer.Argument(help="Results folder of `eval` before the change.", show_default=False)],
     after: Annotated[Path, typer.Argument(help="Results folder of `eval` after the change.", show_default=False)],
-    threshold: Annotated[
-        float,
-        typer.Option(
-            help="By how many percentage points success, or points the score of drives, may fall.", metavar="POINTS"
-        ),
-    ] = 0.0,
-    junit: Annotated[
-        Path | None, typer.Option(help="File for a JUnit report with one case per instance.", show_default=False)
-    ] = None,
-    markdown: Annotated[
-        Path | None, typer.Option(help="File for a summary in Markdown.", show_default=False)
-    ] = None,
-    mixed: Annotated[
-        bool,
-        typer.Option("--mixed-versions", help="Compare even if two minor versions of automotive-cosim ran them."),
-    ] = False,
     as_json: AsJson = False,
     tasks_from: TasksFrom = None,
+    **settings: Any,
 ) -> None:
     """Compare two evaluations on the same instances.
 
@@ -43,18 +31,18 @@ def compare(
     from automotive_cosim.report import regression
     from automotive_cosim.run.store import read_manifest
 
-    if not 0 <= threshold <= 100:
-        raise UserError(f"--threshold is {threshold:g}; give percentage points from 0 to 100")
+    told = filled(CompareSettings, settings)
     for folder in (before, after):
         if "study" in read_manifest(folder)["plan"]:
             raise UserError(f"{folder} is a study; `automotive-cosim study compare` compares two of one kind")
-    found = regression.changes(before, after, mixed=mixed)
-    for path, text in ((junit, regression.junit(found)), (markdown, regression.markdown(found, threshold / 100))):
-        if path is not None:
-            write_whole(path, text)
+    found = regression.changes(before, after, mixed=told.mixed_versions)
+    if told.junit is not None:
+        write_whole(told.junit, regression.junit(found))
+    if told.markdown is not None:
+        write_whole(told.markdown, regression.markdown(found, told.allowed))
     if as_json:
-        print_json(regression.as_json(found, threshold / 100))
+        print_json(regression.as_json(found, told.allowed))
     else:
-        typer.echo(regression.plain(found, threshold / 100), nl=False)
-    if not all(each.passes(threshold / 100) for each in found):
+        typer.echo(regression.plain(found, told.allowed), nl=False)
+    if not all(each.passes(told.allowed) for each in found):
         raise typer.Exit(1)

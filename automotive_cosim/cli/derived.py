@@ -37,7 +37,8 @@ def takes(kind: type, *, only: Collection[str] = (), but: Collection[str] = ()) 
     """Gives a command an option for each field of a dataclass; it gets what was given as ``**settings``.
 
     Name, help, default, form and bounds follow from the field's name, docstring, default and type, or from its
-    ``Option``. A field that is true unless said otherwise has an option that denies it.
+    ``Option``. A field without a default has an option that must be given, one that is true unless said otherwise
+    an option that denies it.
 
     Args:
         kind: the dataclass.
@@ -88,7 +89,8 @@ def _parameters(kind: type) -> Iterator[inspect.Parameter]:
 def _parameter(each: Field[Any], hint: Any, text: str) -> inspect.Parameter:
     option, bare = shown_as(hint), _bare(hint)
     name, is_flag = option_name(each.name, hint), bare is bool
-    kind: Any = bool if is_flag else list[str] if option.repeats else bare if bare is Path else str
+    is_path = bare is Path  # which typer reads, completes and shows by itself
+    kind: Any = bool if is_flag else list[str] if option.repeats else Path if is_path else str
     own = "" if is_flag or option.repeats or option.default else _told(each.default)
     is_denied = is_flag and each.default is True and not option.name
     read = None if is_flag or option.repeats else option.read or _reader(name, hint)
@@ -96,7 +98,7 @@ def _parameter(each: Field[Any], hint: Any, text: str) -> inspect.Parameter:
         f"--no-{name}" if is_denied else f"--{name}",
         help=text.replace("`", ""),
         metavar=option.form or (None if is_flag or option.repeats else _form(bare)),
-        parser=partial(unless_shown, read or str) if own else read,
+        parser=partial(unless_shown, read or str) if own and not is_path else read,
         show_default=bool(own) or option.default or ("none" if option.repeats else False),
         envvar=option.variable,
         rich_help_panel=option.panel,
@@ -104,9 +106,18 @@ def _parameter(each: Field[Any], hint: Any, text: str) -> inspect.Parameter:
     return inspect.Parameter(
         each.name,
         inspect.Parameter.KEYWORD_ONLY,
-        default=ShownDefault(own) if own else False if is_flag else None,
+        default=_unless_given(each, own),
         annotation=Annotated[kind if is_flag else kind | None, made],
     )
+
+
+def _unless_given(each: Field[Any], own: str) -> Any:
+    """What an option is if it is left out."""
+    if each.default is MISSING and each.default_factory is MISSING:
+        return inspect.Parameter.empty
+    if isinstance(each.default, Path):
+        return each.default
+    return ShownDefault(own) if own else False if isinstance(each.default, bool) else None
 
 
 class ShownDefault(str):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -30,7 +30,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.episode.conditions import TABLE, lists_of
 from automotive_cosim.errors import InfrastructureError, UserError, install_hint
-from automotive_cosim.run.settings import Budget, EvaluationSettings, RunSettings
+from automotive_cosim.run.settings import Budget, EvaluationSettings, PlanSettings, RunSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 
 @takes_conditions(lists=True)
+@takes(PlanSettings)
 @takes(EvaluationSettings, but=[each.name for each in TABLE])
 @takes(ExecutorSettings)
 @takes(RunSettings)
@@ -48,23 +49,6 @@ if TYPE_CHECKING:
 @takes(DriveChanges)
 @takes(LimitSettings, but=["most_wall_seconds"])
 def evaluate(
-    plan_file: Annotated[
-        Path | None,
-        typer.Option("--plan", help="TOML file with the plan; options override it.", show_default=False),
-    ] = None,
-    preset: Annotated[
-        str | None,
-        typer.Option(
-            help="A set of limits: 2026 is ten steps, as in the authors' newer edition.", show_default=False
-        ),
-    ] = None,
-    out: Annotated[
-        Path | None,
-        typer.Option(
-            help="Results folder; an existing one is resumed.", show_default="runs/eval-<digest of the plan>"
-        ),
-    ] = None,
-    dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
@@ -87,27 +71,27 @@ def evaluate(
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenarios import open_scenario
 
-    running = filled(RunSettings, settings)
-    values: dict[str, Any] = read_plan(plan_file) if plan_file else {}
+    chosen, running = filled(PlanSettings, settings), filled(RunSettings, settings)
+    values: dict[str, Any] = read_plan(chosen.plan) if chosen.plan else {}
     values |= settings_in(EvaluationSettings, settings) | values_of(settings)
     told = settings_in(DriveChanges, settings)
     values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
-    values = with_preset(values, preset) if preset is not None else values
+    values = with_preset(values, chosen.preset) if chosen.preset is not None else values
     own = _limits(filled(LimitSettings, settings))
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = filled(Budget, settings)
     plan = make_plan(values)
-    folder = out or _folder(plan)
+    folder = chosen.out or _folder(plan)
     choice = filled(ExecutorSettings, settings)
     where = choice.opened()
     console = Console(stderr=as_json, highlight=False)
-    lacks, unit = plan.check(dry=dry_run), unit_of(plan.as_json())
+    lacks, unit = plan.check(dry=chosen.dry_run), unit_of(plan.as_json())
     check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))
     _announce(console, plan, folder)
     known = read_trials(folder) if (folder / "manifest.json").is_file() else {}
     needs = forecast(plan.jobs(), choice.processes, known.values())
-    if dry_run:
+    if chosen.dry_run:
         lacks = (*lacks, *filter(None, [needs.beyond(budget)]))
         for line in (*forecast_in_words(needs, choice.processes), "nothing was run"):
             console.print(line, soft_wrap=True)

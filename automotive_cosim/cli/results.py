@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import asdict
-from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
-from annotated_types import Ge, Le
 
-from automotive_cosim.cli.derived import number_in
+from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError, install_hint
+from automotive_cosim.report.settings import PlaybackSettings
 
 Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 
@@ -60,6 +59,7 @@ def _safety(folder: Path, agent: str) -> None:
 
 
 @reads_results
+@takes(PlaybackSettings)
 def replay(
     folder: Annotated[Path, typer.Argument(help="Results folder of `run`, `drive` or `eval`.", show_default=False)],
     episode: Annotated[
@@ -68,23 +68,9 @@ def replay(
             help="In a folder of `eval`: id of the episode or drive, or the beginning of it.", show_default=False
         ),
     ] = "",
-    play: Annotated[
-        bool, typer.Option("--play", help="Print the recorded steps at their pace instead; of `run` alone.")
-    ] = False,
-    film: Annotated[
-        Path | None,
-        typer.Option(help="Write the recorded screens as an animation instead, .webp or .gif; of `run` alone."),
-    ] = None,
-    speed: Annotated[
-        float,
-        typer.Option(
-            help="How many times as fast as recorded --play and --film are.",
-            metavar="X",
-            parser=partial(number_in, float, (Ge(0.1), Le(1000))),
-        ),
-    ] = 4.0,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
+    **settings: Any,
 ) -> None:
     """Replay the actions of a stored trial and compare the traces, or play back its record.
 
@@ -92,10 +78,11 @@ def replay(
     """
     from automotive_cosim.run.rerun import rerun
 
-    if play or film is not None:
+    shown = filled(PlaybackSettings, settings)
+    if shown.play or shown.film is not None:
         if episode or as_json:
             raise UserError("--play and --film show the record of one `run`; omit the episode and --json")
-        _show_record(folder, film, speed)
+        _show_record(folder, shown.film, shown.speed)
         return
     compared = rerun(folder, episode)
     different = [step for step in compared if step.differs]

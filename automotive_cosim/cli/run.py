@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -28,6 +28,7 @@ from automotive_cosim.contracts.given import PLACE, GeoInput
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.episode.settings import ANYWHERE, DEFAULT_TASK, EpisodeSettings
 from automotive_cosim.errors import InfrastructureError, UserError
+from automotive_cosim.run.settings import SingleSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.agents import Agent
@@ -61,40 +62,14 @@ PAIR_FOLDERS = ("with_place", "without_place")
 @takes_conditions()
 @takes(LimitSettings)
 @takes(EpisodeSettings, but=["seed"])
+@takes(SingleSettings)
 def run(
     agent: AgentName = "asurada",
     model: ModelName = "rules",
     tasks_from: TasksFrom = None,
-    without: Annotated[
-        str,
-        typer.Option(
-            help="Parts of the agent to switch off, separated by commas: "
-            "gps, context, queries, screen, reflection, memory."
-        ),
-    ] = "",
-    memory: Annotated[
-        Path | None,
-        typer.Option(help="File in which ASURADA remembers what worked, for later runs.", show_default=False),
-    ] = None,
     seed: Seed = 0,
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Folder for the results.", show_default="runs/<time>-<task>-<half>-<agent>-seed<seed>"),
-    ] = None,
-    pair: Annotated[
-        bool,
-        typer.Option(
-            "--pair", help="Run the agent twice from the same instant, with its place and without, side by side."
-        ),
-    ] = False,
     force: Force = False,
     as_json: AsJson = False,
-    actions: Annotated[
-        Path | None,
-        typer.Option(
-            help="Play a file of actions, one JSON object per line, instead of an agent.", show_default=False
-        ),
-    ] = None,
     **settings: Any,
 ) -> None:
     """Run one episode: a task, an agent, a seed.
@@ -102,6 +77,7 @@ def run(
     Without options, a car in Paris drives at 80 km/h where 50 is posted, and the agent is to warn the driver.
     """
     chosen, limited = settings_in(EpisodeSettings, settings), filled(LimitSettings, settings)
+    how = filled(SingleSettings, settings)
     scenario = chosen.get("scenario")
     tell_opening(*filter(None, [scenario]))
     from automotive_cosim.agents import AgentSettings, make_agent
@@ -116,17 +92,17 @@ def run(
     if scenario == "":
         raise UserError("--scenario is empty; name a scenario, or omit the option to use the task's own")
     limits = Limits().within(limited.most_tokens, limited.most_seconds)
-    off = parts(name.strip() for name in without.split(",") if name.strip())
+    off = parts(how.without)
     under = Conditions.named(given(settings))
 
     def player_under(each: Conditions) -> Agent:
         settings = AgentSettings(
-            each, off, memory, seed, limits.tokens, limits.model_s, instructions=instructions(each.prompt)
+            each, off, how.memory, seed, limits.tokens, limits.model_s, instructions=instructions(each.prompt)
         )
-        return read_script(actions) if actions else make_agent(agent, model, settings)
+        return read_script(how.actions) if how.actions else make_agent(agent, model, settings)
 
     player = player_under(under)
-    if pair:
+    if how.pair:
         _check_pair(player, under)
     setup = EpisodeSetup(
         **{"task": _default_task(chosen), **chosen},
@@ -138,11 +114,11 @@ def run(
         without=tuple(sorted(off)),
     )
     setup.session(frozenset(player.channels))
-    folder = out or default_folder(setup, "-pair" if pair else "")
+    folder = how.out or default_folder(setup, "-pair" if how.pair else "")
     check_folder(folder, force=force)
-    arguments = {"actions": str(actions) if actions else None}
+    arguments = {"actions": str(how.actions) if how.actions else None}
     with closing(Simulations()) as simulations:
-        if pair:
+        if how.pair:
             blind = replace(under, geo=GeoInput.NONE)
             both = ((setup, player), (replace(setup, conditions=blind), player_under(blind)))
             results, page = _recorded_pair(folder, both, simulations, wall_s=limited.wall_s, as_json=as_json)
@@ -156,7 +132,7 @@ def run(
         typer.echo(f"no --task was given: this was {ANYWHERE}, which comes about on any road", err=True)
     if as_json:
         told = [{**_headline(result), "out": str(folder)} for result in results]
-        typer.echo(json.dumps({"pair": told, "out": str(folder)} if pair else told[0]))
+        typer.echo(json.dumps({"pair": told, "out": str(folder)} if how.pair else told[0]))
     elif has_begun:
         typer.echo(f"Recorded in {folder}; open {page}")
     for result in results:

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from automotive_cosim import scenarios
-from automotive_cosim.cli.batches import tell_notes, whole_numbers_in
+from automotive_cosim.cli.batches import tell_notes
 from automotive_cosim.cli.calibrate import calibrate_scenario
 from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AsJson, print_json, tell_opening
@@ -20,7 +20,7 @@ from automotive_cosim.contracts.plain import counted, megabytes_in_words
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
-from automotive_cosim.scenarios.settings import EquilibriumSettings
+from automotive_cosim.scenarios.settings import EquilibriumSettings, OptimumSettings
 
 if TYPE_CHECKING:
     from rich.text import Text
@@ -296,25 +296,10 @@ def import_scenario(
 
 
 @app.command("equilibrate")
+@takes(OptimumSettings)
 @takes(EquilibriumSettings)
 def equilibrate_scenario(
     folder: Annotated[Path, typer.Argument(help="Folder of a scenario, or any .sumocfg.", show_default=False)],
-    out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="FOLDER_equilibrium")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier equilibrium.")] = False,
-    system_optimum: Annotated[
-        bool,
-        typer.Option(
-            "--system-optimum", help="Then search for routes with a lower total travel time, and compare."
-        ),
-    ] = False,
-    seeds: Annotated[
-        str | None,
-        typer.Option(
-            help="Seeds with which both states are driven, as in 1-10.",
-            metavar="LIST",
-            show_default="the ten after --seed",
-        ),
-    ] = None,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
@@ -327,7 +312,8 @@ def equilibrate_scenario(
     from automotive_cosim.scenarios.optimum import OptimumStep, compare
     from automotive_cosim.scenarios.variant import check_target
 
-    target = out or folder.with_name(f"{folder.resolve().name.removesuffix('.sumocfg')}_equilibrium")
+    told = filled(OptimumSettings, settings)
+    target = told.out or folder.with_name(f"{folder.resolve().name.removesuffix('.sumocfg')}_equilibrium")
 
     def tell(step: AssignmentStep) -> None:
         typer.echo(f"step {step.number}: {step.gap}; {step.changed} change", err=as_json)
@@ -342,15 +328,18 @@ def equilibrate_scenario(
 
     options = filled(EquilibriumSettings, settings)
     optimum = target.with_name(f"{target.name}_optimum")
-    driven = [*range(options.seed + 1, options.seed + 11)] if seeds is None else whole_numbers_in("seeds", seeds)
+    driven = [*(told.seeds or range(options.seed + 1, options.seed + 11))]
     if options.seed in driven or len(set(driven)) < 2:
         raise UserError(
-            f"--seeds is {seeds}; give two or more seeds, but not {options.seed}, with which the search runs"
+            f"--seeds is {','.join(map(str, driven))}; give two or more seeds, but not {options.seed}, with which "
+            "the search runs"
         )
-    if system_optimum:
-        check_target(optimum, OPTIMUM, force=force)  # before the equilibrium, which takes minutes
-    found = equilibrate(folder, target, options, tell, force=force)
-    compared = compare(target, optimum, options, driven, tell_total, force=force) if system_optimum else None
+    if told.system_optimum:
+        check_target(optimum, OPTIMUM, force=told.force)  # before the equilibrium, which takes minutes
+    found = equilibrate(folder, target, options, tell, force=told.force)
+    compared = None
+    if told.system_optimum:
+        compared = compare(target, optimum, options, driven, tell_total, force=told.force)
     best = min(found, key=lambda step: step.gap.relative)
     if as_json:
         print_json(

@@ -7,7 +7,7 @@ import time
 from collections.abc import Iterator
 from dataclasses import asdict
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
@@ -22,7 +22,7 @@ from automotive_cosim.cli.derived import filled, takes
 from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.safety.settings import SearchSettings
+from automotive_cosim.safety.settings import SearchOrder, SearchSettings
 
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console as Output
@@ -43,52 +43,12 @@ SETTINGS = "search.json"
 """File of a search's folder with what it was started with."""
 
 
+@takes(SearchOrder)
 @takes(SearchSettings)
 @takes(ExecutorSettings)
 def search(
-    space_name: Annotated[
-        str,
-        typer.Option(
-            "--space",
-            help="TOML file with the factors and their values, or a space of the library, such as cut-in.",
-            show_default=False,
-        ),
-    ],
     agent: AgentName,
-    budget: Annotated[
-        str,
-        typer.Option(
-            help="What to use in all, with earlier starts: points to sample (64), wall time (2h, 90min), money for "
-            "the model (5usd), or several with commas, of which the first that is spent ends it. A failure that is "
-            "reduced takes some thirty runs beyond the points.",
-            metavar="N",
-            show_default=False,
-        ),
-    ],
     model: ModelName = "rules",
-    out: Annotated[
-        Path | None,
-        typer.Option(help="Folder; an existing one is resumed.", show_default="runs/search-<space>-<agent>"),
-    ] = None,
-    save: Annotated[
-        Path | None,
-        typer.Option(
-            help="File for a plan with every minimal failure and its passing neighbour, for `eval --plan`.",
-            show_default=False,
-        ),
-    ] = None,
-    at_most: Annotated[
-        int | None,
-        typer.Option(
-            min=0,
-            help="Exit with code 1 if more samples fail, or the nominal point does, or nothing was due in any.",
-            metavar="N",
-            show_default=False,
-        ),
-    ] = None,
-    dry_run: Annotated[
-        bool, typer.Option("--dry-run", help="Say how long it will take, and what is missing, and exit.")
-    ] = False,
     tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
@@ -111,8 +71,9 @@ def search(
     from automotive_cosim.safety.space import read_space, space_file
     from automotive_cosim.safety.trying import check_space, trial_of, trying
 
-    how, choice = filled(SearchSettings, settings), filled(ExecutorSettings, settings)
-    file, may_use = space_file(space_name), SearchBudget.read(budget)
+    order, how = filled(SearchOrder, settings), filled(SearchSettings, settings)
+    choice = filled(ExecutorSettings, settings)
+    file, may_use = space_file(order.space), SearchBudget.read(order.budget)
     if how.sampler in ("lhs", "grid") and may_use.points is None:
         raise UserError(
             f"the sampler {how.sampler} is laid out for a number of points; give one, as in --budget 64,2h"
@@ -120,14 +81,15 @@ def search(
     check_prices((model,), Budget(usd=may_use.usd))
     if may_use.points is may_use.hours is None and model.startswith(("rules", "replay/")):
         raise UserError(
-            f"{model} costs nothing, so that {budget} never ends; give points or hours, as in 64,{budget}"
+            f"{model} costs nothing, so that {order.budget} never ends; give points or hours, as in "
+            f"64,{order.budget}"
         )
     distributions()  # without which the findings cannot be told, after all runs
     space = read_space(file)
     plan = make_plan({"agents": [agent], "models": [model], "trials": [_plain(trial_of(space.nominal))]})
     plan.check()
     check_space(space, plan)
-    folder = out or Path("runs") / f"search-{file.stem}-{agent.replace(':', '.')}"
+    folder = order.out or Path("runs") / f"search-{file.stem}-{agent.replace(':', '.')}"
     console = Console(stderr=as_json, highlight=False)
     about: Json = {
         "space": file.read_text(encoding="utf-8"),
@@ -141,7 +103,7 @@ def search(
     is_parallel = choice.executor != EXECUTORS[0] or choice.processes > 1
     for line in _told_before(space, plan, may_use, how.failures, choice.processes if is_parallel else 1, folder):
         console.print(line, soft_wrap=True)
-    if dry_run:
+    if order.dry_run:
         console.print("nothing was run")
         if as_json:
             typer.echo(json.dumps({"out": str(folder), "dry_run": True}))
@@ -192,7 +154,7 @@ def search(
             )
         except NominalFailureError as error:
             told = f"{error}; its trial is in {folder}, which `report` reads"
-            if at_most is None or not error.is_judged:
+            if order.at_most is None or not error.is_judged:
                 raise UserError(told) from error
             typer.echo(told, err=True)
             raise typer.Exit(1) from error
@@ -206,17 +168,17 @@ def search(
                 found.interrupted = True
         note()
         page = write_findings(folder, found, agent, model, about)
-    if save is not None and (found.minimal or found.not_reduced):
-        write_whole(save, suite(found, agent, model))
-    elif save is not None:
-        typer.echo(f"no failure was found, so nothing is saved in {save}", err=True)
+    if order.save is not None and (found.minimal or found.not_reduced):
+        write_whole(order.save, suite(found, agent, model))
+    elif order.save is not None:
+        typer.echo(f"no failure was found, so nothing is saved in {order.save}", err=True)
     if as_json:
         typer.echo(json.dumps(findings_json(found) | {"out": str(folder)}))
     else:
         _tell_found(console, found, agent, page)
     if found.interrupted:
         raise KeyboardInterrupt
-    if at_most is not None and (many := too_many(found, at_most)):
+    if order.at_most is not None and (many := too_many(found, order.at_most)):
         typer.echo(many, err=True)
         raise typer.Exit(1)
 

@@ -68,13 +68,6 @@ def read_screen(
     return as_told("\n".join(dict.fromkeys(_lines(twin))))
 
 
-def _tab(state: State, item: str) -> Pick | None:
-    """The choice of that name on the present screen."""
-    widgets = (widget for child in equipped(state, pages()[state.screen].made(state)) for widget in child.walk())
-    taps = ((widget.text, widget.on_tap) for widget in widgets)
-    return next((tap for text, tap in taps if isinstance(tap, Pick) and item in (text, tap.value)), None)
-
-
 def _lines(state: State) -> Iterator[str]:
     """What a screen shows from the beginning of its lists to their ends."""
     page, language = pages()[state.screen], state.signals[HMI.LANGUAGE]

@@ -368,7 +368,7 @@ class State:
         """Everything that can be commanded: actuators, app data, and what was irrevocably sent."""
         commanded = self.signals.commanded() | {
             "requests": list(self.asked),
-            "questions": [{"text": asked.text, "deeds": asked.after} for asked in self.questions],
+            "questions": [{"text": asked.text, "commands": asked.after} for asked in self.questions],
         }
         for data in self.apps:
             commanded |= data.commands()

@@ -508,13 +508,3 @@ def _outcome(case: _Case) -> EventOutcome:
     if event.deadline_s - event.obliged_s < CHANCE_S or _has_passed(event, case.kind):
         return EventOutcome.VOID
     return EventOutcome.LATE if acted_s is not None else EventOutcome.MISSED
-
-
-def most_frequent(judgement: Judgement, kinds: Mapping[str, EventKind]) -> AlertKind | None:
-    """The kind of alert that would have settled most of the events; None without events."""
-    counts: dict[AlertKind, int] = {}
-    for event in judgement.events:
-        if event.outcome.counts:
-            for alert in sorted(kinds[event.kind].alerts):
-                counts[alert] = counts.get(alert, 0) + 1
-    return max(counts, key=lambda alert: counts[alert], default=None)

@@ -285,12 +285,12 @@ class DriveSession(JudgedSession):
         if end is End.DECLARED:
             most_s = self.setup.max_sim_s
             self.declared = self.reason = None
-            end = End.WATCH_OVER if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
-        return End.WATCH_OVER if end is End.OUT_OF_TIME else end
+            end = End.MINUTES_OVER if most_s is not None and self.seconds >= most_s - ROUNDING_S else None
+        return End.MINUTES_OVER if end is End.OUT_OF_TIME else end
 
     def _finish(self, end: End) -> None:
         """An agent that stops acting leaves the rest of the drive to itself."""
-        if end not in (End.DRIVE_ENDED, End.WATCH_OVER) and self.setup.max_sim_s is not None:
+        if end not in (End.DRIVE_ENDED, End.MINUTES_OVER) and self.setup.max_sim_s is not None:
             self.unwatched_from_s = round(self.seconds, 1)
             self._advance(max(0.0, self._left_s()))
         for twin in self.twins:

@@ -131,7 +131,7 @@ class End(StrEnum):
 
     DECLARED = "declared"
     DRIVE_ENDED = "drive_ended"
-    WATCH_OVER = "watch_over"
+    MINUTES_OVER = "minutes_over"
     """The time of a drive is over."""
     OUT_OF_STEPS = "out_of_steps"
     OUT_OF_TIME = "out_of_time"
@@ -148,4 +148,4 @@ class End(StrEnum):
     @property
     def is_cut_off(self) -> bool:
         """Whether it was ended from outside, before the agent or the drive had ended."""
-        return self not in (End.DECLARED, End.DRIVE_ENDED, End.WATCH_OVER)
+        return self not in (End.DECLARED, End.DRIVE_ENDED, End.MINUTES_OVER)

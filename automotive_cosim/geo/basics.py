@@ -16,9 +16,6 @@ from importlib.resources import files
 from automotive_cosim.geo.rulefacts import Test
 from automotive_cosim.geo.rules import Case, Jurisdiction, Rule, Status
 
-WITHOUT_ROADS = frozenset(("AQ", "BV", "HM", "TF"))
-"""Antarctica, Bouvet Island, Heard and McDonald Islands, French Southern Territories: they have no public roads."""
-
 _STATUS = {"*": Status.SECONDARY, "?": Status.UNCERTAIN}
 """By the mark at the end of a cell."""
 _READ = date(2023, 10, 21), "traffic law, on OpenStreetMap's wiki"

@@ -74,11 +74,6 @@ def actions_of(command: Command, state: State) -> tuple[Action, ...] | None:
     return None
 
 
-def _alert(given: Alert) -> Action:
-    kind, severity, speed_kmh = given.kind, given.severity, given.speed_kmh
-    return Action(ActionType.SHOW_ALERT, kind=kind, severity=severity, text=given.text or None, speed_kmh=speed_kmh)
-
-
 def _set(signal: Signal[Any], value: Any) -> Action:
     function, which, name = _by_path()[signal.path]
     return action_of(function, ({"which": which} if which else {}) | {name: value})

@@ -14,11 +14,6 @@ from typing import NamedTuple
 GROUPS = ("access", "vehicle", "motor_vehicle", "motorcar")
 """Who is meant, from everybody to cars."""
 
-NOT_FOR_CARS = re.compile(
-    r"no|false|0|private|permit|official|military|emergency|residents?|employees?|staff|members|students|school"
-    r"|agricultural|forestry|agricultural/forestry|hgv|goods|delivery|loading|service|maintenance|authori[sz]ed"
-    r"|psv|bus|taxi|tourist_bus|coach|bicycle|foot|horse|moped|motorcycle"
-)
 FOR_CARS = re.compile(r"yes|true|1|permissive|designated|destination|customers|public|unknown|discouraged|variable")
 
 ONE_WAY = {"yes": 1, "true": 1, "1": 1, "reversible": 1, "-1": -1, "reverse": -1}

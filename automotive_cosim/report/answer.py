@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Hashable, Sequence
 
+from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.report import drives
-from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
+from automotive_cosim.report.results import Contestant, Results, pair_instance, pairs
 from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Interval, compare
 from automotive_cosim.report.summary import rate_of
 from automotive_cosim.run.episode_row import EpisodeRow

@@ -12,11 +12,12 @@ from io import BytesIO
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any
 
+from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.cockpit.theme import Weight, font
 from automotive_cosim.contracts.plain import rounded
 from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.report.findings import NAMES
-from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pairs
+from automotive_cosim.report.results import Contestant, Results, pairs
 from automotive_cosim.report.stats import Rate
 from automotive_cosim.report.summary import DIMENSIONS, dimensions, rate_of
 from automotive_cosim.tasking.task import Module

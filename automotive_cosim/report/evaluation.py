@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import told
 from automotive_cosim.errors import UserError
@@ -20,7 +21,7 @@ from automotive_cosim.report.files import write_files
 from automotive_cosim.report.interfaces import interfaces
 from automotive_cosim.report.page import PARTS
 from automotive_cosim.report.policy import house_rules
-from automotive_cosim.report.results import NOT_RANKED, Results, contestant, read_results
+from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.summary import PUBLISHED, errors, progress, replaced, tables
 from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render

@@ -6,10 +6,11 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 
+from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.conditions import TABLE, Condition
 from automotive_cosim.report.failures import FailureClass, failure_class
-from automotive_cosim.report.results import NOT_RANKED, Contestant, Results, pair_instance, pairs
+from automotive_cosim.report.results import Contestant, Results, pair_instance, pairs
 from automotive_cosim.report.stats import bracketed, clustered_mean, compare
 from automotive_cosim.report.summary import DIMENSIONS, NONE, RATES, rate_cell
 from automotive_cosim.report.tables import Cell, Table, TableRow

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Interface, See
 from automotive_cosim.contracts.plain import counted
@@ -27,20 +28,6 @@ if TYPE_CHECKING:
     import pandas as pd
 
 STAND_IN = "rules (stand-in, no language model)"
-NOT_RANKED = {
-    "oracle": "told the answer",
-    "no-op": "negative control",
-    "random": "negative control",
-    "press-everything": "negative control",
-    "always-alert": "negative control",
-    "always-ask": "negative control",
-    "silent": "negative control",
-    "alert-all": "negative control",
-    "alert-often": "negative control",
-    "alert-on-wake": "negative control",
-    "rule-perfect": "told the rules",
-}
-"""References and negative controls: they measure the benchmark, not themselves."""
 
 
 @dataclass(frozen=True, slots=True, order=True)

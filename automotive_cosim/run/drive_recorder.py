@@ -29,7 +29,7 @@ from automotive_cosim.interface.trace import plain
 from automotive_cosim.run.collect import PICTURE_QUALITY
 from automotive_cosim.run.drive import DriveObserver, DriveRecord
 from automotive_cosim.run.observer import Shot
-from automotive_cosim.run.record import remove
+from automotive_cosim.run.record import fresh
 from automotive_cosim.run.road import NAME
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.words import action_in_words
@@ -55,10 +55,7 @@ class DriveRecorder(DriveObserver):
 
     def begun(self, session: DriveSession, shot: Shot) -> None:
         """Creates the folder and begins its files."""
-        for name in OURS:
-            remove(self.folder / name)
-        (self.folder / "screenshots").mkdir(parents=True, exist_ok=True)
-        self._lines = (self.folder / SHOWN).open("w", encoding="utf-8", newline="\n")
+        self._lines = fresh(self.folder, OURS, SHOWN)
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:

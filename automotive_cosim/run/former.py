@@ -2,7 +2,8 @@
 
 0.1    had modes: ``prompted``, which every episode is now, and ``monitoring``, now drives
 0.2    had each condition as a field of rows, setups and results; in plans ``latency`` for ``latency_s``, and one
-       clock; plans of drives apart from those of tasks, with their own ``wall_s``; and files for timelines
+       clock; plans of drives apart from those of tasks, with their own ``wall_s``; files for timelines; drives
+       whose ``watch_over``; questions after so many ``deeds``
 """
 
 from __future__ import annotations
@@ -15,10 +16,19 @@ from typing import Any
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import FeedbackDetail
 from automotive_cosim.episode.conditions import TABLE
+from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import UserError
 
 INSTEAD = "drives have replaced monitoring: `automotive-cosim drive`, and `automotive-cosim eval --drives all`"
 NAMES = frozenset(each.name for each in TABLE)
+END = "watch_over"
+"""How a drive ended whose time was over."""
+MOVED = {"automotive_cosim.cosim:Moment": "automotive_cosim.cosim.moment:Moment"}
+"""Present places of classes in a judge's input."""
+FIELDS = {"idle": "baseline"}
+"""Present names of their fields."""
+KEYS = {"deeds": "commands"}
+"""Present names of keys in what they hold."""
 
 
 def plan_values(values: Mapping[str, Any], where: str) -> dict[str, Any]:
@@ -48,18 +58,19 @@ def setup_values(values: Mapping[str, Any], where: str) -> dict[str, Any]:
     Raises:
         UserError: it has another mode than ``prompted``.
     """
-    return with_conditions(_without_mode(values, where))
+    return trial_values(_without_mode(values, where))
 
 
-def with_conditions(values: Mapping[str, Any]) -> dict[str, Any]:
-    """A row, setup or result with its conditions in a table of their own.
+def trial_values(values: Mapping[str, Any]) -> dict[str, Any]:
+    """A row, setup or result with its end by its present name, and its conditions in a table of their own.
 
     Before there was a choice of feedback, it was verbose.
     """
-    if "conditions" in values or not NAMES & values.keys():
-        return dict(values)
-    found = {"feedback": str(FeedbackDetail.VERBOSE)} | {name: values[name] for name in NAMES & values.keys()}
-    return {name: value for name, value in values.items() if name not in NAMES} | {"conditions": found}
+    made = {**values, "end": str(End.MINUTES_OVER)} if values.get("end") == END else dict(values)
+    if "conditions" in made or not NAMES & made.keys():
+        return made
+    found = {"feedback": str(FeedbackDetail.VERBOSE)} | {name: made[name] for name in NAMES & made.keys()}
+    return {name: value for name, value in made.items() if name not in NAMES} | {"conditions": found}
 
 
 def former_timeline(folder: Path, drive: str) -> Json | None:
@@ -69,12 +80,14 @@ def former_timeline(folder: Path, drive: str) -> Json | None:
 
 
 def present(line: bytes) -> bytes:
-    """A row's line of 0.2 in the present form; one that is no JSON object, as it is."""
+    """A trial's line in the present form; one that is no JSON object, as it is."""
+    if b'"conditions":' in line and END.encode() not in line:
+        return line
     try:
         values = json.loads(line)
     except ValueError:
         return line
-    return json.dumps(with_conditions(values)).encode() if isinstance(values, dict) else line
+    return json.dumps(trial_values(values)).encode() if isinstance(values, dict) else line
 
 
 def _without_mode(values: Mapping[str, Any], where: str) -> Json:

@@ -30,13 +30,10 @@ from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json, write_whole
 from automotive_cosim.geo.locate import Geo
+from automotive_cosim.run.former import FIELDS, KEYS, MOVED
 
 PACKAGE = "automotive_cosim."
 """Only classes of this package are created when a file is read."""
-MOVED = {"automotive_cosim.cosim:Moment": "automotive_cosim.cosim.moment:Moment"}
-"""Current places of classes that older files name."""
-RENAMED = {"idle": "baseline"}
-"""Current names of fields in older files."""
 LONG = 3
 """Tuples with more entries go into the pool."""
 PRESET = 2
@@ -283,7 +280,7 @@ class _Reader:
             case "f":
                 return frozenset(map(self.value, entries))
             case "d":
-                return {self.value(key): self.value(each) for key, each in entries}
+                return {KEYS.get(key := self.value(name), key): self.value(each) for name, each in entries}
             case "e":
                 return self._classes[entries[0]][0](entries[1])
             case "at":
@@ -295,7 +292,7 @@ class _Reader:
         """A dataclass; a field that was removed since is ignored, one that was added takes its default."""
         kind, names = self._classes[number]
         known = {each.name for each in fields(kind)}
-        now = (name if name in known else RENAMED.get(name, name) for name in names)
+        now = (name if name in known else FIELDS.get(name, name) for name in names)
         return kind(**{name: self.value(each) for name, each in zip(now, entries, strict=True) if name in known})
 
 

@@ -14,6 +14,7 @@ import json
 import platform
 import shutil
 import tempfile
+from collections.abc import Iterable
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
@@ -92,14 +93,7 @@ class Recorder(EpisodeObserver):
 
     def begun(self, session: Episode, shot: Shot) -> None:
         """Creates the folder and writes step 0."""
-        self.folder.mkdir(parents=True, exist_ok=True)
-        for name in OURS:
-            remove(self.folder / name)
-        try:
-            (self.folder / "screenshots").mkdir()
-        except FileExistsError:
-            raise UserError(f"another run is writing to {self.folder}; give --out another folder") from None
-        self._lines = (self.folder / "steps.jsonl").open("w", encoding="utf-8", newline="\n")
+        self._lines = fresh(self.folder, OURS, "steps.jsonl")
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
@@ -136,9 +130,28 @@ def screenshot(folder: Path, step: int) -> Path:
     return folder / "screenshots" / f"step_{step:03d}.png"
 
 
-def remove(path: Path) -> None:
-    """Removes a file or folder, if there is one."""
-    if path.is_dir():
-        shutil.rmtree(path)
-    else:
-        path.unlink(missing_ok=True)
+def fresh(folder: Path, ours: Iterable[str], lines: str) -> IO[str]:
+    """Begins a record, without what an earlier one left in its folder.
+
+    Args:
+        folder: the record's, which may not exist yet.
+        ours: names of all that a record of this kind has.
+        lines: the one of them that is written step by step.
+
+    Returns:
+        That one, open.
+
+    Raises:
+        UserError: another record begins there at this instant.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    for path in (folder / name for name in ours):
+        if path.is_dir():
+            shutil.rmtree(path)
+        else:
+            path.unlink(missing_ok=True)
+    try:
+        (folder / "screenshots").mkdir()
+    except FileExistsError:
+        raise UserError(f"another run is writing to {folder}; give --out another folder") from None
+    return (folder / lines).open("w", encoding="utf-8", newline="\n")

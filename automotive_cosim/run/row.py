@@ -16,7 +16,7 @@ from typing import Annotated, Any, Generic, TypeVar, get_type_hints
 from pydantic import AliasChoices, Field, TypeAdapter, ValidationError
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.run.former import present, with_conditions
+from automotive_cosim.run.former import present, trial_values
 
 T = TypeVar("T")
 R = TypeVar("R", bound="JobRow")
@@ -79,10 +79,8 @@ def from_line(kind: type[R], line: bytes) -> R:
         ValueError: the line is not JSON, or a field is missing or of another type; the message gives the first.
     """
     form = _form(kind)
-    if "conditions" in form.marks and b'"conditions":' not in line:
-        line = present(line)
     try:
-        return form.adapter.validate_json(line, strict=True)
+        return form.adapter.validate_json(present(line) if "conditions" in form.marks else line, strict=True)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, first["loc"]))
@@ -96,7 +94,7 @@ def from_json(kind: type[T], values: Json) -> T:
         ValueError: a field is missing or of another type.
     """
     form = _form(kind)
-    return form.adapter.validate_python(with_conditions(values) if "conditions" in form.marks else values)
+    return form.adapter.validate_python(trial_values(values) if "conditions" in form.marks else values)
 
 
 def steady(row: JobRow) -> Json:

@@ -1,10 +1,11 @@
 """What can be set about an evaluation. Each field is a value of ``plan.toml`` and an option of ``eval``. And about
-``bench``."""
+``run`` and ``bench``."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated
 
 from annotated_types import Ge, Le, MinLen
@@ -104,6 +105,36 @@ class Budget:
     def is_limited(self) -> bool:
         """Whether there is a limit."""
         return self.tokens is not None or self.usd is not None
+
+
+@dataclass(frozen=True, slots=True)
+class PlanSettings:
+    """Which plan is evaluated, and where to."""
+
+    plan: Path | None = None
+    """TOML file with the plan; options override it."""
+    preset: str | None = None
+    """A set of limits: 2026 is ten steps, as in the authors' newer edition."""
+    out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
+    """Results folder; an existing one is resumed."""
+    dry_run: bool = False
+    """Show the plan and exit."""
+
+
+@dataclass(frozen=True, slots=True)
+class SingleSettings:
+    """How one episode is run, and where to."""
+
+    without: tuple[str, ...] = ()
+    """Parts of the agent to switch off, separated by commas: gps, context, queries, screen, reflection, memory."""
+    memory: Path | None = None
+    """File in which ASURADA remembers what worked, for later runs."""
+    out: Annotated[Path | None, Option(default="runs/<time>-<task>-<half>-<agent>-seed<seed>")] = None
+    """Folder for the results."""
+    pair: bool = False
+    """Run the agent twice from the same instant, with its place and without, side by side."""
+    actions: Path | None = None
+    """Play a file of actions, one JSON object per line, instead of an agent."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -95,17 +95,12 @@ class Viewport:
         return np.stack((points[:, 0] - self.left_m, self.top_m - points[:, 1]), axis=1) * self.pixels_per_m
 
 
-def draw_scenario(scenario: Scenario) -> Image.Image:
-    """The scenario's picture, RGB.
+def draw_scenario(scenario: Scenario) -> tuple[Image.Image, tuple[str, ...]]:
+    """The scenario's picture, RGB, and the street names that it lacks because no font has their script.
 
     Raises:
         ScenarioError: its network cannot be read, or a trip has no route through it.
     """
-    return _drawn(scenario)[0]
-
-
-def _drawn(scenario: Scenario) -> tuple[Image.Image, tuple[str, ...]]:
-    """The picture, and the street names that it lacks because no font has their script."""
     network = network_of(scenario)
     edges = tuple(network.edges.values())
     frame = Viewport.around(edges)
@@ -129,7 +124,7 @@ def save_picture(scenario: Scenario, path: Path) -> tuple[str, ...]:
         ScenarioError: see ``draw_scenario``.
         UserError: the file cannot be written.
     """
-    picture, unwritten = _drawn(scenario)
+    picture, unwritten = draw_scenario(scenario)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         with drafted(path) as draft:

@@ -1,8 +1,9 @@
-"""What can be set about the search for an equilibrium. Each field is an option of its command."""
+"""What can be set about the search for an equilibrium and an optimum. Each field is an option of its command."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Annotated
 
 from annotated_types import Ge, Le
@@ -29,3 +30,17 @@ class EquilibriumSettings:
     def observe_s(self) -> float:
         """How long after the warm-up departures count; later ones are left out of the new demand."""
         return 60.0 * self.minutes
+
+
+@dataclass(frozen=True, slots=True)
+class OptimumSettings:
+    """Where the new scenarios go, and whether the equilibrium is compared with the system optimum."""
+
+    out: Annotated[Path | None, Option(default="FOLDER_equilibrium")] = None
+    """Folder to create."""
+    force: bool = False
+    """Replace an earlier equilibrium."""
+    system_optimum: bool = False
+    """Then search for routes with a lower total travel time, and compare."""
+    seeds: Annotated[tuple[int, ...] | None, Option(default="the ten after --seed")] = None
+    """Seeds with which both states are driven, as in 1-10."""

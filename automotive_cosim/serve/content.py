@@ -20,7 +20,7 @@ from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_recorder import SHOWN as DRIVE_STEPS
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.former import with_conditions
+from automotive_cosim.run.former import trial_values
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.road import NAME as ROAD
 from automotive_cosim.run.road_recorder import is_being_written
@@ -307,7 +307,7 @@ class Content:
         """A drive, with its events and acts once it is over."""
         head = self._unfinished(entry, episode)
         try:
-            row = _object(self.records.file(entry, *parts, "row.json"))
+            row = trial_values(_object(self.records.file(entry, *parts, "row.json")))
         except NotHereError:
             row = {}
         judged = from_json(DriveTrialRow, row) if row else None
@@ -448,10 +448,10 @@ def _road_lines(path: Path, *_stamp: int) -> list[Json]:
 
 def _head(result: Json) -> Json:
     started = (result.get("manifest") or {}).get("started")
-    told = with_conditions(result).get("conditions")
-    conditions = Conditions() if told is None else from_json(Conditions, told)
+    told = trial_values(result)
+    conditions = from_json(Conditions, told["conditions"]) if told.get("conditions") else Conditions()
     seen = {"screen": conditions.screen, "conditions": conditions.labels}
-    return {name: result.get(name) for name in HEAD} | seen | {"started": started}
+    return {name: told.get(name) for name in HEAD} | seen | {"started": started}
 
 
 def _object(path: Path) -> Json:

@@ -54,8 +54,6 @@ from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.traffic.fork import Simulations
 
 QUALITY = 88
-PICTURES = "pictures"
-"""Folder of an evaluation with what a page shows of each of its jobs."""
 
 
 class PlayState(StrEnum):

@@ -292,7 +292,7 @@ class AskedFirst:
     def holds(self, start: Moment, now: Moment, trace: Sequence[Moment]) -> bool:
         """Whether that was the only question, and came first."""
         asked = questions(start, now)
-        if len(asked) != 1 or asked[0]["deeds"]:
+        if len(asked) != 1 or asked[0]["commands"]:
             return False
         return self.topic.named(asked[0]["text"]) == len(self.topic.choices)
 

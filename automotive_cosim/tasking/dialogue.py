@@ -143,7 +143,7 @@ def topic_of(question: str, topics: Sequence[Topic]) -> Topic | None:
 
 
 def questions(start: Moment, now: Moment) -> list[dict[str, Any]]:
-    """The questions since a moment, as the cockpit keeps them: ``text``, and the number of ``deeds`` before."""
+    """The questions since a moment, as the cockpit keeps them: ``text``, and the number of ``commands`` before."""
     before, after = (moment.commands.get("questions", []) for moment in (start, now))
     asked: list[dict[str, Any]] = after[len(before) :]
     return asked

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, fields, make_dataclass
 from enum import StrEnum
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import pytest
@@ -13,7 +14,7 @@ from typer.testing import CliRunner
 
 from automotive_cosim.calibration.settings import CalibrationOptions
 from automotive_cosim.cli.batches import ExecutorSettings
-from automotive_cosim.cli.derived import settings_in, takes
+from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.main import app
 from automotive_cosim.cli.options import DriveChanges, LimitSettings
 from automotive_cosim.doors.settings import A2aSettings, McpSettings
@@ -27,9 +28,17 @@ from automotive_cosim.formats.options import option
 from automotive_cosim.osm.settings import DownloadLimits, ImportOptions
 from automotive_cosim.proof.settings import ProofSettings
 from automotive_cosim.publish.settings import VerifySettings
-from automotive_cosim.run.settings import BenchSettings, Budget, EvaluationSettings, RunSettings
-from automotive_cosim.safety.settings import SearchSettings
-from automotive_cosim.scenarios.settings import EquilibriumSettings
+from automotive_cosim.report.settings import CompareSettings, PlaybackSettings, ScreensSettings
+from automotive_cosim.run.settings import (
+    BenchSettings,
+    Budget,
+    EvaluationSettings,
+    PlanSettings,
+    RunSettings,
+    SingleSettings,
+)
+from automotive_cosim.safety.settings import SearchOrder, SearchSettings
+from automotive_cosim.scenarios.settings import EquilibriumSettings, OptimumSettings
 from automotive_cosim.serve.settings import ServeSettings
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings, SuiteSettings
 from tests.laws import over
@@ -37,18 +46,22 @@ from tests.laws import over
 COMMANDS = (
     ("run", EpisodeSettings, {"seed"}),
     ("run", LimitSettings, set()),
+    ("run", SingleSettings, set()),
     ("drive", LimitSettings, set()),
     ("drive", DriveChanges, set()),
     ("eval", EvaluationSettings, {each.name for each in TABLE}),
     ("eval", RunSettings, set()),
+    ("eval", PlanSettings, set()),
     ("eval", Budget, set()),
     ("eval", ExecutorSettings, set()),
     ("eval", LimitSettings, {"most_wall_seconds"}),
+    ("search", SearchOrder, set()),
     ("search", SearchSettings, set()),
     ("search", ExecutorSettings, set()),
     ("scenarios import", ImportOptions, set()),
     ("scenarios download", DownloadLimits, set()),
     ("scenarios equilibrate", EquilibriumSettings, set()),
+    ("scenarios equilibrate", OptimumSettings, set()),
     ("scenarios calibrate", CalibrationOptions, set()),
     ("study reroute", RerouteSettings, set()),
     ("study suite", SuiteSettings, {"scenario", "warm_up_s"}),
@@ -60,6 +73,9 @@ COMMANDS = (
     ("serve", ServeSettings, set()),
     ("bench", BenchSettings, set()),
     ("export", ExportFormats, set()),
+    ("compare", CompareSettings, set()),
+    ("replay", PlaybackSettings, set()),
+    ("show screens", ScreensSettings, set()),
     ("publish verify", VerifySettings, set()),
 )
 """Commands, what they can be told, and the fields of it that are no options."""
@@ -186,6 +202,27 @@ def test_a_new_field_is_an_option_by_itself() -> None:
     one = typer.Typer()
     one.command()(takes(more)(lambda **settings: print(settings_in(more, settings))))
     assert CliRunner().invoke(one, ["--new-thing", "4"]).output.strip() == "{'new_thing_s': 4.0}"
+
+
+@dataclass(frozen=True)
+class Card:
+    """One that must be told to whom it goes."""
+
+    to: str
+    """Who gets it."""
+    file: Path = Path("card.txt")
+    """File to write."""
+
+
+def test_a_field_without_a_default_must_be_given_and_a_path_keeps_its_own() -> None:
+    one = typer.Typer()
+    one.command()(takes(Card)(lambda **settings: print(filled(Card, settings))))
+    assert "Missing option '--to'" in CliRunner().invoke(one, []).output
+    assert CliRunner().invoke(one, ["--to", "Eva"]).output.strip() == repr(Card("Eva"))
+    assert CliRunner().invoke(one, ["--to", "Eva", "--file", "x"]).output.strip() == repr(Card("Eva", Path("x")))
+    assert "File to write. [default: card.txt]" in " ".join(
+        CliRunner().invoke(one, ["--help"]).output.replace("│", " ").split()
+    )
 
 
 @over((*case[:2], field.name) for case in COMMANDS for field in fields(case[1]) if field.name not in case[2])

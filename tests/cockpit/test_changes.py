@@ -80,7 +80,7 @@ def test_in_a_parked_car_times_count_from_when_it_was_parked(make: Make, around:
     assert (cockpit.signals[MOTION.GEAR], cockpit.signals[DRIVE.PARKING_BRAKE]) == ("D", False)
 
 
-def test_nothing_that_changes_by_itself_counts_as_a_deed(make: Make, around: Surroundings) -> None:
+def test_nothing_that_changes_by_itself_counts_as_a_command(make: Make, around: Surroundings) -> None:
     cockpit, other = make(changes=[CarChange(1.0, LIGHTS.SWITCH.path, "BEAM")]), make()
     drive(cockpit, around, 0, 2)
     drive(other, around, 0, 2)

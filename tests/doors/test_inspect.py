@@ -213,7 +213,7 @@ def test_the_rule_perfect_watchers_acts_give_the_command_lines_drive(inspect, sh
     score, row = sample.scores["watched"], watched.row
     assert row.score.met > 0
     assert score.metadata["trace_sha256"] == row.trace_sha256
-    assert score.metadata["end"] == "watch_over"
+    assert score.metadata["end"] == "minutes_over"
     assert list(score.value.values()) == [figure([row]) for _, figure, _ in FIGURES[:WITH_INTERVAL]]
     assert [each.name for each in log.results.scores] == list(inspect_tasks.SCORES)
     assert [next(iter(each.metrics.values())).value for each in log.results.scores] == list(score.value.values())

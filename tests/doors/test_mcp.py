@@ -124,7 +124,7 @@ def test_an_assistant_keeps_watch_on_a_drive(service: EpisodeService, drive_trac
         return await call(client, "finish", {"episode_id": turn["episode_id"]})
 
     outcome = inside(service, watch)
-    assert (outcome["trace_sha256"], outcome["end"]) == (drive_trace, "watch_over")
+    assert (outcome["trace_sha256"], outcome["end"]) == (drive_trace, "minutes_over")
     assert outcome["result"]["value"] == 0.0
 
 

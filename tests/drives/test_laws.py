@@ -14,10 +14,11 @@ import pytest
 from automotive_cosim.contracts import AlertKind, Cruise, PullOver, Reroute, RoadRequest, Severity, SlowDown
 from automotive_cosim.drives.events import KINDS, DriveAct, DriveEvent
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.judge import NOT_DUE, ORDER, Judgement, Worth, judge, most_frequent
+from automotive_cosim.drives.judge import NOT_DUE, ORDER, Judgement, Worth, judge
 from automotive_cosim.drives.score import Score, score
 from automotive_cosim.drives.wakes import WAKES
 from tests.drives.record import Recorded, came_off, outdated, recorded
+from tests.drives.rote import most_frequent
 
 EVERY = [pytest.param(family) for family in FAMILIES]
 DELAYS_S = (0.0, 1.0, 3.0, 8.0, 15.0, 45.0, 130.0)

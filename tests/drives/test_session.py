@@ -26,7 +26,7 @@ from automotive_cosim.drives.departure import depart
 from automotive_cosim.drives.driver import driver_line
 from automotive_cosim.drives.events import KINDS, DriveAct
 from automotive_cosim.drives.families import FAMILIES
-from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge, most_frequent
+from automotive_cosim.drives.judge import JudgedEvent, facts_of, judge
 from automotive_cosim.drives.order import ANSWERS, STANDING_ORDERS
 from automotive_cosim.drives.result import judged_since
 from automotive_cosim.drives.score import Score, score
@@ -44,6 +44,7 @@ from automotive_cosim.run.drive import JudgedDrive
 from automotive_cosim.tasks.spoken import FOREIGN, phrasings
 from automotive_cosim.traffic.base import Event
 from automotive_cosim.traffic.fork import Simulations
+from tests.drives.rote import most_frequent
 from tests.drives.scenes import limit, moment, vehicle
 
 FAMILY, SEED, FOR_S = "grid_june", 43, 420.0
@@ -394,7 +395,7 @@ def test_neither_a_status_nor_many_steps_end_a_watch(begin: Begin) -> None:
     assert session.end is None
     assert session.declared is None
     played(session, Silent())
-    assert session.end is End.WATCH_OVER
+    assert session.end is End.MINUTES_OVER
     assert session.seconds == pytest.approx(60.0)
 
 

@@ -285,7 +285,7 @@ def test_a_question_notes_what_was_changed_before_it(talk):
     episode.step(ASK)
     episode.step(Action(ActionType.HAZARD_LIGHTS, on=True))
     episode.step(ASK)
-    assert [asked["deeds"] for asked in episode.moments[-1].commands["questions"]] == [0, 1]
+    assert [asked["commands"] for asked in episode.moments[-1].commands["questions"]] == [0, 1]
 
 
 def test_the_driver_says_each_remark_once_and_branches_hear_their_own(talk):

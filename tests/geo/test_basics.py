@@ -9,7 +9,7 @@ import pytest
 import tzfpy
 
 from automotive_cosim.geo import sensor
-from automotive_cosim.geo.basics import WITHOUT_ROADS, Basics, basics_of, rows
+from automotive_cosim.geo.basics import Basics, basics_of, rows
 from automotive_cosim.geo.borders import country_at
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.place import LAW_OF, Atlas
@@ -22,6 +22,9 @@ CODES = sorted(
     for line in (files("tzdata") / "zoneinfo" / "iso3166.tab").read_text(encoding="utf-8").splitlines()
     if line and not line.startswith("#")
 )
+WITHOUT_ROADS = frozenset(("AQ", "BV", "HM", "TF"))
+"""Antarctica, Bouvet Island, Heard and McDonald Islands, French Southern Territories: they have no public roads."""
+
 COUNTRIES = [code for code in CODES if code not in WITHOUT_ROADS]
 
 LEFT = """

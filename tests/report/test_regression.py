@@ -184,7 +184,8 @@ def test_the_command_tells_by_its_exit_code_and_writes_both_files(tmp_path):
     assert runner.invoke(app, ["compare", first, second, "--threshold", "60"]).exit_code == 0
     assert runner.invoke(app, ["compare", first, first]).exit_code == 0
     refused = runner.invoke(app, ["compare", first, second, "--threshold", "-1"])
-    assert isinstance(refused.exception, UserError)
+    assert refused.exit_code == 2
+    assert "'-1' is not a number from 0 to 100" in refused.output
 
 
 def test_two_minor_versions_are_compared_only_if_told_and_that_is_said(tmp_path):

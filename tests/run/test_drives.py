@@ -425,7 +425,7 @@ def test_the_rest_of_a_drive_is_unwatched_once_a_limit_is_reached(simulations: S
     for most_steps, wall_s, end, from_s in (
         (2, inf, End.OUT_OF_STEPS, 11.0),
         (100, 0.0, End.OUT_OF_BUDGET, 0.0),
-        (100, inf, End.WATCH_OVER, None),
+        (100, inf, End.MINUTES_OVER, None),
     ):
         settings = DriveSettings(minutes=0.5)
         setup = DriveSetup("grid_june", 3, settings=settings, max_steps=most_steps, agent="alert-often")

@@ -24,8 +24,9 @@ from automotive_cosim.geo.locate import Geo
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.former import MOVED
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
-from automotive_cosim.run.moments import MOVED, Judged, judged_file, read_judged, write_judged
+from automotive_cosim.run.moments import Judged, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.settings import Pictures
@@ -110,6 +111,17 @@ def test_a_file_with_the_old_name_of_the_baseline_run_is_read(kept):
     names[names.index("baseline")] = "idle"
     path.write_bytes(lzma.compress(json.dumps(whole).encode()))
     assert read_judged(folder, "a", Judged) == judged
+
+
+def test_a_file_with_the_old_key_of_questions_is_read(kept):
+    folder, judged = kept
+    asked = {"questions": [{"text": "To Rome?", "commands": 1}]}
+    write_judged(folder, "a", replace(judged, counterfactual=asked))
+    path = judged_file(folder, "a")
+    text = lzma.decompress(path.read_bytes()).decode()
+    assert '["commands",1]' in text
+    path.write_bytes(lzma.compress(text.replace('["commands",1]', '["deeds",1]').encode()))
+    assert read_judged(folder, "a", Judged).counterfactual == asked
 
 
 def test_the_counterfactual_is_stored_and_an_older_file_without_it_refused(kept):

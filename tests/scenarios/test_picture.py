@@ -34,7 +34,7 @@ def test_every_shipped_scenario_has_its_picture(name: str) -> None:
     folder = scenarios.load(name).folder
     with Image.open(folder / "map.webp") as shipped:
         assert shipped.format == "WEBP"
-        assert shipped.size == draw_scenario(open_scenario(name)).size, "render it again"
+        assert shipped.size == draw_scenario(open_scenario(name))[0].size, "render it again"
     assert (folder / "map.webp").stat().st_size < 150_000
     assert "(map.webp)" in (folder / "README.md").read_text(encoding="utf-8")
 
@@ -52,7 +52,7 @@ def test_all_roads_lie_on_the_map(name: str) -> None:
 
 @pytest.mark.slow
 def test_every_trip_and_road_class_shows() -> None:
-    seen = _colours(draw_scenario(scenarios.load("paris_centre")))
+    seen = _colours(draw_scenario(scenarios.load("paris_centre"))[0])
     for number in range(len(scenarios.load("paris_centre").ego.trips)):
         assert seen[trip_colour(number)] > 500
     for colour in (DAY.motorway, DAY.avenue, DAY.street):
@@ -60,7 +60,7 @@ def test_every_trip_and_road_class_shows() -> None:
 
 
 def test_the_same_scenario_is_drawn_the_same() -> None:
-    assert draw_scenario(GRID).tobytes() == draw_scenario(GRID).tobytes()
+    assert draw_scenario(GRID)[0].tobytes() == draw_scenario(GRID)[0].tobytes()
 
 
 @pytest.mark.parametrize("name", ["paris_centre", "london"])

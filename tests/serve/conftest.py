@@ -138,7 +138,7 @@ def write_drive(folder: Path) -> Path:
     ]  # fmt: skip
     acts = [{"time_s": 3.0, "words": "warns of speed", "worth": "right"}]
     row = {"family": "grid_june", "scenario": "grid", "agent": "rule-perfect", "model": "none", "seed": 0,
-           "value": 50.0, "events": events, "acts": acts, "end": "watch_over"}  # fmt: skip
+           "value": 50.0, "events": events, "acts": acts, "end": "minutes_over"}  # fmt: skip
     (folder / "row.json").write_text(json.dumps(row), encoding="utf-8")
     return folder
 

@@ -239,7 +239,7 @@ def test_a_drive_is_played_and_its_row_is_kept(
         scene = browser(f"/api/play?seen={scene['version']}").json
     assert scene["error"] == ""
     (row,) = read_rows(tmp_path / "people-drives", DriveTrialRow).values()
-    assert (row.agent, row.model, row.end) == ("human", "heron", "watch_over")
+    assert (row.agent, row.model, row.end) == ("human", "heron", "minutes_over")
     assert row.score is not None
     results = browser(f"/api/evaluations/{scene['record']}").json
     assert (results["kind"], results["rows"][0]["has_road"]) == ("drives", True)

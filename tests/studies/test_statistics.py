@@ -29,7 +29,7 @@ from automotive_cosim.studies.traffic import gridlock
 from automotive_cosim.studies.warnings import warnings
 from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.scripted import Scripted, Stretch
+from tests.scripted.traffic import Scripted, Stretch
 
 STAY_LOST_S = 120.0
 OTHERS = OthersTotals(count=3, gain_s=4.0, changed=1, unfinished_stay=0, unfinished=0)

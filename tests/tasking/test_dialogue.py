@@ -20,8 +20,8 @@ class At:
     time_s: float = 0.0
 
 
-def at(*asked: str, deeds: int = 0, time_s: float = 0.0, **commands: Any) -> Any:
-    return At({"questions": [{"text": text, "deeds": deeds} for text in asked], **commands}, time_s)
+def at(*asked: str, given: int = 0, time_s: float = 0.0, **commands: Any) -> Any:
+    return At({"questions": [{"text": text, "commands": given} for text in asked], **commands}, time_s)
 
 
 @pytest.mark.parametrize(
@@ -73,7 +73,7 @@ def test_talking_takes_time():
         (at("Keller?"), False),
         (at("Keller or Holm?", "Keller or Holm?"), False),
         (at("What's up?", "Keller or Holm?"), False),
-        (at("Keller or Holm?", deeds=1), False),
+        (at("Keller or Holm?", given=1), False),
     ],
 )
 def test_asking_is_one_question_first_that_names_every_alternative(now, right):

@@ -17,7 +17,7 @@ from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import read_network
-from automotive_cosim.traffic.scripted import Scripted, Stretch
+from tests.scripted.traffic import Scripted, Stretch
 
 pytestmark = pytest.mark.sumo
 

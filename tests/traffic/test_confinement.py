@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(not version(), reason="this kernel has no Landlo
 PROGRAM = """
 import os, socket, sys
 inside, outside, port = sys.argv[1:]
-deeds = {
+attempts = {
     "write inside": lambda: open(inside + "/new", "w").write("x"),
     "remove inside": lambda: os.remove(inside + "/new"),
     "write to nothing": lambda: open(os.devnull, "w").write("x"),
@@ -31,9 +31,9 @@ deeds = {
     "through a link": lambda: open(inside + "/way/new", "w"),
     "connect": lambda: socket.create_connection(("127.0.0.1", int(port))),
 }
-for name, deed in deeds.items():
+for name, attempt in attempts.items():
     try:
-        deed()
+        attempt()
         print(name)
     except OSError:
         pass

@@ -31,7 +31,7 @@ from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
 from automotive_cosim.traffic.road_weather import COMFORTABLE_MPS2
-from automotive_cosim.traffic.scripted import Scripted, Stretch
+from tests.scripted.traffic import Scripted, Stretch
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 

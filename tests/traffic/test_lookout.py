@@ -12,8 +12,8 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
-from automotive_cosim.traffic.scripted import Leader, Scripted, Stretch
 from automotive_cosim.traffic.sumo import load_library
+from tests.scripted.traffic import Leader, Scripted, Stretch
 
 
 @pytest.mark.sumo

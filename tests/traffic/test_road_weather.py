@@ -23,7 +23,7 @@ from automotive_cosim.traffic.road_weather import (
     condition_of,
     sight_speed_mps,
 )
-from automotive_cosim.traffic.scripted import Scripted, Stretch
+from tests.scripted.traffic import Scripted, Stretch
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 

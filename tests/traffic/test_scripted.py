@@ -27,7 +27,7 @@ from automotive_cosim.errors import ScenarioError, TrafficError, UnknownNameErro
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import Advance, EgoPlan, Simulation, Traffic
 from automotive_cosim.traffic.profiles import PROFILES
-from automotive_cosim.traffic.scripted import Leader, Scripted, Stretch
+from tests.scripted.traffic import Leader, Scripted, Stretch
 
 TRIP = Trip("any", "", "")
 ROAD = (

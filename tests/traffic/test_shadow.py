@@ -12,8 +12,8 @@ from automotive_cosim.errors import TrafficError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.scripted import Scripted, Stretch
 from automotive_cosim.traffic.shadow import SharedTraffic
+from tests.scripted.traffic import Scripted, Stretch
 
 STEP_S = 0.1
 ROAD = (Stretch("a", 300.0, 50.0), Stretch("b", 400.0, 80.0), Stretch("c", 300.0, 30.0))

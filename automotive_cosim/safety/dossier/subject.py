@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
+from automotive_cosim.agents import NOT_RANKED
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted, rounded
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json
-from automotive_cosim.report.results import NOT_RANKED, Results, contestant, read_results
+from automotive_cosim.report.results import Results, contestant, read_results
 from automotive_cosim.report.stats import CONFIDENCE, upper_bound, wilson
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.drive_row import DriveTrialRow

@@ -35,8 +35,6 @@ from automotive_cosim.traffic.options import read_configuration
 WORST = 15
 """Roads in the table of those where the time lost changes most."""
 
-BEFORE = "none"
-
 
 def tables(study: CongestionStudy) -> list[Table]:
     """All tables that apply, the most important first."""

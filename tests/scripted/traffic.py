@@ -1,6 +1,6 @@
 """A road without SUMO: a straight line of given stretches, driven by the same driver with simple kinematics.
 
-For tests, examples and machines without libsumo. Only the driver's reactions are random.
+Only the driver's reactions are random.
 """
 
 from __future__ import annotations
@@ -23,9 +23,9 @@ from automotive_cosim.errors import ScenarioError, TrafficError
 from automotive_cosim.traffic.base import Advance, EgoPlan
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import Driver
-from automotive_cosim.traffic.kinematics import ScriptedCar
 from automotive_cosim.traffic.profiles import profile
-from automotive_cosim.traffic.stretches import Layout, Leader, LonLat, Stretch
+from tests.scripted.car import ScriptedCar
+from tests.scripted.stretches import Layout, Leader, LonLat, Stretch
 
 __all__ = ["Leader", "Scripted", "ScriptedTraffic", "Stretch"]
 

@@ -29,7 +29,7 @@ from automotive_cosim.traffic.pedals import RefusedError
 from automotive_cosim.traffic.profiles import DriverProfile
 from automotive_cosim.traffic.road_weather import G_MPS2
 from automotive_cosim.traffic.steering import STOPPING_MPS2, STOPPING_RESERVE_M
-from automotive_cosim.traffic.stretches import Layout, Stretch
+from tests.scripted.stretches import Layout, Stretch
 
 CAR_M, CAR_WIDTH_M, LANE_M = 4.5, 1.8, 3.2
 """Size of every car, and width of every lane."""
