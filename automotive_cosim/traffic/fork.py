@@ -82,8 +82,9 @@ class Forked:
             TrafficError: the process died or hung.
         """
         setup = Setup(scenario, seed, allow_unprojected, outputs, flow_s)
-        source = None if alike is None else alike._source
-        self._source = _Source(setup, timeout_s, by_replay=by_replay, progress=progress, alike=source)
+        self._source: _Source = _Source(
+            setup, timeout_s, by_replay=by_replay, progress=progress, alike=None if alike is None else alike._source
+        )
         self._is_closed = False
         self._fresh: Fresh | None = None
 
@@ -385,6 +386,7 @@ class _Source:
         """Lock for copying the warm process: threads may depart at the same time."""
         self._warm_calls: list[tuple[str, tuple[object, ...]]] = []
         self._warm: RemoteProcess | None
+        self.network: RoadNetwork
         if alike is None:
             self._warm, self.network = RemoteProcess.start(
                 self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
@@ -392,7 +394,7 @@ class _Source:
         else:
             with alike._lock:
                 self._warm = alike._copied()
-            self.network: RoadNetwork = self._warm.call("move", setup.scenario)
+            self.network = self._warm.call("move", setup.scenario)
 
     def departed(self, plan: EgoPlan, calls: Sequence[Call] = ()) -> RemoteTraffic:
         """A drive in a process of its own, after the calls."""
