@@ -69,6 +69,7 @@ def test_a_task_is_shown_with_its_words_and_halves(task, cli):
     text = cli("tasks", "show", task).out
     assert all(words in text for words in CATALOGUE[task].templates)
     assert all(f"{half} half" in text for half in CATALOGUE[task].halves)
+    assert text.count("  won by    ") == len(CATALOGUE[task].halves)
 
 
 @pytest.mark.sumo

@@ -12,6 +12,7 @@ from automotive_cosim.report.case import contrast
 from automotive_cosim.report.results import Results
 from automotive_cosim.report.stats import clustered_mean
 from automotive_cosim.run.coverage import Coverage
+from automotive_cosim.run.difficulty import WonBy, level, measured, shipped
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.harm import DriveFigures
 from automotive_cosim.run.store import write_trace
@@ -182,3 +183,16 @@ def test_the_case_is_one_that_place_decides_and_shows_both_sides(tmp_path, episo
     assert sides[0].picture.startswith("data:image/jpeg")
     assert sides[1].picture == ""
     assert contrast(results(*rows[4:], folder=tmp_path)) is None
+
+
+def test_success_by_difficulty_goes_from_easy_to_hard():
+    levels = {}
+    for name in shipped().halves:
+        task, half = name.split("/")
+        levels.setdefault(level(measured(task, half)), (task, half))
+    rows = [row(*levels[each], success=each is WonBy.PROGRAM) for each in reversed(WonBy) if each in levels]
+    table = findings.by_difficulty(results(*rows, row("own_task")))
+    told = [each for each in WonBy if each in {*levels, WonBy.UNKNOWN}]
+    assert [str(line[0]) for line in table.rows] == [str(each) for each in told]
+    won = [str(line[1]).startswith("100%") for line in table.rows]
+    assert won == [each in (WonBy.PROGRAM, WonBy.UNKNOWN) for each in told]
