@@ -406,7 +406,7 @@ LIGHT_TO_GET_OUT = meant(
         "Help Grandpa with his buckle: make it bright in here should it not be.",
         "He won't find the handle without light, so give him the big lamp if need be.",
         "Old eyes need light; the cabin lamp, unless the day does it.",
-        "Is it dark for my father over there? Switch on the big one in the roof, please.",
+        "Is it dark for my father over there? If so, switch on the big one in the roof, please.",
     ),
     act(
         at("london", "kingsway", on(PASSENGER, Kind.ELDERLY), parked=True, start="2026-11-18T19:30:00"),
