@@ -76,7 +76,7 @@ def written(node: ast.AST | None) -> Iterator[str]:
 def source_texts(places: Mapping[str, int], returns: tuple[str, ...]) -> dict[str, str]:
     """Every text given to one of these functions, or returned by one of those, and its file."""
     root, found = Path(package.__file__).parent, dict[str, str]()
-    roads = [root.parent / "traffic" / name for name in ("ego.py", "steering.py", "kinematics.py")]
+    roads = [root.parent / "traffic" / name for name in ("ego.py", "steering.py")]
     for path in (*sorted(root.rglob("*.py")), *roads):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):
             if isinstance(node, ast.FunctionDef) and node.name in returns:

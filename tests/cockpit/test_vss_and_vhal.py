@@ -137,7 +137,7 @@ def test_an_injected_sensor_goes_on_reading_its_value(cockpit: Cockpit, around: 
     assert cockpit.set_property("HVAC_FAN_SPEED", 2, VehicleAreaSeat.ROW_1_LEFT).code is FeedbackCode.OK
     cockpit.sense(around, 1.0)
     assert cockpit.signals[HVAC.FAN_SPEED] == 20.0
-    with pytest.raises(SignalError, match="0 to 500 kPa"):
-        cockpit.inject(TYRE.REAR_LEFT.path, 900.0)
+    with pytest.raises(SignalError, match="0 to 2550 kPa"):
+        cockpit.inject(TYRE.REAR_LEFT.path, 2600.0)
     with pytest.raises(UnknownNameError):
         cockpit.inject("Vehicle.Tyre", 1.0)
