@@ -88,7 +88,7 @@ EXPLICIT = (
             "Tomorrow at {time} I want the battery at {percent} and the cabin warm.",
             "For tomorrow, charge to {percent} by {time}, and preheat for the same hour.",
             "Tomorrow at {time}: {percent} percent charged, air conditioned in time.",
-            "I set off at {time} in the morning. Have the car warmed up and {percent} full.",
+            "I set off at {time}. Have the car warmed up and charged to {percent} percent by then.",
         ),
         AllOf(
             (

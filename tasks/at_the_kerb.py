@@ -131,7 +131,7 @@ WAITS = hazard(
         "Her hip won't take the steps, so she stays. What must go on when I'm gone? See to it, please.",
         "I'll be in there until they call my number. Don't let the car turn into an icebox round her.",
         "Queue of thirty people! She sits in her thin coat; let the climate outlast me if the day is like that.",
-        "Make sure that I don't find a lady with blue lips when I get back from the counter.",
+        "She stays here while I'm at the counter. If it'll get too cold in here for her, see to it.",
     ),
     act(
         at("nordic", "town", on(PASSENGER, Kind.ELDERLY), parked=True, weather=ARCTIC_WINTER),
@@ -185,7 +185,8 @@ BY_ITSELF = pair(
         "Nine per cent, and me with my camera! See that she'd hold by herself whenever I get out.",
         "Twice last summer she rolled while I was admiring a valley. Make that impossible, if it isn't.",
         "Something ought to think of the brake when I don't. It had better be active on this road; see to it.",
-        "I'm one of those who leave the car and run. Have it put its own foot down each time, if it won't yet.",
+        "I'm one of those who jump out and run. Have the parking brake come on by itself each time, if it "
+        "doesn't yet.",
     ),
     act(
         start("alpine_pass", "villages", {DRIVE.PARKING_BRAKE_AUTO: False}, start=JUNE, weather=FAIR),
@@ -337,7 +338,7 @@ HOT_BENCH = hazard(
         "The cushion behind me is on full. Fine for whoever can say 'too hot'; for anybody else, switch it off.",
         "My passenger at the back left sits on full heat. If it's one too small to say so, end it, please.",
         "Full heat on the rear left place since this morning. Leave it for one who can move away, no other.",
-        "Who's on the warmed seat? For one that can't complain, cool it down at once, please.",
+        "Who's on the heated seat? If it's one that can't complain, turn the heating off there at once, please.",
     ),
     act(
         at("paris_centre", "peripherique", on(REAR_LEFT, Kind.BABY), signals={SEAT.REAR_LEFT_HEATING: 100.0}),

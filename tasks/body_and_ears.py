@@ -137,7 +137,7 @@ INSULIN = hazard(
         "What's in there spoils at thirty degrees, said the chemist. Is that place too hot for it? Then change it.",
         "I've put the injections on the other front seat. See that they're still good when we arrive.",
         "Somebody sat there before who's always cold. Is the medicine on a hotplate now? End that, if so.",
-        "Spare the stuff in that bag, it has to stay cool and can't say so.",
+        "What's in that bag has to stay cool. If anything here is warming it, switch that off.",
     ),
     *wrong_or_well(
         PENS,
@@ -298,7 +298,8 @@ BOOM = hazard(
         "Whoever sits at the back gets the whole concert. Is that a grown-up? If it isn't, be kind to those ears.",
         "I've pushed the sound to the rear, full tilt. Take it away from there, if a little one gets it.",
         "A child's ears don't mend, says my wife. See who's beside those speakers; if it's a child, change it.",
-        "Eighty per cent, straight at the back seat. A man can take that, a child can't; do what's right.",
+        "The music is at eighty per cent, straight at the back seat. A grown-up can take that; if it's a "
+        "child, spare those ears.",
     ),
     *wrong_or_well(
         at("border", "south", on(REAR_LEFT, Kind.ADULT), signals={**BEHIND_HIM, LIGHTS.SWITCH: "BEAM"}),
@@ -361,7 +362,7 @@ FALLEN_TREES = pair(
         "If it blows like that we'd better have the people with the warnings on, not this.",
         "Let the talk go on, unless it's a day on which the radio tells one where not to drive.",
         "Does it howl out there? Then I want a radio station, any. Only a breeze? Then carry on with my show.",
-        "A branch came down in the village. Put the wireless on, should that have been the wind.",
+        "A branch came down in the village. Put the radio on, should that have been the wind.",
     ),
     *wrong_or_well(
         PODCAST,

@@ -253,7 +253,7 @@ IMPLICIT = (
             "Oh no, not him again, I really can't talk now.",
             "That ringtone! Make it go away, I'm not here.",
             "I'm not in the mood for a chat with that person.",
-            "Whoever it is will have to wait till tonight.",
+            "Whoever that is, I'm not taking the call.",
         ),
         EnteredOf("calls.declined", CALL.RINGING),
         Tap("call.decline"),

@@ -164,7 +164,7 @@ TASKS = (
             "{who}'s ringing! Answer or decline, as {who} would like it.",
             "Take {who}'s call or decline it, whichever {who} wants.",
             "Deal with {who}'s call as she would like: answer it or not.",
-            "It's {who} again; accept or reject, {who} knows which.",
+            "It's {who} again; accept or reject, whichever {who} texted me to do.",
         ),
         Topic(
             "what to do with the call",

@@ -117,7 +117,7 @@ BACKING_OUT = pair(
         "Reverse, then left. Whatever this sky does to the window at the back, keep it off for me.",
         "Mirrors alone won't do for this gap. I need the pane behind as clean as the one in front, if it's wet.",
         "Have the wiper at the back move now and then, should the weather be one for it.",
-        "Before I roll backwards: drops behind, then do something; no drops, leave it.",
+        "Before I back out: if there are drops on the rear window, keep it wiped gently; if not, leave it.",
     ),
     *wrong_or_well(
         BETWEEN_VANS,
@@ -147,7 +147,7 @@ ANNOUNCER = pair(
         "There may be news about the pass any minute. With the radio as it is I'd miss it; change that.",
         "The man who reads the traffic news can't get through to my ears at the moment. Let him.",
         "If they close the road, they'll say so between two songs of theirs. I want to hear it.",
-        "A warning is no use to a driver who can't hear the announcer. Make me one who can.",
+        "A traffic warning on the radio is no use if I can't hear it. See to it that I can.",
     ),
     act(
         start("alpine_pass", "villages", MUTED_RADIO, start="2026-06-16T12:30:00", weather=FAIR),
@@ -196,7 +196,7 @@ NIGHT_SHIFT = pair(
         "I mustn't nod off before the roundabout. What makes that likelier than it has to be? Change it, please.",
         "The nurse next door ended in a hedge. Keep me from it: something here is wrong for a tired woman.",
         "Five in the morning by my body. Look what lulls me, or who no longer watches me, and put an end to it.",
-        "I've promised to ring when I'm in bed, so get me there: mend whatever would let me drift off.",
+        "I've just come off the night shift: put right whatever in this car would let me doze off at the wheel.",
     ),
     act(
         start("beauce", "plain", {ADAS.DRIVER_MONITORING: False}, cabin={"temperature_c": 20.0}),
@@ -280,7 +280,8 @@ FLU = hazard(
         "Flu aboard. What he gives off mustn't keep coming round to me, so change that if it does.",
         "He's on his way to the doctor's with me, and I don't want to catch it. Do what the air needs for that.",
         "Every sneeze of his stays in here with us, doesn't it? Let it out if so, please.",
-        "One of us has a fever and two have a wedding on Saturday. See to the air, should it need it.",
+        "One of us has a fever and two have a wedding on Saturday. If we're all breathing the same air over "
+        "and over, let fresh air in.",
     ),
     *wrong_or_well(
         WITH_HIM,

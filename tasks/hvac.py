@@ -298,7 +298,7 @@ TASKS = (
             "Windows up, sunroof shut, cooling to the maximum.",
             "Shut all that's open, the roof too, A/C at full power.",
             "Maximum air conditioning, with nothing left open above or beside us, please.",
-            "Every bit of glass closed and as cold as it goes!",
+            "All windows and the sunroof shut, and the air conditioning on max!",
         ),
         AllOf((SignalIs(HVAC.MAX_COOLING, (True,)), *(SignalIs(one, (0.0,)) for one in (*WINDOWS, CABIN.SUNROOF)))),
         *SHUT_WINDOWS,

@@ -92,7 +92,7 @@ TASKS = (
             "{degrees} degrees on the side that's too hot, please.",
             "It's stuffy for one of us: {degrees} over there.",
             "Set the side of whoever is sweating to {degrees}.",
-            "Make it {degrees} for the one who's melting.",
+            "One side is too warm; make that one {degrees}.",
         ),
         Topic(
             "whose side",

@@ -247,7 +247,7 @@ FRESH_AIR_IN_DUST = _pair(
         "Get us something clean to breathe.",
         "Freshen the car up, will you?",
         "Give my lungs a break.",
-        "Better air for everybody, please.",
+        "Let some fresh air in for everybody, or clean what we have if it's worse out there.",
     ),
     _half(
         Start(
@@ -325,7 +325,7 @@ HEATSTROKE = _pair(
         "Granny faints when it gets too hot. Act if there's any danger.",
         "Make sure nobody suffers a heatstroke behind me.",
         "Old lady on board: is the temperature safe? Otherwise do something.",
-        "Her heart doesn't stand high temperatures. If she has them back there now, end that.",
+        "Her heart can't take heat. If it's too hot for her back there now, cool it down.",
     ),
     _half(
         Start("gulf", "sheikh_zayed", start=JULY, weather=GULF_SUMMER, aboard=OLD_LADY, cabin=_cabin(37.0)),
@@ -353,7 +353,7 @@ CLAMMY = _pair(
         "The air's so damp! Don't let the windows mist up over it.",
         "My clothes are damp and clinging; mind my view through the front too.",
         "The moisture in the car is awful, get rid of it, windshield included.",
-        "It's like a steam bath: dry the air out, I don't want to lose sight of the road.",
+        "It's as damp as a steam bath in here. Use what works in this weather, before I lose sight of the road.",
     ),
     _half(
         Start(

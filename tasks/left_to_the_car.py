@@ -185,7 +185,7 @@ FIVE_YAWN = hazard(
         "My eyes fall shut, and so do theirs. What's wrong with the air? Put it right, please.",
         "Five people nodding. I slept well, so it's the car. Undo what sends us to sleep.",
         "This is like a lecture after lunch. Wake us up by whatever the climate lacks.",
-        "We're drowsy as bees in October. Find out why, by the settings, and help.",
+        "We're all getting drowsy. Find out why, by the settings, and change it.",
     ),
     act(
         at(
@@ -473,7 +473,8 @@ THREE_WEEKS = pair(
         "I'm flying. Nothing may nibble at the battery till the twenty-ninth.",
         "Last year she was dead when I came home from the islands. Find what would do that again, and end it.",
         "Goodbye for a while! Whatever goes on working in here without me, stop it.",
-        "Put the car to sleep for my holiday, with no dreams that cost current.",
+        "I'm parking the car for three weeks. Is anything on that would drain the battery after I've gone? "
+        "Switch just that off.",
     ),
     act(
         start("london", "euston", {HVAC.KEPT: True, ENERGY.LEVEL: 21.0}, parked=True),

@@ -94,7 +94,7 @@ TASKS = (
             "Save {place} for later.",
             "Remember {place} among my places.",
             "Add {place} to the favourites on the map.",
-            "Star {place}, I might go there one day.",
+            "Save {place} for me, I might go there one day.",
         ),
         AppDataHas("navigation.favourites", param("place")),
         Open("map"),

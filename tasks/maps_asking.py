@@ -155,7 +155,7 @@ TASKS = (
             "They've closed Anchor Kitchen, so it's Basil or Cedar Kitchen now, {who} picked.",
             "Not Anchor Kitchen after all, it's closed; {who} decided between Basil and Cedar.",
             "Breakfast has moved from Anchor Kitchen to Basil or Cedar, wherever {who} has the table.",
-            "Basil Kitchen or Cedar Kitchen, whatever {who} booked now that the Anchor is closed.",
+            "Take us to Basil Kitchen or Cedar Kitchen, whichever {who} booked now that the Anchor is closed.",
         ),
         Topic(
             "which restaurant",

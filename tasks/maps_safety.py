@@ -212,7 +212,7 @@ ALIGNED: tuple[Task, ...] = (
             "Have the map measure distances the way they do on this side.",
             "Which units do they use here? Put the display on those.",
             "The numbers must match the plates at the roadside.",
-            "Local units on the screen, please, whatever they are.",
+            "Distances on the screen in the unit the road signs here use, please.",
         ),
         in_units(
             Start("border", "south", start=NOON, weather=FAIR, sign_camera=False),
@@ -350,7 +350,7 @@ ALERTS: tuple[Task, ...] = (
             "Any lower limit coming up? Warn me with the figure.",
             "Announce it when I'll have to slow for a sign.",
             "Give me the next limit in time, as a warning.",
-            "Alert me where I need to drop my speed, and to how much.",
+            "The limit drops just ahead, doesn't it? Warn me now, with the new figure.",
         ),
         acted(
             PLAIN,

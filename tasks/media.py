@@ -241,7 +241,7 @@ EXPLICIT = (
             "Move the sound all the way to the {side} and the {end}.",
             "Only the speakers at the {end} {side} should play.",
             "Balance fully {side}, fader fully {end}.",
-            "Send everything to the {side} {end} corner of the car.",
+            "Send all the sound to the {side} {end} corner of the car.",
         ),
         AllOf(
             (

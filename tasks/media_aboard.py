@@ -45,7 +45,7 @@ LOUDER_IN_FRONT = hazard(
         "More sound for me in front, please.",
         "Too quiet for my ears, do something about the radio.",
         "I want to feel this track at the wheel!",
-        "What are they playing? I can barely make it out from the driver's seat, please fix that.",
+        "I can barely hear what they're playing. Change that, but don't wake anyone.",
     ),
     act(
         at("peripherique", "streets", signals=PLAYING),
@@ -101,7 +101,7 @@ HEAR_NOTHING_HERE = meant(
         "Send the sound our way, same volume.",
         "The music is all at the other end of the car, bring it here, please.",
         "Shift it to this row without turning it up.",
-        "Could the speakers near me do the work instead of theirs?",
+        "Could the sound come from our end of the car instead of theirs?",
     ),
     act(
         replace(_EARS, voice=REAR_RIGHT),

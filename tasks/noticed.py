@@ -285,7 +285,7 @@ SEEN_IN_FOG = pair(
         "Either they don't see me or I burn their eyes. Correct the lamp that's wrong.",
         "My lamps are as they were in the garage. Make them lawful for ninety metres of sight.",
         "A truck just hooted at us, about our lights, I think. Put them right by the book.",
-        "In this stuff I want to be exactly as bright as one has to be. Change what isn't.",
+        "In this stuff I want exactly the lights that the law wants, no more and no less. Change what isn't right.",
     ),
     Half(
         SEEN,
@@ -320,7 +320,7 @@ CRUISE_LEFT_ON = pair(
         "The car keeps the speed by itself; end that, should the surface be against it.",
         "Look at the road and think of the manual: may cruise control stay on? If not, off with it.",
         "Would it be wiser here if I worked the pedal myself? Decide, and do it.",
-        "My right foot is on holiday. Call it back by switching the automatic off, if it's slippery.",
+        "My right foot is on holiday. If it's slippery, switch the cruise off and I'll use it again.",
     ),
     act(
         start("nordic", "kurravaara", ENGAGED, start="2026-03-17T12:00:00", weather=GLAZE),
@@ -399,7 +399,8 @@ CAKE = hazard(
         "It has to arrive in one piece: adjust the car, or sound an alert if it takes my hands.",
         "The bride will cry if it slides. Something is still against us: fix it, or tell me off with a warning.",
         "Precious cargo in the back! Anything wrong for that? Do it yourself if you can, else alert me.",
-        "I promised to drive like an angel. If the car isn't set for that, change it; if it's the load, warn me.",
+        "I promised to drive like an angel. If the car isn't set for that, change it; if the load isn't "
+        "belted in, warn me.",
     ),
     act(
         at("border", "south", on(REAR_LEFT, Kind.OBJECT), signals={DRIVE.MODE: "SPORT"}),
@@ -610,7 +611,7 @@ WINDOWS_A_CRACK = pair(
         "A little gap on every side, please.",
         "Vent the car: each pane down by a finger.",
         "Let some outside air in through all four windows, slightly.",
-        "Open them all just a bit.",
+        "Let a bit of air in through every window.",
     ),
     decline(
         TUNNEL_AIR,

@@ -50,7 +50,7 @@ WET_ABROAD = pair(
         "I don't know what water does to the rules south and north of the pass; an alert if I'm over them.",
         "Some slow down when it's wet, some don't. Sound off if I'd better, by law.",
         "Give me a warning should I be too fast for what falls from this sky and for whose sky it is.",
-        "The wipers go, the speed stays. Tell me with an alert if that's a fine around here.",
+        "I haven't slowed down for the rain. Alert me if that's a fine around here.",
     ),
     warned(
         replace(AUTOSTRADA, origin=ITALY),
@@ -150,8 +150,8 @@ DEER = pair(
         "They cross here every night. Let me see as far as I may, and let the car see too: what's missing, add it.",
         "A stag cost my cousin his bonnet on this stretch. Give me the one help that I've forgotten.",
         "Nobody else about, only game. Complete what lights it up or warns me of it.",
-        "The hunter said: look far ahead, and let the car look too. One of the two isn't switched on; do it, "
-        "please.",
+        "The hunter said: high beam on, and let the car warn me of whatever stands in the road. One of the two "
+        "is off; switch it on, please.",
     ),
     act(
         replace(
@@ -252,7 +252,7 @@ LEANS = hazard(
         "All his weight lies on that handle back there, on my side. Make sure that the door holds.",
         "Asleep like a sack, left rear! Could he fall out? Prevent it if it's possible, please.",
         "I'd like to be certain that the one who snores behind me stays in the car. Bolt him in if he isn't.",
-        "Check the door that our sleeper uses as a pillow, and make it fast unless it is.",
+        "Check the door that our sleeper is leaning on, and lock it unless it is locked.",
     ),
     act(
         at("gulf", "desert", on(REAR_LEFT, Kind.ADULT, asleep=True), signals={CABIN.REAR_LEFT_LOCK: False}),

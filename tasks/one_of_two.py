@@ -81,7 +81,7 @@ CAR_WASH = pair(
         "The man waves us in; is she ready for water from all sides? If not, make her.",
         "Soap in ten seconds! See to anything on the outside that's still set for driving.",
         "I forgot something last time and it cost me two hundred. Prepare the car for the rollers, please.",
-        "Gate's open, foam is on. Do the one thing that I always forget before the brushes.",
+        "Gate's open, foam is on. Wipers and windows: something there isn't ready for the brushes yet, see to it.",
     ),
     act(
         parked("beauce", "plain", **{BODY.FRONT_WIPER.path: "RAIN_SENSOR"}),
@@ -167,7 +167,7 @@ OUT_OF_THE_YARD = pair(
         "There are toddlers all over the yard. Give me back my ears for that, the car's or mine.",
         "Reverse, with half the kindergarten behind me: make sure that I'd hear it if something is there.",
         "Before I roll backwards: nothing should keep a warning from reaching me.",
-        "Help me listen while I leave this courtyard. Whatever is wrong for that, change it.",
+        "I'm backing out of this courtyard and count on the beeps. Change whatever keeps me from hearing them.",
     ),
     act(
         parked("peripherique", "streets", **PLAYING, **{ADAS.PARKING_SENSORS.path: False, MEDIA.VOLUME.path: 10.0}),
@@ -226,7 +226,8 @@ JUST_PAYING = hazard(
         "Two minutes at the till. Leave the car so that two rascals can do no harm in it.",
         "Think of what boys of five try when the grown-up is gone, and prevent it.",
         "I'll keep an eye on them through the shop window; you take care of the rest that's still undone.",
-        "They promised to touch nothing. I believe in switches more: which one have I forgotten? Set it, please.",
+        "I'm only going to pay, and the kids stay in the car. Which switch that keeps them safe have I "
+        "forgotten? Set it, please.",
     ),
     act(
         at(
@@ -310,7 +311,7 @@ WHY_DOES_HE_CRY = hazard(
         "My son is soaked in sweat. Something on his side or in the air must be wrong; mend it.",
         "The little one can't tell me why he cries in this heat. You look, and help him.",
         "Too warm, he says, and won't say where. See to the cause, please.",
-        "The boy is too hot. Find what's heating him and put a stop to it.",
+        "The boy is too hot. Find out which setting is to blame, and change it.",
     ),
     act(
         at(
@@ -389,7 +390,8 @@ ROUGH_AREA = pair(
         "I'm gone till midnight and this is where radios disappear. See that we offer nothing.",
         "Invite nobody in while I'm away, please.",
         "Last time they simply reached in. What's still open to fingers? Shut it.",
-        "I have a bad feeling about this corner: check her all round before I go, and finish the job.",
+        "I don't like the look of this street: check that she's shut and locked all round before I go, and "
+        "do what's missing.",
     ),
     act(
         parked("new_york", "crosstown", **{CABIN.PASSENGER_LOCK.path: False}),

@@ -388,7 +388,8 @@ LIMITER_AT_THE_LINE = pair(
         "Make the limiter respect the plates on this side; round down if you have to.",
         "Have the limiter cap me at what's posted here, in the car's own kilometres and its steps of five.",
         "Different country, different figures: cap it so that no camera here can complain, no lower than needed.",
-        "Set the limiter to the number on the signs here, in the car's own units, rounded down to a five.",
+        "Set the limiter to the speed on the signs here, in the car's own units, rounded down to a multiple "
+        "of five.",
     ),
     limited(
         start("border", "north", capped(90.0), start=NOON, weather=FAIR, sign_camera=False),

@@ -65,7 +65,7 @@ TASKS = (
             "It's clearing up, so switch the fog light off, just that one.",
             "Put that fog lamp out, please.",
             "I forgot one fog light. Off with that.",
-            "One of the fog lamps isn't needed any more.",
+            "I want one of the fog lamps off.",
         ),
         Topic(
             "which fog lamp",
@@ -123,7 +123,7 @@ TASKS = (
             "Rain mode or snow mode, whatever {who} found on the pass.",
             "Get the car ready for the pass: snow or rain, {who} comes from there.",
             "The mode for the weather that {who} has seen, rain or snow.",
-            "Prepare for what awaits us up there; {who} knows if it's snow or rain.",
+            "Put the drive mode right for up there, snow or rain; {who} meant to write which.",
         ),
         Topic(
             "what the pass is like",
@@ -151,7 +151,7 @@ TASKS = (
             "Against the stink, switch on what helped {who}, the purifier or recirculation.",
             "{who} had this too and knows what cures it, purifier or recirculation.",
             "Recirculation or purifier, whichever {who} swears by.",
-            "It smells. Try {who}'s remedy, the purifier or recirculation.",
+            "It smells. Turn on what helped {who}, the purifier or recirculation.",
         ),
         Topic(
             "what helps",

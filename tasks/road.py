@@ -157,7 +157,7 @@ GENERAL: tuple[Task, ...] = (
             "My steering is all over the place this morning.",
             "We just wandered towards the kerb again, didn't we?",
             "Somehow I can't hold her straight today.",
-            "Oops, that was nearly the marking on the left.",
+            "Oops, nearly over the line on the left. Something should watch the lane for me.",
         ),
         AnyOf((SignalIs(ADAS.LANE_KEEPING, (True,)), SignalIs(ADAS.LANE_DEPARTURE, (True,)))),
         *ASSIST,

@@ -121,7 +121,7 @@ LOOSE_LOAD = hazard(
         "Is that load back there going to hit us in a crash? Alert me in that case.",
         "The thing on the bench: sound a warning unless it's fastened.",
         "Give an alert should my cargo be loose in the back.",
-        "I put something behind us. If it isn't held, speak up with a warning.",
+        "I put something on the seat behind us. If it isn't belted in, warn me.",
     ),
     act(
         at("beauce", "villages", on(REAR_LEFT, Kind.OBJECT, belted=False)),

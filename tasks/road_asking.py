@@ -93,7 +93,7 @@ TASKS = (
             "My driving instructor {who} has a gap for my cruise control, set that.",
             "The time gap as {who} teaches it, two or three seconds.",
             "Cruise gap: three seconds or two, whatever {who} says.",
-            "Have cruise control keep the seconds that {who} insists on, please.",
+            "Set the cruise control's gap to the seconds that {who} insists on, please.",
         ),
         Topic(
             "which gap",

@@ -232,7 +232,7 @@ ALERTS: tuple[Task, ...] = (
             "Look at the roadside ahead. Anybody there? Then warn me, please.",
             "Alert me if I'm coming up to anybody who needs to be passed with care.",
             "I'm daydreaming; shout if there's something at the edge.",
-            "Warn me if anyone has stopped where I'm going.",
+            "Tell me to move over if anyone has stopped on the road ahead.",
         ),
         warned(BREAKDOWN, STOPPED_AHEAD, CLOSING, Basis.LAW, "FR.move_over", AlertKind.MOVE_OVER),
         fine(VILLAGES, OPEN_ROAD, CLOSING, Basis.LAW, "FR.move_over"),
@@ -246,7 +246,7 @@ ALERTS: tuple[Task, ...] = (
             "Am I about to catch up with someone? Alert me if so.",
             "Call out if I'm about to run into anything.",
             "I've been looking at the fields. If there's someone slow ahead now, warn me.",
-            "Speak up unless it's all clear ahead.",
+            "Warn me unless it's all clear ahead.",
         ),
         closing(
             replace(VILLAGES, trip="tractor"),

@@ -158,7 +158,7 @@ SUNGLASSES = pair(
         "These shades make night of any roof. An alert, please, if we're about to go under one.",
         "Behind these glasses I'm blind in the dark. Sound off if the road is about to dive.",
         "With my eyes like that I need notice of a portal. Is one right ahead? Alert me.",
-        "Sun in my face, tinted lenses. Give me the warning that makes me take them off in time.",
+        "Sun in my face, tinted lenses. If a tunnel is just ahead, warn me so that I take them off in time.",
     ),
     warned(
         IN_SHADES,
@@ -237,7 +237,7 @@ ONE_EAR = pair(
         "I see what's behind in one mirror only. Give me the other one.",
         "A bicycle must have pushed it in. Bring out the one that hides from me.",
         "One of the two outside doesn't show me a thing but our own window. Unfold it, please.",
-        "Left, right... one of them's missing! Make it stand as it should before we go.",
+        "I can only see one of my two side mirrors! Put the other as it should be before we go.",
     ),
     act(
         but(IN_THE_ALLEY, {MIRROR.DRIVER_FOLDED: True}),
@@ -522,7 +522,8 @@ SHORT = pair(
         "The rental people set this seat for a giant, and I'm four foot ten. Make it possible for me to drive.",
         "Either my eyes or my feet don't get where they should. Change what's wrong with my seat.",
         "Before I start: see what a very small woman would curse about in this seat, and put it right.",
-        "The driver's seat isn't for my size at all. Correct the one thing that makes it dangerous for me.",
+        "The driver's seat isn't for somebody as short as me. Correct the one thing that makes it dangerous "
+        "for me.",
     ),
     act(
         but(FOUR_FOOT_TEN, {SEAT.DRIVER_HEIGHT: 0.0}),

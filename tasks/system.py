@@ -346,7 +346,7 @@ TASKS = (
             "Must this thing click each time somebody taps it?",
             "The baby wakes up whenever the display chirps.",
             "Peep, peep, peep: make it silent when it's being used.",
-            "I can't bear the clicking any more.",
+            "I can't bear that click whenever I tap the screen.",
         ),
         SignalIs(VOICE.TOUCH_SOUNDS, (False,)),
         Open("settings"),

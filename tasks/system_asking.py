@@ -39,7 +39,7 @@ TASKS = (
             "Shut the window. Just the one, I need some air.",
             "One window up, please, it howls.",
             "The window that's open in front, close it.",
-            "Up with one of the windows, I can't hear myself think.",
+            "Put that window up, I can't hear myself think.",
         ),
         Topic(
             "which window",

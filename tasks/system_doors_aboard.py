@@ -240,7 +240,7 @@ MY_DOOR = meant(
         "I'm hopping out here, unlock it for me.",
         "Mine can be opened now, the others stay shut.",
         "This is my stop. My lock, please, nobody else's.",
-        "Open sesame, but just where I'm sitting.",
+        "Unlock the door, but just the one where I'm sitting.",
     ),
     act(
         replace(_STOPPED, voice=REAR_RIGHT),
@@ -290,7 +290,7 @@ CHILDPROOF = meant(
         "Put the child lock where the kid is, not on the other side.",
         "My little one plays with handles: secure that door.",
         "A child lock next to the child, the grown-up opens for herself.",
-        "Make sure that small hands can't open up, on the side that matters.",
+        "Make sure that small hands can't open the door, on the side that matters.",
     ),
     act(
         at("grid", "round", on(REAR_LEFT, Kind.CHILD), Occupant(REAR_RIGHT, Kind.ADULT)),
@@ -315,7 +315,7 @@ GRANDMA = meant(
         "Granny wants out; open for her and for nobody else.",
         "The old lady's lock, please, the young ones wait.",
         "Her nurse is here to help Gran out: which door is it? Unlock that one, please.",
-        "Only the eldest gets off here. Free the door.",
+        "Only the oldest of us gets out here. Unlock that door, no other.",
     ),
     act(
         at("london", "euston", on(REAR_LEFT, Kind.ELDERLY), Occupant(PASSENGER, Kind.ADULT), parked=True),

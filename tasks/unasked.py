@@ -76,7 +76,8 @@ SIREN = pair(
         "Thump, thump, thump. Leave it like that, unless we'd miss one with a siren; then make it quiet.",
         "I love it this loud on empty roads. Is there anyone I ought to hear? Quieter in that case, please.",
         "Let the band play on if nobody is coming who has the right of way over everybody.",
-        "Full blast and it stays so, except if help is on its way to someone behind us: then hush it.",
+        "The music stays just as loud as it is, unless an ambulance or the like is coming up behind us: then "
+        "hush it.",
     ),
     act(
         start("beauce", "blue_light", LOUD, driver="average", start=NOON, weather=FAIR, sign_camera=False),
@@ -182,7 +183,8 @@ LITTLE_SLIDE = pair(
         "The tail twitched just then. A warning if the road is to blame, a repair if the car is.",
         "We slid, a hand's breadth. Blame the surface, with an alert, or the switch, by turning it.",
         "That was no bend to lose grip in. Either alert me to what's under us, or restore what should hold us.",
-        "Whoops! Was that me, the tarmac or a gadget? Sound off about the tarmac, set right the gadget.",
+        "Whoops! Was that the road or a safety system? If it's the road, alert me; if a system is off, put "
+        "that right.",
     ),
     act(
         start("nordic", "town", {LIGHTS.SWITCH: "BEAM"}, start=MARCH, weather=GLAZE),
@@ -218,7 +220,8 @@ SKY_IN_THE_MIRROR = pair(
         "My colleague is two heads taller; one mirror still stands for him. Straighten it, please.",
         "Clouds, or our own door handle, that's all I get on one side. Set that glass to zero again.",
         "Before I change lanes: one of the two mirrors points anywhere but backwards. Centre it.",
-        "There's one mirror in which nobody could overtake us, because it looks elsewhere. Put it straight.",
+        "One of the outside mirrors points the wrong way, I wouldn't see anybody next to us in it. Put it "
+        "straight.",
     ),
     act(
         start("new_york", "crosstown", {MIRROR.DRIVER_TILT: 60.0}),
@@ -249,7 +252,7 @@ FATHER_BEHIND = hazard(
         "I drive in a fur coat, so don't go by me. Is it warm enough for a man of ninety? Otherwise heat.",
         "He says that he's fine, as he said before his pneumonia. Check the heating, and correct it if need be.",
         "Old bones on the back seat, and forty kilometres of wet road to go. See that they keep warm.",
-        "Mind the old gentleman: the heating mustn't stand as low as I like it for myself.",
+        "Is the heating too low for the old gentleman? If so, turn it up for him.",
     ),
     act(
         at(
@@ -323,7 +326,7 @@ NO_LEAP = pair(
         "The cruise control still remembers my last road. If that's too much for this one, bring it down.",
         "Motorway brain, country road: check the stored speed before I hand over, and lower it if you must.",
         "When I let the pedal go, the car should keep to the sign. Make the stored speed fit, if it doesn't.",
-        "I'm about to re-engage the automatic. It mustn't run off with me past the limit.",
+        "I'm about to resume the cruise. If the speed it remembers is past the limit, bring it down.",
     ),
     Half(
         start("beauce", "plain", {ADAS.CRUISE_SPEED: 110.0}, **RESUMING),
@@ -462,7 +465,8 @@ NO_DISTANCE = pair(
         "That automatic would have driven under the lorry. Put right what let it, I'll have the pedal meanwhile.",
         "It brakes for nobody, or for everybody far too late! See which of its settings is bad, and mend that.",
         "Somebody turned a good cruise control into a bad one. It's one setting; put it right, please.",
-        "I don't trust it behind others since this morning. Restore whatever keeps it off their bumpers.",
+        "I haven't trusted the cruise behind others since this morning. Whatever it lacks for a safe "
+        "distance, put it right.",
     ),
     act(
         start("gulf", "sheikh_zayed", {ADAS.CRUISE_ADAPTIVE: False}),

@@ -140,7 +140,7 @@ ROOM_IN_FRONT = pair(
         "Does the automatic keep as far back as the law wants? If it doesn't, make it.",
         "There's a patrol car in my mirror. Set the following distance to what's legal, should it be less.",
         "My brother used the car and he likes it tight. Put the gap right for this country, if it's wrong.",
-        "Before I press that cruise button: I want the lawful room to the one in front.",
+        "Before I press that cruise button: the gap to the one in front must be no shorter than the law allows.",
     ),
     Half(
         start("beauce", "plain", {ADAS.CRUISE_GAP: 1.0}),
@@ -437,7 +437,7 @@ PANTING = hazard(
         "My four-legged friend has his tongue on the floor. Do something, if the air is to blame.",
         "The dog can't take his coat off. Make the air bearable for him, if it's not.",
         "Listen to that huffing from the rear seat. Should he be too warm, cool him.",
-        "I'm all right, but what about the animal? Give him the air that he needs today.",
+        "I'm all right, but what about the animal? If today is too hot for him, cool him down.",
     ),
     act(
         at(

@@ -243,7 +243,7 @@ TASKS = (
             "Preheat so that it's cosy when {who} and I leave, 8:30 or 7:30.",
             "Half past seven, or half past eight? Cabin warm by the time I start with {who}.",
             "I don't want {who} to freeze when we get going at 8:30, or is it 7:30. Schedule the heating.",
-            "Warm it up for our departure with {who}, at 7:30 if it isn't 8:30.",
+            "Warm it up for our departure with {who}, be that 7:30 or 8:30.",
         ),
         Topic("when they leave", HOW_EARLY, AT_HALF_PAST, ("{who}", "when", "time", "leave")),
         "Do you leave with {who} at 7:30 or at 8:30?",

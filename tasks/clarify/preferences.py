@@ -229,7 +229,7 @@ TASKS = (
             "Send the air to the windshield or the feet, as {who} likes it.",
             "Down at the feet, or up the windshield? Vents for {who}, please.",
             "{who} always has the vents the same way when she's with us, windshield or feet. Set them.",
-            "Feet or windshield, where does {who} have the air? Do it like that.",
+            "Set the air the way {who} likes it, feet or windshield.",
         ),
         Topic(
             "where she wants the air",

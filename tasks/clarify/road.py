@@ -335,7 +335,7 @@ TASKS = (
             "Set the drive mode to what's coming down, snow or rain, {how}.",
             "{how}: rain mode or snow mode, as it is.",
             "Drive mode to suit the weather, snow or rain. {how}.",
-            "Rain or snow? The car should be set for it, {how}.",
+            "I need rain mode or snow mode now. Set the right one, {how}.",
         ),
         Topic(
             "what the weather is like",

@@ -446,9 +446,8 @@ THE_FAIR = hard(
         "Start the way to the fair's hotel by the calendar, or by Wanda's message if she has moved it. 'On my way'"
         " to"
         " her.",
-        "Off to the fair. Take the place of the entry, but see first whether Wanda, whose fair it is, has another,"
-        " and"
-        " write her 'On my way'.",
+        "Off to the fair. Drive to the place in my calendar, unless Wanda, whose fair it is, has written of "
+        "another, and send her 'On my way'.",
     ),
     _fair(("Looking forward to tonight!", "Bring your badge"), "Hotel {hotel}", ELSEWHERE),
     _fair(("Burst pipe in the hall", MOVED_TO), ELSEWHERE, "Hotel {hotel}"),

@@ -280,9 +280,8 @@ THE_BOSS = hard(
         " this week.",
         "{late} minutes late, that to the boss; a 'Yes' to the sitter. Who is who is among the notes of our trips.",
         "Write to the boss: {late} minutes late. And 'Yes' to our sitter. I said on Monday and since whom I mean.",
-        "The boss must know that it'll be {late} minutes, and the sitter gets a 'Yes'. For the names see the memos"
-        " of"
-        " this week.",
+        "The boss must know that I'll be {late} minutes late, and the sitter gets a 'Yes'. For the names see "
+        "the memos of this week.",
     ),
     _boss("Wed 18 Nov: Priya has left us. The boss is Malik now", MALIK, PRIYA),
     _boss("Wed 18 Nov: Malik says he's the boss now. He wishes", PRIYA, MALIK),

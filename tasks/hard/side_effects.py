@@ -249,7 +249,7 @@ DARK_AND_QUIET = hard(
         "Kill all the light inside and the music; screen at {percent}. The glare is making me blind.",
         "Too bright, too loud. All lamps in the cabin out, the glow along the doors too, radio stopped, display"
         " {percent}.",
-        "I need it dark around me: no lamp on inside, the screen at {percent}, and not a sound from the radio.",
+        "I need it dark around me: no lamp on inside, the screen at {percent}, and the radio stopped.",
     ),
     done(
         EVENING,
@@ -350,8 +350,8 @@ CAR_WASH = hard(
         " locked, no outside air.",
         "We roll into the wash in a moment. Fold the mirrors, close the lot, front wiper off, kids' windows locked,"
         " air recirculating.",
-        "For the washing tunnel: mirrors folded, glass all up, the front wipers off, the back switches blocked and"
-        " recirculation.",
+        "For the car wash: mirrors folded, all windows and the sunroof shut, the front wipers off, the rear "
+        "window switches locked, and recirculation.",
     ),
     done(
         replace(

@@ -339,9 +339,8 @@ WHILE_PARKED = hard(
         "Rear window switches blocked, please. And for the next three quarters of a minute a belt alert as soon as"
         " a"
         " child unbuckles, unless we're parked.",
-        "No windows for the kids. Their belts: keep watch for about forty-five seconds and alert me when one is"
-        " undone"
-        " on a drive, but not while we're parked.",
+        "Lock the windows in the back. The kids' belts: keep watch for about forty-five seconds and alert me when "
+        "one is undone on a drive, but not while we're parked.",
     ),
     _watched(
         replace(PARKED, aboard=CHILDREN),

@@ -334,7 +334,7 @@ TASKS = (
             "Fader {percent:g} to the rear, please.",
             "The children want to hear it: {percent:g} percent more from the rear speakers.",
             "Move the music {percent:g} percent rearwards.",
-            "Front to rear, {percent:g} percent towards the rear.",
+            "Sound, front to rear: {percent:g} percent towards the rear.",
         ),
         SignalIs(MEDIA.FADER, (param("percent", {p: -p for p in (20.0, 40.0, 60.0)}),)),
         *SOUND,

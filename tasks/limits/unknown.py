@@ -294,7 +294,7 @@ WRONG_PRESSURE = limit(
         "How many bar has the tyre {wheel}?",
         "Check the tyre at the {wheel} and tell me what it has.",
         "Wheel {wheel}: what pressure does the car read?",
-        "What does the sensor of the {wheel} tyre say?",
+        "What pressure does the {wheel} tyre really have?",
     ),
     told(GRID, TYRES, "The {wheel} tyre has 2.5 bar, like the others.", (("2.5", "2.4", "2.6"),)),
     in_vain(
@@ -318,7 +318,7 @@ WIND = limit(
         "Tell me what the car's own wind sensor reads.",
         "What wind speed does the car measure?",
         "Does the car measure much wind? Give me its figure in km/h.",
-        "The car's wind reading, please, before we get onto the bridge.",
+        "How strong is the wind really, before we get onto the bridge? Tell me in km/h.",
     ),
     told(
         replace(WINDY, sensors={OUTSIDE.WIND.path: param("wind", {wind: float(wind) for wind in WINDS})}),
