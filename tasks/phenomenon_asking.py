@@ -65,7 +65,7 @@ TASKS = (
             "It's clearing up, so switch the fog light off, just that one.",
             "Put that fog lamp out, please.",
             "I forgot one fog light. Off with that.",
-            "I want one of the fog lamps off.",
+            "One of the fog lamps isn't needed any more.",
         ),
         Topic(
             "which fog lamp",

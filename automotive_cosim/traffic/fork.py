@@ -394,7 +394,11 @@ class _Source:
         else:
             with alike._lock:
                 self._warm = alike._copied()
-            self.network = self._warm.call("move", setup.scenario)
+            try:
+                self.network = self._warm.call("move", setup.scenario)
+            except BaseException:
+                self._warm.close()
+                raise
 
     def departed(self, plan: EgoPlan, calls: Sequence[Call] = ()) -> RemoteTraffic:
         """A drive in a process of its own, after the calls."""
