@@ -58,9 +58,8 @@ def drive(
     from automotive_cosim.drives.settings import DriveSettings
     from automotive_cosim.episode.own_prompt import instructions
     from automotive_cosim.run.drive import DriveSetup, run_drive
-    from automotive_cosim.run.drive_recorder import DriveRecorder
     from automotive_cosim.run.jobs import DriveJob, Limits
-    from automotive_cosim.run.record import check_folder, stamped_folder
+    from automotive_cosim.run.record import Recorder, check_folder, stamped_folder
     from automotive_cosim.run.road_recorder import RoadRecorder
     from automotive_cosim.run.row import as_json as row_json
 
@@ -82,12 +81,12 @@ def drive(
         agent=player.name,
         model=player.model,
     )
-    planned = DriveJob(setup).planned()
+    job = DriveJob(setup)
     folder = out or stamped_folder(f"{family}-{player.name}-seed{seed}")
     check_folder(folder, force=force)
-    recorder, road = DriveRecorder(folder), RoadRecorder(folder, setup.about)
+    recorder, road = Recorder(job, folder), RoadRecorder(folder, setup.about)
     with closing(recorder), closing(road):
-        record = run_drive(planned, setup, player, observers=(recorder, road), wall_s=limited.wall_s)
+        record = run_drive(job.planned(), setup, player, observers=(recorder, road), wall_s=limited.wall_s)
     if as_json:
         print_json({**row_json(record.row), "out": str(folder)})
         return

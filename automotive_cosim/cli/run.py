@@ -83,6 +83,7 @@ def run(
     from automotive_cosim.agents import AgentSettings, make_agent
     from automotive_cosim.agents.settings import parts
     from automotive_cosim.episode.own_prompt import instructions
+    from automotive_cosim.formats.layout import PAGE
     from automotive_cosim.run.episode import EpisodeSetup
     from automotive_cosim.run.jobs import Limits
     from automotive_cosim.run.record import check_folder, default_folder
@@ -126,7 +127,7 @@ def run(
             results = [
                 _recorded(folder, setup, player, arguments, simulations, wall_s=limited.wall_s, as_json=as_json)
             ]
-            page = folder / "summary.html"
+            page = folder / PAGE
     has_begun = results[0].trace_sha256 is not None
     if has_begun and "task" not in chosen and setup.task == ANYWHERE:
         typer.echo(f"no --task was given: this was {ANYWHERE}, which comes about on any road", err=True)
@@ -166,10 +167,11 @@ def _recorded(
     from automotive_cosim.report.film import Film
     from automotive_cosim.report.page import write_page
     from automotive_cosim.run.episode import run_episode
+    from automotive_cosim.run.jobs import EpisodeJob
     from automotive_cosim.run.record import Recorder
     from automotive_cosim.run.road_recorder import RoadRecorder
 
-    recorder = Recorder(folder, setup, {**arguments, "out": str(folder)})
+    recorder = Recorder(EpisodeJob(setup), folder, {**arguments, "out": str(folder)}, whole=True)
     # A panel that redraws itself would interfere with a person who types.
     by_hand = player.name == "human"
     view = Live(Console(force_terminal=False, highlight=False) if by_hand else None, by_hand=by_hand)

@@ -40,11 +40,12 @@ def serve(
     game = dealt = None
     if told.play or told.study:
         from automotive_cosim.errors import UserError
+        from automotive_cosim.run.kept import is_trial
         from automotive_cosim.serve.dealing import read_study
         from automotive_cosim.serve.play import Game
         from automotive_cosim.serve.study import PeopleStudy
 
-        if (shown[0] / "steps.jsonl").exists() or (shown[0] / "manifest.json").exists():
+        if is_trial(shown[0]) or (shown[0] / "manifest.json").exists():
             raise UserError(f"{shown[0]} is itself a record; give a folder of records")
         game = Game(shown[0]) if told.play else None
         dealt = PeopleStudy(read_study(told.study), shown[0] / told.study.stem) if told.study else None

@@ -7,15 +7,10 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType, Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import parse_json
-from automotive_cosim.report.page import element
-from automotive_cosim.run.drive_recorder import SHOWN
+from automotive_cosim.run.kept import read_steps
 from automotive_cosim.run.road import RoadRecord, read_record, road_in
-from automotive_cosim.run.store import read_trace, trace_file
-from automotive_cosim.run.words import action_in_words
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,27 +68,10 @@ def read_recording(folder: Path) -> Recording:
 
 def _acts(folder: Path) -> Iterator[RecordedAct]:
     """The acts, each at the instant of the observation that it answers."""
-    shown, steps, evaluation = folder / SHOWN, folder / "steps.jsonl", folder.parent.parent
-    if shown.is_file():
-        for before, now in pairwise(_lines(shown)):
-            if _acted(now["action"]):
-                yield RecordedAct(before["at_s"], now["action"], now["words"])
-        return
-    if steps.is_file():
-        found = _lines(steps)
-    elif trace_file(evaluation, folder.name).is_file():
-        found = read_trace(evaluation, folder.name)[:-1]
-    else:
-        return
-    for before, now in pairwise(found):
+    for before, now in pairwise(read_steps(folder)):
         if _acted(now["action"]):
-            words = action_in_words(parse(now["action"]), tuple(map(element, before["elements"])))
-            yield RecordedAct(round(before["time_s"] - found[0]["time_s"], 2), now["action"], words)
+            yield RecordedAct(before["at_s"], now["action"], now["words"])
 
 
 def _acted(action: Json | None) -> bool:
     return action is not None and action.get("action_type") != ActionType.WAIT
-
-
-def _lines(path: Path) -> list[Json]:
-    return [parse_json(line) for line in path.read_bytes().splitlines()]

@@ -84,6 +84,18 @@ def read_json_lines(path: Path) -> list[Any]:
     return found
 
 
+def read_whole_lines(path: Path) -> list[Any]:
+    """What the lines of a file of JSON hold that may still grow: a last line that is cut short is ignored.
+
+    Raises:
+        OSError: it cannot be read.
+        ValueError: a line is not JSON, or holds too many values.
+    """
+    with open_file(path) as file:
+        *lines, _cut = file.read().split(b"\n")
+    return [parse_json(line) for line in lines]
+
+
 def parse_json(text: str | bytes, most_values: int = MOST_VALUES) -> Any:
     """What a text of JSON holds.
 

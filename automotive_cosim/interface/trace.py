@@ -14,10 +14,11 @@ from functools import cache, lru_cache
 from typing import Any
 
 from automotive_cosim.cockpit.actions import to_json
-from automotive_cosim.contracts import Action, Element, Feedback, Json
+from automotive_cosim.contracts import Action, BoundingBox, Element, Feedback, Json
 from automotive_cosim.cosim.moment import Moment
 
-HASHED = ("traffic", "signals", "elements", "action")
+STATES = ("traffic", "signals", "elements")
+HASHED = (*STATES, "action")
 SAID = "said"
 """Also in the hash, of a step in which the driver said something."""
 
@@ -36,6 +37,15 @@ class Step:
     said: tuple[str, ...] = ()
     """What the driver said meanwhile."""
 
+    @property
+    def state(self) -> Json:
+        """What followed, as far as the hash covers it."""
+        return {
+            "traffic": plain(self.moment.driving),
+            "signals": dict(self.moment.signals),
+            "elements": [plain(element) for element in self.elements],
+        }
+
     def as_json(self) -> Json:
         """The step as a JSON object, for ``steps.jsonl``."""
         moment = self.moment
@@ -43,9 +53,7 @@ class Step:
             "step": self.number,
             "time_s": moment.time_s,
             "local_time": moment.local_time.isoformat(),
-            "traffic": plain(moment.driving),
-            "signals": dict(moment.signals),
-            "elements": [plain(element) for element in self.elements],
+            **self.state,
             "action": None if self.action is None else to_json(self.action),
             "feedback": plain(self.feedback),
             "thought_s": self.thought_s,
@@ -55,6 +63,17 @@ class Step:
             "context": moment.context.text(),
             "events": [plain(event) for event in moment.events],
         } | ({SAID: list(self.said)} if self.said else {})
+
+
+def digests(step: Json) -> Json:
+    """A short hash of each part of a step's state, so that a replay can say what differs."""
+    return {name: hashlib.sha256(canonical(step[name])).hexdigest()[:16] for name in STATES}
+
+
+def element(entry: Json) -> Element:
+    """An element from its form in a trace."""
+    given: dict[str, Any] = entry | {"bbox_pixels": BoundingBox(**entry["bbox_pixels"])}
+    return Element(**given)
 
 
 class Hash:

@@ -14,6 +14,7 @@ from pathlib import Path
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import ModelError, UnknownNameError, UserError
 from automotive_cosim.formats.files import parse_json
+from automotive_cosim.formats.layout import STEPS
 from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply, digest
 
@@ -72,7 +73,7 @@ class Replay:
         Raises:
             UserError: there is no readable record, or it has no answers of a model.
         """
-        path = folder / "steps.jsonl"
+        path = folder / STEPS
         try:
             stages = list(_stages(path))
             answers = [(stage["asked"], ModelReply(**stage["reply"])) for stage in stages if stage["reply"]]

@@ -13,13 +13,12 @@ from automotive_cosim.drives.families import family_named
 from automotive_cosim.episode.specification import ROUNDING_S, End
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.files import CHUNK_BYTES, opened
-from automotive_cosim.interface.trace import SAID, Step, plain, sha256
+from automotive_cosim.interface.trace import SAID, Step, element, plain, sha256
 from automotive_cosim.measures import nearest_s
 from automotive_cosim.publish.drives import PLANNED as DRIVE_PLANNED
 from automotive_cosim.publish.drives import UNJUDGED as DRIVE_UNJUDGED
 from automotive_cosim.publish.drives import drive_problems
 from automotive_cosim.publish.problems import ROWS, Problem, attempt_problems, differences
-from automotive_cosim.report.page import element
 from automotive_cosim.run.collect import alerts, questioned
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import cast
 
 from automotive_cosim.agents import AgentSettings, make_agent
 from automotive_cosim.contracts import ActionType, Json
@@ -15,9 +14,10 @@ from automotive_cosim.publish.episodes import FROM_MOMENTS
 from automotive_cosim.publish.problems import ROWS, Problem, differences
 from automotive_cosim.run.drive import DriveRecord, JudgedDrive
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
+from automotive_cosim.run.jobs import TrialJob
 from automotive_cosim.run.moments import Judged, judged_file, read_judged
-from automotive_cosim.run.rerun import PlayedAgain, compare_drives, driven, played
+from automotive_cosim.run.record import TrialRecord
+from automotive_cosim.run.rerun import compare, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.trial_row import LATER, TrialRow
@@ -49,11 +49,8 @@ def replay(folder: Path, job: TrialJob, row: TrialRow, simulations: Simulations)
         CosimError: it cannot be replayed.
     """
     *steps, last = read_trace(folder, row.id)
-    if isinstance(job, DriveJob):
-        driven_again = driven(job, cast("DriveTrialRow", row), steps, simulations)
-        return tuple(_differences(folder, row, steps, last, driven_again))
     found: tuple[Problem, ...] = ()
-    for channels in _channels(job, steps):
+    for channels in [frozenset(row.channels)] if isinstance(row, DriveTrialRow) else _channels(job, steps):
         again = played(job, steps, channels, row.agent_error, simulations=simulations)
         found = tuple(_differences(folder, row, steps, last, again))
         if not found:
@@ -61,7 +58,7 @@ def replay(folder: Path, job: TrialJob, row: TrialRow, simulations: Simulations)
     return found
 
 
-def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]]:
+def _channels(job: TrialJob, steps: Sequence[Json]) -> list[frozenset[Channel]]:
     """The channels that its agent may have had; no foreign agent is loaded to find out."""
     setup = job.setup
     if ":" not in setup.agent:
@@ -72,13 +69,13 @@ def _channels(job: EpisodeJob, steps: Sequence[Json]) -> list[frozenset[Channel]
 
 
 def _differences(
-    folder: Path, row: TrialRow, steps: Sequence[Json], last: Json, again: PlayedAgain | DriveRecord
+    folder: Path, row: TrialRow, steps: Sequence[Json], last: Json, again: TrialRecord
 ) -> Iterator[Problem]:
     *new_steps, new_last = json.loads(json.dumps(again.lines))
     file = trace_file(folder, row.id).relative_to(folder).as_posix()
     if isinstance(again, DriveRecord):
         names = list(new_last["result"])
-        for compared in compare_drives(steps, new_steps):
+        for compared in compare(steps, new_steps):
             for name in compared.differs:
                 yield Problem(file, f"step {compared.number} {name}", "differs from its replay")
     else:

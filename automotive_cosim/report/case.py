@@ -7,17 +7,17 @@ from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Json
+from automotive_cosim.formats.layout import PICTURES
 from automotive_cosim.report.findings import PLACE
-from automotive_cosim.report.page import element, embedded
+from automotive_cosim.report.page import embedded
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.results import Results
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.kept import pictures, shown
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import read_trace, trace_file
-from automotive_cosim.run.words import action_in_words
 
 CONTROLS = ("none", "irrelevant", "wrong", "gps", "context")
 """Geo controls to compare with full geo-context, the clearest contrast first."""
@@ -66,22 +66,16 @@ def _has_trace(results: Results, row: EpisodeRow) -> bool:
 def _side(folder: Path, row: EpisodeRow) -> Side:
     *steps, last = read_trace(folder, row.id)
     result = from_json(EpisodeResult, last["result"])
-    pictures = sorted((folder / "pictures" / row.id).glob("step_*.jpg"))
+    screens = pictures(folder / PICTURES / row.id)
     return Side(
         row,
         result,
         Plot(result.path, result.timeline, 480, 260),
         Plot(result.path, result.timeline, 360, 240),
         tuple(_told(steps)),
-        embedded(pictures[-1].read_bytes(), "jpeg") if pictures else "",
+        embedded(screens[-1].read_bytes(), "jpeg") if screens else "",
     )
 
 
 def _told(steps: Sequence[Json]) -> list[tuple[str, str, str]]:
-    told = []
-    for before, step in pairwise(steps):
-        action = None if step["action"] is None else parse(step["action"])
-        at_s = before["time_s"] - steps[0]["time_s"]
-        words = action_in_words(action, tuple(map(element, before["elements"])))
-        told.append((f"{at_s:+.1f} s", words, step["thought"]))
-    return told
+    return [(f"{before['at_s']:+.1f} s", step["words"], step["thought"]) for before, step in pairwise(shown(steps))]

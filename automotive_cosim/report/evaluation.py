@@ -11,6 +11,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.episode.conditions import told
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.layout import PICTURES
 from automotive_cosim.report import drives, findings
 from automotive_cosim.report.answer import answer
 from automotive_cosim.report.case import contrast
@@ -27,6 +28,7 @@ from automotive_cosim.report.tables import Cell, Table
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
 from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.kept import pictures
 from automotive_cosim.run.row import from_json
 from automotive_cosim.run.store import cannot_write, megabytes, read_trace, trace_file
 
@@ -180,10 +182,12 @@ def _sources(
 def _episode(folder: Path, row: EpisodeRow) -> Json:
     """An episode on the page: its line, its result if there is a trace, and its files."""
     has_trace = trace_file(folder, row.id).is_file()
-    pictures = sorted((folder / "pictures" / row.id).glob("step_*.jpg"))
     return {
         "row": row,
         "result": from_json(EpisodeResult, read_trace(folder, row.id)[-1]["result"]) if has_trace else None,
         "trace": trace_file(folder, row.id).relative_to(folder).as_posix() if has_trace else "",
-        "pictures": [path.relative_to(folder).as_posix() for path in pictures],
+        "pictures": {
+            int(path.stem.removeprefix("step_")): path.relative_to(folder).as_posix()
+            for path in pictures(folder / PICTURES / row.id)
+        },
     }

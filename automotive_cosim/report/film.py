@@ -9,12 +9,14 @@ from PIL import Image
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
+from automotive_cosim.formats.layout import FILM
+from automotive_cosim.formats.layout import ROAD as ROAD_FILE
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmplot import speed_plot
 from automotive_cosim.report.filmroad import RoadPainter
 from automotive_cosim.report.frames import SAME_TIME_S, FilmFrame, Frames, save_animation
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.road import EMPTY, NAME, read_record
+from automotive_cosim.run.road import EMPTY, read_record
 from automotive_cosim.run.timeline import Sample
 from automotive_cosim.run.words import is_over
 
@@ -38,14 +40,14 @@ class Film(Frames):
             folder: the record's; if its road has been recorded by then, the film shows the other vehicles.
         """
         super().__init__(_pixels(COCKPIT))
-        self._path = folder / "episode.webp"
+        self._path = folder / FILM
 
     def finished(self, result: EpisodeResult) -> None:
         """Composes and writes the film, if there was a hand-over and a drive to it."""
         frames = self.of(result)
         if self.map is None or not frames:
             return
-        road = self._path.with_name(NAME)
+        road = self._path.with_name(ROAD_FILE)
         painter = RoadPainter(read_record(road) if road.is_file() else EMPTY, self.map)
         pictures = [self._compose(frame, result, painter) for frame in frames]
         save_animation(self._path, pictures, [frame.milliseconds for frame in frames])

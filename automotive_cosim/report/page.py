@@ -7,19 +7,17 @@ import json
 from collections.abc import Mapping
 from io import BytesIO
 from pathlib import Path
-from typing import Any
 
 from PIL import Image
 
-from automotive_cosim.cockpit.actions import parse
-from automotive_cosim.contracts import BoundingBox, Element, Json
+from automotive_cosim.contracts import Json
 from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.layout import FILM, PAGE
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.record import screenshot
+from automotive_cosim.run.kept import picture, read_steps, read_trial
 from automotive_cosim.run.row import from_json
-from automotive_cosim.run.words import action_in_words
 
 PARTS: Mapping[str, str] = {
     "goal": "Goal",
@@ -35,12 +33,11 @@ def write_page(folder: Path) -> Path:
     """Writes the page of a record and returns its path.
 
     Args:
-        folder: with ``episode.json``, ``steps.jsonl`` and ``screenshots/``, and possibly ``episode.webp``.
+        folder: of a trial (``formats.layout``).
     """
-    record = json.loads((folder / "episode.json").read_text(encoding="utf-8"))
-    result, manifest = from_json(EpisodeResult, record), record["manifest"]
-    lines = (folder / "steps.jsonl").read_text(encoding="utf-8").splitlines()
-    film = folder / "episode.webp"
+    told = read_trial(folder)
+    result, manifest = from_json(EpisodeResult, told["result"]), told["manifest"]
+    film = folder / FILM
     drive = result.path, result.timeline
     text = render(
         "report/page.html",
@@ -48,41 +45,26 @@ def write_page(folder: Path) -> Path:
         manifest=manifest,
         parts=PARTS,
         plots={"wide": Plot(*drive, 960, 300), "narrow": Plot(*drive, 420, 280)},
-        steps=_steps(folder, [json.loads(line) for line in lines]),
+        steps=_steps(folder),
         film=embedded(film.read_bytes()) if film.is_file() else None,
         versions=sorted(manifest["versions"].items()),
     )
-    page = folder / "summary.html"
+    page = folder / PAGE
     write_whole(page, text)
     return page
 
 
-def _steps(folder: Path, steps: list[Json]) -> list[Json]:
-    """What the page shows of each step; an action refers to the elements of the step before."""
-    shown = []
-    seen: tuple[Element, ...] = ()
-    for step in steps:
-        action = None if step["action"] is None else parse(step["action"])
-        shown.append(
-            {
-                "number": step["step"],
-                "at_s": step["time_s"] - steps[0]["time_s"],
-                "words": action_in_words(action, seen) if step["step"] else "hand-over",
-                "action": json.dumps(step["action"], ensure_ascii=False) if step["action"] else "",
-                "thought": step["thought"],
-                "feedback": step["feedback"],
-                "context": step["context"],
-                "picture": _picture(screenshot(folder, step["step"])),
-            }
-        )
-        seen = tuple(map(element, step["elements"]))
-    return shown
-
-
-def element(entry: dict[str, Any]) -> Element:
-    """An element from its form in a trace."""
-    fields: dict[str, Any] = entry | {"bbox_pixels": BoundingBox(**entry["bbox_pixels"])}
-    return Element(**fields)
+def _steps(folder: Path) -> list[Json]:
+    """What the page shows of each step."""
+    return [
+        {
+            "number": step["step"],
+            **{name: step[name] for name in ("at_s", "words", "thought", "feedback", "context")},
+            "action": json.dumps(step["action"], ensure_ascii=False) if step["action"] else "",
+            "picture": _picture(picture(folder, step["picture"])),
+        }
+        for step in read_steps(folder)
+    ]
 
 
 def _picture(path: Path) -> str:

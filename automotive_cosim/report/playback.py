@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
@@ -10,9 +9,10 @@ from pathlib import Path
 
 from PIL import Image
 
-from automotive_cosim.contracts import KMH_PER_MPS, Json
+from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.record import screenshot
+from automotive_cosim.formats.layout import STEPS
+from automotive_cosim.run.kept import picture, read_steps
 
 LAST_MS = 3000
 """How long an animation shows its last picture."""
@@ -47,23 +47,17 @@ def frames(folder: Path) -> Iterator[Frame]:
     Raises:
         UserError: the folder has no record.
     """
-    path = folder / "steps.jsonl"
-    if not path.is_file():
-        raise UserError(f"{folder} has no steps.jsonl; give a results folder of `automotive-cosim run`")
-    begun_s: float | None = None
-    for line in path.read_text(encoding="utf-8").splitlines():
-        try:
-            step = json.loads(line)
-        except json.JSONDecodeError:
-            return
-        begun_s = step["time_s"] if begun_s is None else begun_s
+    steps = read_steps(folder)
+    if not steps:
+        raise UserError(f"{folder} has no {STEPS}; give a results folder of `automotive-cosim run` or `drive`")
+    for step in steps:
         yield Frame(
             step["step"],
-            step["time_s"] - begun_s,
-            step["traffic"]["speed_mps"] * KMH_PER_MPS,
+            step["at_s"],
+            step["speed_kmh"],
             step["action"],
             step["feedback"]["text"],
-            screenshot(folder, step["step"]),
+            picture(folder, step["picture"]),
         )
 
 

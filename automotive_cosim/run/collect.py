@@ -1,14 +1,10 @@
-"""Collects what an evaluation keeps of an episode: a row, a trace, screenshots."""
+"""Collects what an evaluation keeps of an episode: a row, a trace, the judge's input."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from io import BytesIO
-from pathlib import Path
+from dataclasses import dataclass, replace
 from typing import Any
-
-from PIL import Image
 
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import Json
@@ -22,24 +18,32 @@ from automotive_cosim.run.harm import overspeed
 from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged
 from automotive_cosim.run.observer import Shot
-from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.taps import pixel_taps
 from automotive_cosim.tasking.dialogue import Question
 
 OVERSPEED_SCALE_MPS = 2.23
 """Mean overspeed at which compliance is zero, 5 mph: nuPlan's speed-limit metric (``max_overspeed_value``)."""
-PICTURE_QUALITY = 85
+
+
+@dataclass(frozen=True, slots=True)
+class EpisodeRecord:
+    """What is kept of an episode."""
+
+    row: EpisodeRow
+    lines: list[Json]
+    """Its trace: the steps, then the result; nothing if there was no hand-over."""
+    judged: Judged | None
+    """The judge's input; None without a verdict."""
 
 
 class Collector(EpisodeObserver):
-    """Collects data while an episode runs, and makes the row and the trace when it is over."""
+    """Collects data while an episode runs, and makes its record when it is over."""
 
-    def __init__(self, pictures: Pictures) -> None:
-        self._pictures = pictures
+    def __init__(self, job: EpisodeJob) -> None:
+        self._job = job
         self._episode: Episode | None = None
         self._moments: list[Moment] = []
         self._lines: list[Json] = []
-        self._shown: list[bytes] = []
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
         """Keeps the drive since the hand-over."""
@@ -53,24 +57,16 @@ class Collector(EpisodeObserver):
         self.stepped(shot)
 
     def stepped(self, shot: Shot) -> None:
-        """Keeps the step and, if it may be needed, its screenshot."""
+        """Keeps the step."""
         told = {"thought": shot.thought, "stages": [stage.as_json() for stage in shot.stages]}
         self._lines.append(shot.step.as_json() | told)
-        if self._pictures is not Pictures.NONE:
-            data = BytesIO()
-            Image.fromarray(shot.screenshot).save(data, format="JPEG", quality=PICTURE_QUALITY, subsampling=0)
-            self._shown.append(data.getvalue())
 
-    @property
-    def steps(self) -> list[Json]:
-        """The steps so far."""
-        return [*self._lines]
+    def record(self, result: EpisodeResult) -> EpisodeRecord:
+        """Everything that is kept."""
+        lines = [*self._lines, {"result": result.as_json()}] if self._lines else []
+        return EpisodeRecord(self._row(result), lines, self._judged())
 
-    def trace(self, result: EpisodeResult) -> list[Json]:
-        """The steps, then the result; nothing if there was no hand-over."""
-        return [*self._lines, {"result": result.as_json()}] if self._lines else []
-
-    def judged(self) -> Judged | None:
+    def _judged(self) -> Judged | None:
         """The input of the verdict; None without a verdict."""
         episode = self._episode
         if episode is None or episode.verdict is None:
@@ -88,22 +84,12 @@ class Collector(EpisodeObserver):
             episode.said,
         )
 
-    def keeps_pictures_of(self, result: EpisodeResult) -> bool:
-        """Whether this episode's pictures are to be kept."""
-        return bool(self._shown) and not (self._pictures is Pictures.FAILURES and result.success)
-
-    def keep_pictures(self, folder: Path) -> None:
-        """Writes the screenshots."""
-        folder.mkdir(parents=True, exist_ok=True)
-        for number, data in enumerate(self._shown):
-            (folder / f"step_{number:03d}.jpg").write_bytes(data)
-
-    def row(self, job: EpisodeJob, result: EpisodeResult) -> EpisodeRow:
+    def _row(self, result: EpisodeResult) -> EpisodeRow:
         """The episode's row, without the fields that the batch adds."""
         episode, judged, load = self._episode, result.verdict, result.load
         measured = following_figures(states_of(self._moments)) if self._moments else None
         return replace(
-            job.planned(),
+            self._job.planned(),
             scenario=result.scenario,
             parameters=None if episode is None else dict(episode.instance.parameters),
             traffic_seed=result.traffic_seed,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, fields, replace
@@ -24,7 +23,7 @@ from automotive_cosim.drives.timeline import timeline
 from automotive_cosim.episode.observer import Observers
 from automotive_cosim.episode.specification import End
 from automotive_cosim.interface.observe import Channel
-from automotive_cosim.interface.trace import Step, canonical, plain
+from automotive_cosim.interface.trace import digests, plain
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.moments import JudgeInput
 from automotive_cosim.run.observer import Answers, TrialObserver, play_observed
@@ -200,17 +199,7 @@ def _steps(session: DriveSession) -> list[Json]:
             "action": None if step.action is None else to_json(step.action),
             "thought_s": step.thought_s,
             "feedback": plain(step.feedback),
-            "sha256": _digests(step),
+            "sha256": digests(step.state),
         }
         for step in session.steps
     ]
-
-
-def _digests(step: Step) -> Json:
-    """A short hash of each part of the trace, so that a replay can say what differs."""
-    parts = {
-        "traffic": plain(step.moment.driving),
-        "signals": dict(step.moment.signals),
-        "elements": plain(step.elements),
-    }
-    return {name: hashlib.sha256(canonical(part)).hexdigest()[:16] for name, part in parts.items()}

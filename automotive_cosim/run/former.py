@@ -3,13 +3,15 @@
 0.1    had modes: ``prompted``, which every episode is now, and ``monitoring``, now drives
 0.2    had each condition as a field of rows, setups and results; in plans ``latency`` for ``latency_s``, and one
        clock; plans of drives apart from those of tasks, with their own ``wall_s``; files for timelines; drives
-       whose ``watch_over``; questions after so many ``deeds``
+       whose ``watch_over``; questions after so many ``deeds``; in the folder of a run ``episode.json`` and PNG, in
+       that of a drive ``row.json``, ``timeline.json`` and ``shown.jsonl``, in an evaluation the screenshots of an
+       episode alone
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -18,6 +20,7 @@ from automotive_cosim.contracts.given import FeedbackDetail
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import read_json, read_whole_lines
 
 INSTEAD = "drives have replaced monitoring: `automotive-cosim drive`, and `automotive-cosim eval --drives all`"
 NAMES = frozenset(each.name for each in TABLE)
@@ -29,6 +32,8 @@ FIELDS = {"idle": "baseline"}
 """Present names of their fields."""
 KEYS = {"deeds": "commands"}
 """Present names of keys in what they hold."""
+EPISODE, ROW, TIMELINE, SHOWN = FILES = ("episode.json", "row.json", "timeline.json", "shown.jsonl")
+"""Files of a trial's folder in place of ``trial.json``, and of a drive's beside ``steps.jsonl``."""
 
 
 def plan_values(values: Mapping[str, Any], where: str) -> dict[str, Any]:
@@ -77,6 +82,46 @@ def former_timeline(folder: Path, drive: str) -> Json | None:
     """The timeline of a drive of 0.2, which had a file of its own; None if there is none."""
     path = folder / "timelines" / f"{drive}.json"
     return json.loads(path.read_text("utf-8")) if path.is_file() else None
+
+
+def former_trial(folder: Path) -> Json | None:
+    """What ``trial.json`` says of a trial, from the files of 0.2; None if it has none of them.
+
+    Raises:
+        OSError, ValueError: they cannot be read.
+    """
+    if (folder / EPISODE).is_file():
+        result = read_json(folder / EPISODE)
+        return {"result": result, "manifest": result.get("manifest", {})}
+    if not (folder / SHOWN).is_file():
+        return None
+    row = read_json(folder / ROW) if (folder / ROW).is_file() else {}
+    timeline = read_json(folder / TIMELINE) if (folder / TIMELINE).is_file() else None
+    names = ("family", "seed", "scenario", "settings", "agent", "model")
+    setup = {name: row[name] for name in names if name in row} | {"conditions": trial_values(row).get("conditions")}
+    return {"row": row, "result": {"timeline": timeline}, "manifest": {"setup": {"family": "", **setup}}}
+
+
+def former_steps(folder: Path, lines: Sequence[Json]) -> list[Json] | None:
+    """The lines of a drive's steps, of which a page showed others than a replay compared; None of another trial.
+
+    Args:
+        folder: the trial's.
+        lines: of its ``steps.jsonl``.
+
+    Raises:
+        OSError, ValueError: they cannot be read.
+    """
+    path = folder / SHOWN
+    if not path.is_file():
+        return None
+    compared = {line["step"]: line for line in lines}
+    return [line | compared.get(line["number"], {}) | {"step": line["number"]} for line in read_whole_lines(path)]
+
+
+def former_screenshots(path: Path) -> tuple[Path, ...]:
+    """Where the screenshot with this path may be instead."""
+    return path.with_suffix(".png"), path.parent.parent / path.name
 
 
 def present(line: bytes) -> bytes:

@@ -29,6 +29,7 @@ from automotive_cosim.contracts import GoalStatus, Json, Reason
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json, write_whole
+from automotive_cosim.formats.layout import TRACES
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.run.former import FIELDS, KEYS, MOVED
 
@@ -111,7 +112,7 @@ class Judged(JudgeInput):
 
 def judged_file(folder: Path, trial: str) -> Path:
     """Path of a trial's file."""
-    return folder / "traces" / f"{trial}.judged.json.xz"
+    return folder / TRACES / f"{trial}.judged.json.xz"
 
 
 def write_judged(folder: Path, trial: str, judged: JudgeInput) -> None:

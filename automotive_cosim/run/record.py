@@ -1,11 +1,6 @@
-"""Writes the results folder of one episode.
+"""Records a trial while it runs: what an evaluation keeps of it, and its folder (``formats.layout``).
 
-    episode.json    verdict, timeline, manifest, the drive once a second
-    steps.jsonl     one line per step (trace.Step.as_json), written step by step, so that they survive a kill
-    screenshots/    step_000.png, ...: the cockpit after each step
-    road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
-
-The folder is created at the hand-over; an earlier failure leaves none.
+The folder is created when the agent takes over; an earlier failure leaves none.
 """
 
 from __future__ import annotations
@@ -14,25 +9,62 @@ import json
 import platform
 import shutil
 import tempfile
-from collections.abc import Iterable
+from collections.abc import Sequence
 from dataclasses import asdict
 from datetime import datetime
 from pathlib import Path
-from typing import IO
+from typing import IO, Protocol
 
+import numpy as np
+import numpy.typing as npt
 from PIL import Image
 
-from automotive_cosim.contracts import Json
+from automotive_cosim.cockpit.cockpit import Cockpit
+from automotive_cosim.contracts import KMH_PER_MPS, Json
+from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.episode import Episode
+from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import write_whole
-from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult, EpisodeSetup
-from automotive_cosim.run.observer import Shot
-from automotive_cosim.run.versions import installed
+from automotive_cosim.formats.layout import OF_A_TRIAL, SCREENSHOTS, STEPS, TRIAL, screenshot
+from automotive_cosim.interface.trace import STATES, digests
+from automotive_cosim.run.collect import Collector
+from automotive_cosim.run.drive import DriveRecord
+from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup
+from automotive_cosim.run.jobs import EpisodeJob, TrialJob
+from automotive_cosim.run.kept import target
+from automotive_cosim.run.moments import JudgeInput
+from automotive_cosim.run.observer import Shot, TrialObserver
+from automotive_cosim.run.row import as_json
+from automotive_cosim.run.trial_row import TrialRow
+from automotive_cosim.run.versions import STAMPED, installed
+from automotive_cosim.run.words import action_in_words
 
-OURS = ("episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html")
-"""The contents of a record; ``force`` removes only these."""
-STAMPED = ("automotive-cosim", "libsumo", "gymnasium", "numpy", "pillow")
+PICTURE_QUALITY = 85
+LARGE = frozenset({*STATES, "weather", "gps", "connectivity", "events"})
+"""What a line of a step has only if the whole state is written."""
+
+AnyTrialObserver = TrialObserver[JudgedSession, EpisodeResult | DriveRecord]
+"""Observes a trial of either kind."""
+
+
+class TrialRecord(Protocol):
+    """What is kept of a trial of either kind."""
+
+    @property
+    def row(self) -> TrialRow:
+        """Its row, without the fields that a batch adds."""
+        ...
+
+    @property
+    def lines(self) -> Sequence[Json]:
+        """Its trace: the steps, then the result; nothing if the agent never took over."""
+        ...
+
+    @property
+    def judged(self) -> JudgeInput | None:
+        """The judge's input; None without a judgement."""
+        ...
 
 
 def default_folder(setup: EpisodeSetup, ending: str = "") -> Path:
@@ -69,21 +101,31 @@ def check_folder(folder: Path, *, force: bool) -> None:
         ) from error
 
 
-class Recorder(EpisodeObserver):
-    """Writes the record of an episode while it runs."""
+class Recorder(AnyTrialObserver):
+    """Makes the record of a trial and, if it has a folder, writes it down step by step."""
 
-    def __init__(self, folder: Path, setup: EpisodeSetup, arguments: Json) -> None:
-        """Nothing is written before the hand-over.
+    def __init__(
+        self, job: TrialJob, folder: Path | None, arguments: Json | None = None, *, whole: bool = False
+    ) -> None:
+        """Nothing is written before the agent takes over.
 
         Args:
-            folder: checked with ``check_folder``.
-            setup: what is run.
-            arguments: the command's arguments, for the manifest.
+            job: what is run.
+            folder: the trial's, which may not exist yet; None keeps no folder.
+            arguments: the command's, for the manifest.
+            whole: write the whole state after each step.
         """
         self.folder = folder
-        self._setup = setup
-        self._arguments = arguments
+        self.record: TrialRecord | None = None
+        """Once the trial is over."""
+        self._job = job
+        self._arguments = arguments or {}
+        self._whole = whole
+        self._collector = Collector(job) if isinstance(job, EpisodeJob) else None
         self._lines: IO[str] | None = None
+        self._begun_s = 0.0
+        self._pictured: tuple[int, npt.NDArray[np.uint8]] | None = None
+        """The last picture, and the number of its step."""
         self._started = datetime.now().astimezone()
 
     @property
@@ -91,67 +133,109 @@ class Recorder(EpisodeObserver):
         """Whether the folder has been created."""
         return self._lines is not None
 
-    def begun(self, session: Episode, shot: Shot) -> None:
+    def moved(self, moment: Moment, cockpit: Cockpit) -> None:
+        """See ``Collector.moved``."""
+        if self._collector is not None:
+            self._collector.moved(moment, cockpit)
+
+    def begun(self, session: JudgedSession, shot: Shot) -> None:
         """Creates the folder and writes step 0."""
-        self._lines = fresh(self.folder, OURS, "steps.jsonl")
-        self.stepped(shot)
+        self._begun_s = shot.step.moment.time_s
+        if self._collector is not None and isinstance(session, Episode):
+            self._collector.begun(session, shot)
+        if self.folder is not None:
+            self._lines = _fresh(self.folder)
+            self._write({"manifest": self._manifest()})
+            self._add(shot)
 
     def stepped(self, shot: Shot) -> None:
+        """Adds a step."""
+        if self._collector is not None:
+            self._collector.stepped(shot)
+        self._add(shot)
+
+    def finished(self, result: EpisodeResult | DriveRecord) -> None:
+        """Makes the record, and completes the folder."""
+        made: TrialRecord
+        if isinstance(result, DriveRecord):
+            made = result
+        else:
+            assert self._collector is not None
+            made = self._collector.record(result)
+        self.record = made
+        self.close()
+        if self.has_begun:
+            self._write({"row": as_json(made.row), **made.lines[-1], "manifest": self._manifest()})
+
+    def close(self) -> None:
+        """Closes the files, also of a trial that was broken off; may be called again."""
+        if self._lines is not None:
+            self._lines.close()
+
+    def discard(self) -> None:
+        """Removes the folder."""
+        self.close()
+        if self.folder is not None:
+            shutil.rmtree(self.folder, ignore_errors=True)
+
+    def _add(self, shot: Shot) -> None:
         """Saves the picture and appends a line; the picture first, so that every line has one."""
-        assert self._lines is not None
-        Image.fromarray(shot.screenshot).save(screenshot(self.folder, shot.step.number))
-        told = {"thought": shot.thought, "stages": [stage.as_json() for stage in shot.stages]}
-        self._lines.write(json.dumps(shot.step.as_json() | told, ensure_ascii=False) + "\n")
+        if self.folder is None or self._lines is None:
+            return
+        step = shot.step
+        if self._pictured is None or shot.screenshot is not self._pictured[1]:
+            path = screenshot(self.folder, step.number)
+            Image.fromarray(shot.screenshot).save(path, quality=PICTURE_QUALITY, subsampling=0)
+            self._pictured = step.number, shot.screenshot
+        told, begins = step.as_json(), "hand-over" if self._collector else "departure"
+        line = told | {
+            "at_s": round(step.moment.time_s - self._begun_s, 2),
+            "words": action_in_words(step.action, shot.seen) if step.number else begins,
+            "target": target(step.action.index if step.action else None, shot.seen),
+            "speed_kmh": round(step.moment.driving.speed_mps * KMH_PER_MPS, 1),
+            "picture": self._pictured[0],
+            "thought": shot.thought,
+            "stages": [stage.as_json() for stage in shot.stages],
+            "sha256": digests(told),
+        }
+        kept = line if self._whole else {name: value for name, value in line.items() if name not in LARGE}
+        self._lines.write(json.dumps(kept, ensure_ascii=False) + "\n")
         self._lines.flush()
 
-    def finished(self, result: EpisodeResult) -> None:
-        """Writes ``episode.json``, if there was a hand-over."""
-        if self._lines is None:
-            return
-        self._lines.close()
-        write_whole(
-            self.folder / "episode.json", json.dumps(result.as_json() | {"manifest": self._manifest()}, indent=1)
-        )
+    def _write(self, told: Json) -> None:
+        assert self.folder is not None
+        write_whole(self.folder / TRIAL, json.dumps(told, indent=1) + "\n")
 
     def _manifest(self) -> Json:
+        setup = self._job.setup
         return {
             "versions": installed(STAMPED) | {"python": platform.python_version()},
             "platform": platform.platform(),
-            "setup": asdict(self._setup),
+            "setup": asdict(setup),
             "arguments": self._arguments,
-            "seeds": {"episode": self._setup.seed, "traffic": self._setup.seed},
+            "seeds": {"episode": setup.seed, "traffic": setup.seed},
             "started": self._started.isoformat(timespec="seconds"),
             "wall_seconds": round((datetime.now().astimezone() - self._started).total_seconds(), 1),
         }
 
 
-def screenshot(folder: Path, step: int) -> Path:
-    """Path of a step's screenshot in a record."""
-    return folder / "screenshots" / f"step_{step:03d}.png"
-
-
-def fresh(folder: Path, ours: Iterable[str], lines: str) -> IO[str]:
+def _fresh(folder: Path) -> IO[str]:
     """Begins a record, without what an earlier one left in its folder.
 
-    Args:
-        folder: the record's, which may not exist yet.
-        ours: names of all that a record of this kind has.
-        lines: the one of them that is written step by step.
-
     Returns:
-        That one, open.
+        The file of its steps, open.
 
     Raises:
         UserError: another record begins there at this instant.
     """
     folder.mkdir(parents=True, exist_ok=True)
-    for path in (folder / name for name in ours):
+    for path in (folder / name for name in OF_A_TRIAL):
         if path.is_dir():
             shutil.rmtree(path)
         else:
             path.unlink(missing_ok=True)
     try:
-        (folder / "screenshots").mkdir()
+        (folder / SCREENSHOTS).mkdir()
     except FileExistsError:
         raise UserError(f"another run is writing to {folder}; give --out another folder") from None
-    return (folder / lines).open("w", encoding="utf-8", newline="\n")
+    return (folder / STEPS).open("w", encoding="utf-8", newline="\n")

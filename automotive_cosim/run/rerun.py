@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from contextlib import closing
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import zip_longest
 from pathlib import Path
 from typing import cast
@@ -24,23 +24,23 @@ from automotive_cosim.errors import (
     OutOfBudgetError,
     UserError,
 )
-from automotive_cosim.formats import files
+from automotive_cosim.formats.checked import checked
+from automotive_cosim.formats.layout import TRIAL
+from automotive_cosim.formats.toml import dotted
 from automotive_cosim.interface.observe import ALL, Channel
-from automotive_cosim.interface.trace import HASHED, canonical
+from automotive_cosim.interface.trace import canonical, digests
 from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.coverage import unit_of
-from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
+from automotive_cosim.run.drive import DriveSetup, run_drive
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, read_setup, run_episode
-from automotive_cosim.run.episode_row import EpisodeRow
+from automotive_cosim.run.episode import EpisodeSetup, read_setup, run_episode
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import DriveJob, EpisodeJob
-from automotive_cosim.run.moments import Judged
+from automotive_cosim.run.jobs import DriveJob, EpisodeJob, TrialJob
+from automotive_cosim.run.kept import is_trial, read_steps, read_trial
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.row import from_json
+from automotive_cosim.run.record import TrialRecord
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.script import ScriptedAgent
-from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.store import read_evaluation, read_trace
 from automotive_cosim.run.worker import agent_of
 from automotive_cosim.traffic.fork import Simulations
@@ -59,24 +59,23 @@ class Compared:
     sha256: str
     """Hash of the new step, or of the stored one if the new run has none."""
     differs: tuple[str, ...]
-    """The parts of the step that differ, from ``trace.HASHED``, or ``"length"`` if one run has no such step."""
+    """The parts that differ: of the step's state, its action, its feedback; ``"length"`` if one run has no such
+    step."""
 
 
 def rerun(folder: Path, trial: str = "") -> list[Compared]:
     """Plays the actions of a stored trial in the same setup and compares step by step.
 
     Args:
-        folder: an evaluation's, or that of a single run or drive.
-        trial: an id of the evaluation, or its unique beginning; a single run has none.
+        folder: an evaluation's, or that of a single trial.
+        trial: an id of the evaluation, or its unique beginning; a single trial needs none.
 
     Raises:
         UserError: no such trial, several of them, or its trace cannot be read.
         InfrastructureError: the simulation failed.
     """
-    if (folder / "episode.json").is_file():
+    if is_trial(folder):
         return _single(folder, trial)
-    if (folder / "row.json").is_file():
-        return _single_drive(folder, trial)
     manifest = read_evaluation(folder)
     rows = read_trials(folder)
     name = the_one(rows, trial, folder, unit_of(manifest["plan"]))
@@ -91,12 +90,11 @@ def rerun(folder: Path, trial: str = "") -> list[Compared]:
     if row.error is not None:
         raise UserError(f"{name} ended in an error and has no trace: {row.error}")
     stored = [line for line in read_trace(folder, job.id) if "step" in line]
-    if isinstance(job, DriveJob):
-        return _drive_again(cast("DriveTrialRow", row), job, stored)
+    if isinstance(row, DriveTrialRow):
+        return _again(job, stored, frozenset(row.channels), row.agent_error)
     with closing(ForkServer()) as fork_server, agent_of(job, fork_server) as agent:
         channels = frozenset(agent.channels)
-    again = played(job, stored, channels, row.agent_error)
-    return compare(stored, [line for line in again.lines if "step" in line])
+    return _again(job, stored, channels, row.agent_error)
 
 
 def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
@@ -119,40 +117,34 @@ def the_one(ids: Collection[str], asked: str, folder: Path, what: str) -> str:
     return matching[0]
 
 
-def _single(folder: Path, episode: str) -> list[Compared]:
-    """The same for the record of a single run."""
-    if episode:
-        raise UserError(f"{folder} holds a single run; omit {episode!r}")
-    record = files.read_json(folder / "episode.json")
-    steps = [files.parse_json(line) for line in (folder / "steps.jsonl").read_bytes().splitlines()]
-    setup = read_setup(record["manifest"]["setup"], str(folder / "episode.json"))
-    collector, _ = _again(setup, steps, _channels(setup), record["agent_error"])
-    return compare(steps, collector.steps)
+def _single(folder: Path, trial: str) -> list[Compared]:
+    """The same for the folder of a trial."""
+    if trial:
+        raise UserError(f"{folder} holds a single trial; omit {trial!r}")
+    told, stored = read_trial(folder), read_steps(folder)
+    job, row = _job(folder, told), (told.get("result") or {}) | (told.get("row") or {})
+    channels = _channels(job.setup) if isinstance(job, EpisodeJob) else frozenset(map(Channel, row["channels"]))
+    return _again(job, stored, channels, row.get("agent_error"))
 
 
-def _single_drive(folder: Path, drive: str) -> list[Compared]:
-    """The same for the record of a single drive."""
-    if drive:
-        raise UserError(f"{folder} holds a single drive; omit {drive!r}")
-    try:
-        row = from_json(DriveTrialRow, files.read_json(folder / "row.json"))
-        steps = [files.parse_json(line) for line in (folder / "steps.jsonl").read_bytes().splitlines()]
-    except (OSError, ValueError) as error:
-        raise UserError(f"cannot read the drive in {folder}: {error}") from error
-    own = family_named(row.family).scenario
-    scenario = "" if row.scenario == own else row.scenario
-    setup = DriveSetup(
-        row.family, row.seed, row.conditions, scenario, row.settings, agent=row.agent, model=row.model
-    )
-    return _drive_again(row, DriveJob(setup, row.repeat), steps)
+def _job(folder: Path, told: Json) -> TrialJob:
+    """What was run, by the folder of a trial."""
+    values = (told.get("manifest") or {}).get("setup")
+    if values is None:
+        raise UserError(f"{folder} does not say what was run; record the trial again")
+    where = str(folder / TRIAL)
+    if "family" not in values:
+        return EpisodeJob(read_setup(values, where))
+    setup = checked(DriveSetup, values, lambda steps: (where, dotted(steps)))
+    if (folder / TRIAL).is_file() or setup.scenario != family_named(setup.family).scenario:
+        return DriveJob(setup)
+    return DriveJob(replace(setup, scenario=""))  # earlier records named a family's own scenario too
 
 
-def _drive_again(row: DriveTrialRow, job: DriveJob, steps: Sequence[Json]) -> list[Compared]:
-    if not all("sha256" in step for step in steps):
-        raise UserError(
-            f"the trace of drive {row.id} has no hashes: it was stored by an earlier version; rerun the drive"
-        )
-    return compare_drives(steps, driven(job, row, steps).steps)
+def _again(
+    job: TrialJob, stored: Sequence[Json], channels: frozenset[Channel], failure: str | None
+) -> list[Compared]:
+    return compare(stored, [line for line in played(job, stored, channels, failure).lines if "step" in line])
 
 
 def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
@@ -169,104 +161,56 @@ def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
     return frozenset(make_agent(setup.agent, settings=AgentSettings(setup.conditions)).channels)
 
 
-def _again(
-    setup: EpisodeSetup,
-    stored: Sequence[Json],
-    channels: frozenset[Channel],
-    failure: str | None,
-    simulations: Simulations | None = None,
-) -> tuple[Collector, EpisodeResult]:
-    collector = Collector(Pictures.NONE)
-    result = run_episode(setup, Player(stored[1:], channels, failure), (collector,), simulations=simulations)
-    if result.error is not None:
-        raise InfrastructureError(result.error)
-    return collector, result
-
-
-@dataclass(frozen=True, slots=True)
-class PlayedAgain:
-    """What an evaluation would have kept of the replayed episode."""
-
-    lines: list[Json]
-    """Its trace, with the result as its last line."""
-    row: EpisodeRow
-    judged: Judged | None
-
-
 def played(
-    job: EpisodeJob,
+    job: TrialJob,
     stored: Sequence[Json],
     channels: frozenset[Channel],
     failure: str | None = None,
     *,
     simulations: Simulations | None = None,
-) -> PlayedAgain:
-    """Plays the actions of a stored episode in the same setup.
+) -> TrialRecord:
+    """Plays the actions of a stored trial in the same setup; what an evaluation would keep of it.
 
     Args:
-        job: the episode.
+        job: the trial.
         stored: the steps of its trace.
         channels: those of its agent, on which the answers to queries depend.
         failure: how the agent's side failed after them, if it did.
         simulations: warm simulations to use; by default its own.
 
     Raises:
-        UserError: something in the setup does not exist.
+        UserError: something in the setup does not exist, or the trace is too old.
         InfrastructureError: the simulation failed.
     """
-    collector, result = _again(job.setup, stored, channels, failure, simulations)
-    return PlayedAgain(collector.trace(result), collector.row(job, result), collector.judged())
-
-
-def driven(
-    job: DriveJob, row: DriveTrialRow, stored: Sequence[Json], simulations: Simulations | None = None
-) -> DriveRecord:
-    """Plays the actions of a stored drive in the same setup.
-
-    Args:
-        job: the drive.
-        row: its row, which says what its agent was given and how its side failed.
-        stored: the steps of its trace.
-        simulations: warm simulations to use; by default its own.
-
-    Raises:
-        UserError: something in the setup does not exist.
-        InfrastructureError: the simulation failed.
-    """
-    player = Player(stored[1:], frozenset(row.channels), row.agent_error)
-    return run_drive(job.planned(), job.setup, player, simulations=simulations)
+    player = Player(stored[1:], channels, failure)
+    if isinstance(job, DriveJob):
+        if not all("sha256" in step for step in stored):
+            raise UserError("the trace has no hashes: it was stored by an earlier version; rerun the drive")
+        return run_drive(job.planned(), job.setup, player, simulations=simulations)
+    collector = Collector(job)
+    result = run_episode(job.setup, player, (collector,), simulations=simulations)
+    if result.error is not None:
+        raise InfrastructureError(result.error)
+    return collector.record(result)
 
 
 def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
-    """Two traces of episodes, step by step."""
-
-    def differs(before: Json, now: Json) -> tuple[str, ...]:
-        return tuple(name for name in HASHED if canonical(before[name]) != canonical(now[name]))
-
-    return _side_by_side(stored, again, differs, lambda step: {name: step[name] for name in HASHED})
-
-
-def compare_drives(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
-    """Two traces of drives, which hold hashes of the states, step by step."""
-
-    def differs(before: Json, now: Json) -> tuple[str, ...]:
-        states = tuple(name for name, digest in before["sha256"].items() if now["sha256"][name] != digest)
-        return (*states, *(name for name in ("action", "feedback") if before[name] != now[name]))
-
-    return _side_by_side(stored, again, differs, lambda step: [step["sha256"], step["action"]])
-
-
-def _side_by_side(
-    stored: Sequence[Json],
-    again: Sequence[Json],
-    differs: Callable[[Json, Json], tuple[str, ...]],
-    hashed: Callable[[Json], object],
-) -> list[Compared]:
+    """Two traces, step by step; a step has its state, or its hashes alone."""
     compared = []
     for number, (before, now) in enumerate(zip_longest(stored, again, fillvalue=MISSING)):
-        digest = hashlib.sha256(canonical(hashed(now or before))).hexdigest()
-        compared.append(Compared(number, digest, differs(before, now) if before and now else ("length",)))
+        digest = hashlib.sha256(canonical([_digests(now or before), (now or before)["action"]])).hexdigest()
+        compared.append(Compared(number, digest, tuple(_differs(before, now)) if before and now else ("length",)))
     return compared
+
+
+def _differs(before: Json, now: Json) -> Iterator[str]:
+    found = _digests(now)
+    yield from (name for name, digest in _digests(before).items() if found[name] != digest)
+    yield from (name for name in ("action", "feedback") if before[name] != now[name])
+
+
+def _digests(step: Json) -> Json:
+    return cast("Json", step["sha256"]) if "sha256" in step else digests(step)
 
 
 class Player:

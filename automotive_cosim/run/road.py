@@ -44,9 +44,9 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import MOST_UNPACKED_BYTES, parse_json
+from automotive_cosim.formats.layout import PICTURES, ROAD
 
 FORMAT = 1
-NAME = "road.jsonl.gz"
 LONGEST_LINE_BYTES = 2**26
 
 GroundLine = tuple[tuple[float, float], ...]
@@ -112,11 +112,11 @@ def roads_in(folder: Path) -> dict[str, Path]:
     Raises:
         UserError: it has none.
     """
-    if (folder / NAME).is_file():
-        return {"": folder / NAME}
-    found = {path.parent.name: path for path in sorted(folder.glob(f"pictures/**/{NAME}"))}
+    if (folder / ROAD).is_file():
+        return {"": folder / ROAD}
+    found = {path.parent.name: path for path in sorted(folder.glob(f"{PICTURES}/**/{ROAD}"))}
     if not found:
-        raise UserError(f"{folder} has no {NAME}; `run`, `drive --out` and `eval --pictures all` record the road")
+        raise UserError(f"{folder} has no {ROAD}; `run`, `drive --out` and `eval --pictures all` record the road")
     return found
 
 

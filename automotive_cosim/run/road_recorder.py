@@ -30,10 +30,11 @@ from automotive_cosim.contracts import (
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.formats.files import open_file
+from automotive_cosim.formats.layout import ROAD
 from automotive_cosim.geo.breaches import limit_at
 from automotive_cosim.geo.sun import elevation_deg
 from automotive_cosim.run.observer import Shot, TrialObserver
-from automotive_cosim.run.road import FORMAT, NAME
+from automotive_cosim.run.road import FORMAT
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
@@ -57,7 +58,7 @@ class RoadRecorder(TrialObserver[JudgedSession, object]):
             folder: where the file goes; an observer that empties it comes first.
             about: what is run, by name, as the file tells it.
         """
-        self._path = folder / NAME
+        self._path = folder / ROAD
         self._about = about
         self._looked: dict[float, RoadSnapshot] = {}
         """Snapshots whose second has not been reported yet."""
@@ -102,13 +103,6 @@ class RoadRecorder(TrialObserver[JudgedSession, object]):
         """Completes the file, even if the episode was broken off; may be called again."""
         if self._writer is not None:
             self._writer.close()
-
-    def discard(self) -> None:
-        """Removes the file, and its folder if nothing else is in it."""
-        self.close()
-        self._path.unlink(missing_ok=True)
-        with suppress(OSError):
-            self._path.parent.rmdir()
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,9 +2,8 @@
 
 manifest.json     plan and its number of episodes, versions, state of the code, one entry per start
 episodes.jsonl    one line per episode, appended and synced as it ends; of several lines of one id the last counts
-traces/           <id>.jsonl.gz: one line per step, as ``run`` writes them, and one with the whole result
-pictures/         <id>/step_000.jpg, ...: the cockpit after each step, and road.jsonl.gz, of the selected
-                  episodes
+traces/           <id>.jsonl.gz: one line per step and one with the whole result
+pictures/         <id>/: the folders of the selected trials (``formats.layout``)
 lock              held while an evaluation writes here
 """
 
@@ -28,11 +27,11 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
 from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.own_code import own_code, own_scenarios
-from automotive_cosim.run.record import STAMPED
 from automotive_cosim.run.row import R, as_json, from_line
-from automotive_cosim.run.versions import installed
+from automotive_cosim.run.versions import STAMPED, installed
 
 FORMAT = 1
 """Format of the folder; any other is refused."""
@@ -75,7 +74,7 @@ def opened(
     folder: Path,
     plan: Json,
     kind: RowKind[R],
-    parts: Sequence[str] = ("traces", "pictures"),
+    parts: Sequence[str] = (TRACES, PICTURES),
     *,
     planned: int | None = None,
     grows: bool = False,
@@ -196,7 +195,7 @@ def read_evaluation(folder: Path) -> Json:
 
 def trace_file(folder: Path, episode: str) -> Path:
     """Path of an episode's trace."""
-    return folder / "traces" / f"{episode}.jsonl.gz"
+    return folder / TRACES / f"{episode}.jsonl.gz"
 
 
 def write_trace(folder: Path, episode: str, lines: Iterable[Json]) -> None:
@@ -259,7 +258,7 @@ def _check(folder: Path) -> None:
     if folder.exists() and not folder.is_dir():
         raise UserError(f"{folder} is a file; give --out a folder")
     if folder.is_dir() and any(folder.iterdir()) and not (folder / "manifest.json").exists():
-        begun = {"traces", "pictures", "lock"}
+        begun = {TRACES, PICTURES, "lock"}
         if not {path.name for path in folder.iterdir()} <= begun:
             raise UserError(f"{folder} contains other files; give --out an empty folder or an evaluation's")
 

@@ -9,6 +9,8 @@ from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 
 SUITE = "automotive-cosim"
+STAMPED = (SUITE, "libsumo", "gymnasium", "numpy", "pillow")
+"""Distributions on which the result of a trial may depend."""
 
 
 def installed(names: Iterable[str]) -> dict[str, str]:

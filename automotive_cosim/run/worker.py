@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-import shutil
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import AbstractContextManager, closing, contextmanager
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Sequence
+from contextlib import AbstractContextManager, ExitStack, closing, contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 from automotive_cosim.agents import Agent, AgentSettings, make_agent, model_of
-from automotive_cosim.contracts import Json
-from automotive_cosim.episode.judged import JudgedSession
 from automotive_cosim.episode.own_prompt import instructions
 from automotive_cosim.errors import CosimError
-from automotive_cosim.run.collect import Collector
-from automotive_cosim.run.drive import DriveRecord, run_drive
-from automotive_cosim.run.drive_recorder import DriveRecorder
-from automotive_cosim.run.episode import EpisodeResult, run_episode
+from automotive_cosim.formats.layout import PICTURES
+from automotive_cosim.run.drive import run_drive
+from automotive_cosim.run.episode import run_episode
 from automotive_cosim.run.executor import Runner
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.jobs import DriveJob, EpisodeJob, Limits, TrialJob, failed
+from automotive_cosim.run.jobs import DriveJob, Limits, TrialJob, failed
 from automotive_cosim.run.meter import Metered, MeterHandle
-from automotive_cosim.run.moments import JudgeInput, write_judged
-from automotive_cosim.run.observer import TrialObserver
+from automotive_cosim.run.moments import write_judged
 from automotive_cosim.run.outside import OutsideAgent, is_outside
+from automotive_cosim.run.record import AnyTrialObserver, Recorder
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
 from automotive_cosim.run.stage import DriveStageObserver, StageObserver
@@ -33,10 +29,6 @@ from automotive_cosim.traffic.fork import Simulations
 
 WARM = 2
 """Warm simulations that a worker keeps; the episodes come sorted, so one is in use and one may be used again."""
-
-
-AnyTrialObserver = TrialObserver[JudgedSession, EpisodeResult | DriveRecord]
-"""Observes a trial of either kind."""
 
 
 @contextmanager
@@ -83,78 +75,44 @@ def run_with(
     Raises:
         OSError: trace or pictures cannot be written.
     """
+    recorder = Recorder(job, None if pictures is Pictures.NONE else folder / PICTURES / job.id)
     try:
         with agent as acting:
-            if isinstance(job, DriveJob):
-                kept = _driven(acting, job, folder, pictures, simulations, observers)
-            else:
-                kept = _played(acting, job, folder, pictures, simulations, observers)
+            _run(acting, job, recorder, simulations, observers)
     except CosimError as error:
         return failed(job, type(error).__name__, str(error))
     except Exception as error:
         # A fault in this package must not end the evaluation; it is counted and listed.
         return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
-    if kept.lines:
-        write_trace(folder, job.id, kept.lines)
-        if kept.judged is not None:
-            write_judged(folder, job.id, kept.judged)
-        kept.keep_pictures()
-    return kept.row
+    record = recorder.record
+    assert record is not None, "it is over"
+    if record.lines:
+        write_trace(folder, job.id, record.lines)
+        if record.judged is not None:
+            write_judged(folder, job.id, record.judged)
+    if pictures is Pictures.FAILURES and record.row.has_succeeded:
+        recorder.discard()
+    return record.row
 
 
-@dataclass(frozen=True, slots=True)
-class _Kept:
-    """What is kept of a trial."""
-
-    row: TrialRow
-    lines: Sequence[Json]
-    """Its trace, with the result as its last line."""
-    judged: JudgeInput | None
-    keep_pictures: Callable[[], None]
-
-
-def _played(
+def _run(
     agent: Agent,
-    job: EpisodeJob,
-    folder: Path,
-    pictures: Pictures,
+    job: TrialJob,
+    recorder: Recorder,
     simulations: Simulations,
     observers: Sequence[AnyTrialObserver],
-) -> _Kept:
-    collector = Collector(pictures)
-    road = RoadRecorder(folder / "pictures" / job.id, job.setup.about)
-    everyone = (*observers, StageObserver(), collector, *(() if pictures is Pictures.NONE else (road,)))
-    with closing(road):
-        result = run_episode(job.setup, agent, everyone, simulations=simulations)
-
-    def keep() -> None:
-        if collector.keeps_pictures_of(result):
-            collector.keep_pictures(folder / "pictures" / job.id)
+) -> None:
+    everyone: list[AnyTrialObserver] = [*observers, recorder]
+    with ExitStack() as ends:
+        ends.enter_context(closing(recorder))
+        if recorder.folder is not None:
+            everyone.append(ends.enter_context(closing(RoadRecorder(recorder.folder, job.setup.about))))
+        if isinstance(job, DriveJob):
+            everyone.append(DriveStageObserver())
+            run_drive(job.planned(), job.setup, agent, simulations=simulations, observers=everyone)
         else:
-            road.discard()
-
-    return _Kept(collector.row(job, result), collector.trace(result), collector.judged(), keep)
-
-
-def _driven(
-    agent: Agent,
-    job: DriveJob,
-    folder: Path,
-    pictures: Pictures,
-    simulations: Simulations,
-    observers: Sequence[AnyTrialObserver],
-) -> _Kept:
-    recorder = DriveRecorder(folder / "pictures" / job.id)
-    road = RoadRecorder(recorder.folder, job.setup.about)
-    everyone = (*observers, DriveStageObserver(), *(() if pictures is Pictures.NONE else (recorder, road)))
-    with closing(recorder), closing(road):
-        record = run_drive(job.planned(), job.setup, agent, simulations=simulations, observers=everyone)
-
-    def keep() -> None:
-        if pictures is Pictures.FAILURES and record.row.has_succeeded:
-            shutil.rmtree(recorder.folder, ignore_errors=True)
-
-    return _Kept(record.row, record.lines, record.judged, keep)
+            everyone.append(StageObserver())
+            run_episode(job.setup, agent, everyone, simulations=simulations)
 
 
 def agent_of(

@@ -9,13 +9,12 @@ from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.road import NAME as ROAD
+from automotive_cosim.formats.layout import LIVE, ROAD
 from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.studies.decisions import told
-from automotive_cosim.studies.live import LIVE
 from automotive_cosim.studies.results import Study, all_decisions, choices_at, read_study
 from automotive_cosim.studies.rows import Branch, DecisionPoint
 from automotive_cosim.studies.tracks import TRACKS

@@ -12,7 +12,6 @@ import threading
 from collections.abc import Callable
 from contextlib import closing, nullcontext, suppress
 from dataclasses import dataclass, fields, replace
-from datetime import datetime
 from enum import StrEnum
 from io import BytesIO
 from pathlib import Path
@@ -32,14 +31,13 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.report.film import Film
 from automotive_cosim.report.page import write_page
 from automotive_cosim.run.drive import DriveRecord, DriveSetup, run_drive
-from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.episode import EpisodeResult, EpisodeSetup, run_episode
-from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, TrialJob
+from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, EpisodeJob, TrialJob
 from automotive_cosim.run.observer import Shot
-from automotive_cosim.run.record import Recorder, default_folder
+from automotive_cosim.run.record import AnyTrialObserver, Recorder, default_folder, stamped_folder
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.settings import Pictures
-from automotive_cosim.run.worker import AnyTrialObserver, run_with
+from automotive_cosim.run.worker import run_with
 from automotive_cosim.serve.person import SPEEDS, Person, PersonLeftError, Preview
 from automotive_cosim.serve.played import (
     DRIVES,
@@ -154,7 +152,7 @@ class Game(AnyTrialObserver):
             max_sim_s=MOST_S,
         )  # fmt: skip
         folder = self._folder / default_folder(setup).name
-        self._begin(Person(setup.model), lambda: self._practise(setup, folder))
+        self._begin(Person(setup.model), lambda: self._practise(EpisodeJob(setup), folder))
 
     def drive(self, family: str, seed: int, name: str, *, practice: bool) -> None:
         """Begins a drive.
@@ -173,10 +171,8 @@ class Game(AnyTrialObserver):
             check_code_name(name)
         if practice:
             setup = DriveSetup(family, seed, agent=HUMAN, model=name or NO_MODEL)
-            stamp = datetime.now().strftime("%Y%m%d-%H%M%S")
-            folder = self._folder / f"{stamp}-{family}-{HUMAN}-seed{seed}"
-            person = Person(setup.model)
-            self._begin(person, lambda: self._practise_drive(DriveJob(setup), folder, person))
+            folder = self._folder / stamped_folder(f"{family}-{HUMAN}-seed{seed}").name
+            self._begin(Person(setup.model), lambda: self._practise(DriveJob(setup), folder))
             return
         self.begin(self._drives.drive(family, seed, name), self._drives.folder, self._drives.keep)
 
@@ -321,25 +317,22 @@ class Game(AnyTrialObserver):
         except Exception as error:
             self._tell(state=PlayState.FAILED, error=str(error) or type(error).__name__)
 
-    def _practise(self, setup: EpisodeSetup, folder: Path) -> None:
-        """Plays an episode and records it as ``run`` does."""
-        recorder = Recorder(folder, setup, {})
-        observers = (self, recorder, RoadRecorder(folder, setup.about), Film(folder))  # the person first
-        with suppress(PersonLeftError):
-            run_episode(setup, self._person, observers, simulations=self._simulations)
+    def _practise(self, job: TrialJob, folder: Path) -> None:
+        """Plays a trial and records it as ``run`` and ``drive`` do."""
+        is_episode, simulations = isinstance(job, EpisodeJob), self._simulations
+        recorder, road = Recorder(job, folder, whole=is_episode), RoadRecorder(folder, job.setup.about)
+        both = self, recorder, road  # the person first
+        with suppress(PersonLeftError), closing(recorder), closing(road):
+            if isinstance(job, EpisodeJob):
+                run_episode(job.setup, self._person, (*both, Film(folder)), simulations=simulations)
+            else:
+                run_drive(job.planned(), job.setup, self._person, simulations=simulations, observers=both)
         if not recorder.has_begun:
             self._tell(state=PlayState.FAILED, error=self._scene.error or "the situation did not arise")
             return
-        with suppress(UserError, OSError):
-            write_page(folder)
-        self._tell(state=PlayState.OVER, folder=folder)
-
-    def _practise_drive(self, job: DriveJob, folder: Path, person: Person) -> None:
-        """Plays a drive and records it as ``drive`` does."""
-        recorder, road = DriveRecorder(folder), RoadRecorder(folder, job.setup.about)
-        observers = (self, recorder, road)
-        with suppress(PersonLeftError), closing(recorder), closing(road):
-            run_drive(job.planned(), job.setup, person, simulations=self._simulations, observers=observers)
+        if is_episode:
+            with suppress(UserError, OSError):
+                write_page(folder)
         self._tell(state=PlayState.OVER, folder=folder)
 
     def _count(self, job: TrialJob, folder: Path, keep: Callable[[Any], None]) -> None:

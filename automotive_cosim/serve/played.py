@@ -19,6 +19,7 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.given import Clock
 from automotive_cosim.episode.conditions import Conditions, with_conditions
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.layout import PICTURES, TRACES
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
@@ -78,7 +79,7 @@ class PlayedRows(ABC, Generic[R]):
     """An evaluation that grows with whatever is played. Any method may be called from any thread."""
 
     kind: type[R]
-    parts: tuple[str, ...] = ("traces", "pictures")
+    parts: tuple[str, ...] = (TRACES, PICTURES)
 
     def __init__(self, folder: Path) -> None:
         """Nothing is written before the first job.

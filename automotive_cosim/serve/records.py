@@ -7,19 +7,21 @@ resolved, in one of the folders given.
 from __future__ import annotations
 
 import hashlib
+import os
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.run.drive_recorder import SHOWN
+from automotive_cosim.formats.layout import LIVE, PICTURES
+from automotive_cosim.run import kept
 
 DEPTH = 3
 """How deep records are searched for below a given folder."""
 MOST = 2000
 """Maximum number of listed records."""
-PICTURES = {"png": "image/png", "jpg": "image/jpeg"}
+KINDS = {".png": "image/png", ".jpg": "image/jpeg"}
 
 
 class NotHereError(UserError):
@@ -28,12 +30,11 @@ class NotHereError(UserError):
 
 @dataclass(frozen=True, slots=True)
 class RecordEntry:
-    """One recorded episode, one recorded drive, or one evaluation."""
+    """One recorded trial, or one evaluation."""
 
     id: str
     folder: Path
     is_evaluation: bool
-    is_drive: bool = False
 
 
 class RecordFolders:
@@ -73,7 +74,7 @@ class RecordFolders:
         return found
 
     def of(self, folder: Path) -> RecordEntry:
-        """The recorded episode in a folder.
+        """The recorded trial in a folder.
 
         Raises:
             NotHereError: it is not below the folders given.
@@ -90,7 +91,7 @@ class RecordFolders:
         Raises:
             NotHereError: there is no such file, or it lies outside the folders given.
         """
-        if any(part in ("", ".", "..") or "/" in part or "\\" in part or "\0" in part for part in parts):
+        if not all(map(_is_name, parts)):
             raise NotHereError("there is no such file")
         path = entry.folder.joinpath(*parts)
         real = path.resolve()
@@ -98,28 +99,48 @@ class RecordFolders:
             raise NotHereError(f"this record has no {'/'.join(parts)}")
         return path
 
-    def picture(self, entry: RecordEntry, episode: str | None, step: int) -> tuple[Path, str]:
-        """The screenshot after a step, and its media type.
+    def trial(self, entry: RecordEntry, trial: str | None) -> Path:
+        """The folder of a trial, all of whose files but its screenshots may be read.
 
         Args:
             entry: the record.
-            episode: id of the episode in an evaluation; None for a recorded episode.
+            trial: id of the trial in an evaluation or a study; None for a recorded trial.
+
+        Raises:
+            NotHereError: there is no such trial, or a file of it lies outside the folders given.
+        """
+        if trial is None:
+            found = [entry.folder]
+        elif _is_name(trial):
+            found = [entry.folder / LIVE / trial, entry.folder / PICTURES / trial]
+        else:
+            found = []
+        for folder in found:
+            paths = [path for name in kept.READ if os.path.lexists(path := folder / name)]
+            paths += [trace for trace in [kept.trace_of(folder)] if trace is not None]
+            if paths or (folder.is_dir() and folder is not entry.folder):
+                for path in paths:
+                    self.file(entry, *path.relative_to(entry.folder).parts)
+                return folder
+        raise NotHereError(f"this record has no trial {trial!r}" if trial else "this record is no trial")
+
+    def picture(self, entry: RecordEntry, folder: Path, step: int) -> tuple[Path, str]:
+        """The screenshot of a step that changed the screen, and its media type.
+
+        Args:
+            entry: the record.
+            folder: the trial's, from ``trial``.
             step: number of the step.
 
         Raises:
             NotHereError: there is none.
         """
-        folder = () if episode is None else ("pictures", episode)
-        if episode is None or entry.folder.joinpath(*folder, SHOWN).is_file():  # a record of its own
-            folder = (*folder, "screenshots")
-        kind = "png" if episode is None and not entry.is_drive else "jpg"
-        return self.file(entry, *folder, f"step_{step:03d}.{kind}"), PICTURES[kind]
+        path = kept.picture(folder, step)
+        return self.file(entry, *path.relative_to(entry.folder).parts), KINDS[path.suffix]
 
 
 def _seek(folder: Path, depth: int) -> Iterator[RecordEntry]:
-    if (folder / SHOWN).is_file():
-        yield RecordEntry(_id(folder), folder, is_evaluation=False, is_drive=True)
-    elif (folder / "steps.jsonl").is_file():
+    if kept.is_trial(folder):
         yield RecordEntry(_id(folder), folder, is_evaluation=False)
     elif all(_is_own(folder / name) for name in ("manifest.json", "episodes.jsonl")):
         yield RecordEntry(_id(folder), folder, is_evaluation=True)
@@ -130,6 +151,11 @@ def _seek(folder: Path, depth: int) -> Iterator[RecordEntry]:
             return
         for path in inner:
             yield from _seek(path, depth - 1)
+
+
+def _is_name(part: str) -> bool:
+    """Whether it names something in a folder, and leads nowhere else."""
+    return part not in ("", ".", "..") and not any(letter in part for letter in "/\\\0")
 
 
 def _is_own(path: Path) -> bool:

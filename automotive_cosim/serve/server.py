@@ -292,7 +292,8 @@ class Site:
 
     def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         records = self._content.records
-        picture, kind = records.picture(records.entry(path["run"]), path["episode"], int(path["step"]))
+        entry = records.entry(path["run"])
+        picture, kind = records.picture(entry, records.trial(entry, path["episode"]), int(path["step"]))
         return WebAnswer(picture.read_bytes(), kind, 60)
 
 

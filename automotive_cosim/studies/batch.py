@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from automotive_cosim.errors import CosimError
+from automotive_cosim.formats.layout import LIVE
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.processes import Processes
@@ -15,7 +16,7 @@ from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.run.store import opened
 from automotive_cosim.studies.drive import planned, run_drive
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
-from automotive_cosim.studies.live import LIVE, WATCHED
+from automotive_cosim.studies.live import WATCHED
 from automotive_cosim.studies.plan import StudyJob, StudyPlan
 from automotive_cosim.studies.policies import PolicyRule
 from automotive_cosim.studies.results import choices

@@ -1,8 +1,8 @@
 """What can be watched of a running study: each drive up to its last decision, the decisions and their results.
 
-``live/DRIVE/`` in the study's folder holds ``road.jsonl.gz`` (see ``run.road``) and ``shown.jsonl``, one line per
-step as a page shows it. They are written only while somebody watches: the watcher locks the file
-``live/watched``, and the system releases the lock however the watcher ends. The simulation does not change.
+``live/DRIVE/`` in the study's folder is the folder of a trial (``formats.layout``) with its road and its steps. They
+are written only while somebody watches: the watcher locks the file ``live/watched``, and the system releases the lock
+however the watcher ends. The simulation does not change.
 """
 
 from __future__ import annotations
@@ -16,8 +16,7 @@ from pathlib import Path
 from typing import IO
 
 from automotive_cosim.contracts import Json, LimitSource
-from automotive_cosim.run.drive_recorder import SHOWN
-from automotive_cosim.run.road import NAME as ROAD
+from automotive_cosim.formats.layout import LIVE, ROAD, STEPS
 from automotive_cosim.run.road_recorder import RoadFacts, RoadWriter, is_being_written
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.studies.compare import Future
@@ -27,7 +26,6 @@ from automotive_cosim.studies.plan import StudyJob
 from automotive_cosim.studies.rows import Decision
 from automotive_cosim.traffic.fork import RemoteTraffic
 
-LIVE = "live"
 WATCHED = "watched"
 KEPT = 20
 """Number of drives whose records are kept when another one begins."""
@@ -139,7 +137,7 @@ class LiveDrive:
             "model": "none",
             "seed": job.seed,
         }
-        self._lines = (folder / SHOWN).open("w", encoding="utf-8", newline="\n")
+        self._lines = (folder / STEPS).open("w", encoding="utf-8", newline="\n")
         for line in self._told:
             self._write(line)
         self._road = RoadWriter(folder / ROAD, self._traffic, about, self._begun_s)
@@ -156,7 +154,7 @@ class LiveDrive:
     def _tell(self, words: str, thought: str = "", stages: Sequence[Json] = ()) -> None:
         state = self._traffic.state
         line: Json = {
-            "number": len(self._told),
+            "step": len(self._told),
             "at_s": round(state.time_s - self._begun_s, 2),
             "words": words,
             "action": None,

@@ -69,7 +69,7 @@ function reference(found, id, half) {
   if (!found) return h("p", { class: "muted" }, "To see the reference solution as pictures: ", h("code", {}, `automotive-cosim run --task ${id} --half ${half} --agent oracle`));
   const base = `/api/runs/${found.run}${found.episode ? `/episodes/${encodeURIComponent(found.episode)}` : ""}`;
   return h("details", { open: true }, h("summary", {}, "The reference solution"), h("ol", { class: "film" }, found.steps.filter((each) => each.has_picture).map((each) => h("li", {},
-    h("img", { src: `${base}/pictures/${each.number}`, alt: `The screen after: ${each.words}`, loading: "lazy" }), h("span", {}, each.number ? `${each.number}  ${each.words}` : "the screen at the hand-over")))),
+    h("img", { src: `${base}/pictures/${each.picture}`, alt: `The screen after: ${each.words}`, loading: "lazy" }), h("span", {}, each.number ? `${each.number}  ${each.words}` : "the screen at the hand-over")))),
   h("p", {}, h("a", { href: `#/run/${found.run}${found.episode ? `/${encodeURIComponent(found.episode)}` : ""}` }, "See it on the road")));
 }
 

@@ -125,7 +125,7 @@ function side(run, steps, base, jump) {
       screen.hidden = !now?.has_picture;
       empty.hidden = !screen.hidden;
       if (now?.has_picture) {
-        screen.src = `${base}/pictures/${now.number}`;
+        screen.src = `${base}/pictures/${now.picture}`;
         screen.alt = `The cockpit's screen after step ${now.number}: ${now.words}`;
       }
       said.textContent = now ? [now.thought, now.feedback.text].filter(Boolean).join(" · ") || " " : "Before the hand-over: no agent acts yet.";

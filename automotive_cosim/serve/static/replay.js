@@ -149,7 +149,7 @@ export async function replayPage(query, id, episode) {
     noScreen.hidden = Boolean(pictured);
     noScreen.textContent = index < 0 ? "Before the hand-over: no agent acts yet." : "No picture of this screen was kept.";
     if (pictured) {
-      screen.src = `${base}/pictures/${pictured.picture ?? pictured.number}`;
+      screen.src = `${base}/pictures/${pictured.picture}`;
       screen.alt = `The cockpit's screen after step ${pictured.number}: ${pictured.words}`;
     }
     const next = steps[index + 1];

@@ -1,0 +1,33 @@
+"""Where results lie. A trial's folder is the same for a half of a task and for a drive, whatever ran it:
+
+    trial.json      how it was run (``manifest``), from the beginning; at the end also its ``row`` as in
+                    ``episodes.jsonl`` and its ``result`` as in the last line of a trace
+    steps.jsonl     one line per step, written step by step: what a page shows, and hashes of the state for a replay
+    screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
+    road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)
+
+``run`` adds a film and a page, and the whole state to each line of its steps. In the folder of an evaluation
+(``run.store``), trials whose pictures are kept have theirs in ``pictures/ID``; in that of a study, drives that are
+watched have theirs in ``live/ID``, with neither ``trial.json`` nor screenshots.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+TRIAL = "trial.json"
+STEPS = "steps.jsonl"
+SCREENSHOTS = "screenshots"
+ROAD = "road.jsonl.gz"
+FILM = "episode.webp"
+PAGE = "summary.html"
+OF_A_TRIAL = (TRIAL, STEPS, SCREENSHOTS, ROAD, FILM, PAGE)
+
+TRACES = "traces"
+PICTURES = "pictures"
+LIVE = "live"
+
+
+def screenshot(folder: Path, step: int) -> Path:
+    """Path of the screenshot of a step that changed the screen."""
+    return folder / SCREENSHOTS / f"step_{step:03d}.jpg"

@@ -1,0 +1,105 @@
+"""Reads the folder of a trial (``formats.layout``), of one that runs or was killed too."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from automotive_cosim.cockpit.actions import parse
+from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
+from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import read_json, read_whole_lines
+from automotive_cosim.formats.layout import PICTURES, ROAD, SCREENSHOTS, STEPS, TRIAL, screenshot
+from automotive_cosim.interface.trace import element
+from automotive_cosim.run.former import FILES, former_screenshots, former_steps, former_trial
+from automotive_cosim.run.store import read_trace, trace_file
+from automotive_cosim.run.words import action_in_words
+
+READ = (TRIAL, STEPS, ROAD, *FILES)
+"""Every file of a trial's folder that is read, except its screenshots."""
+
+
+def is_trial(folder: Path) -> bool:
+    """Whether the steps of a trial are recorded in a folder."""
+    return (folder / STEPS).is_file() or former_steps(folder, ()) is not None
+
+
+def trace_of(folder: Path) -> Path | None:
+    """The trace of a trial of an evaluation, which has all its steps; None of another, and if there is none."""
+    path = trace_file(folder.parent.parent, folder.name)
+    return path if folder.parent.name == PICTURES and path.is_file() else None
+
+
+def read_trial(folder: Path) -> Json:
+    """``manifest``, ``row`` and ``result`` of a trial; of one of an evaluation without pictures, the result.
+
+    What is not known yet is left out.
+
+    Raises:
+        UserError: it cannot be read.
+    """
+    path = folder / TRIAL
+    try:
+        told = read_json(path) if path.is_file() else former_trial(folder)
+    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise UserError(f"cannot read the trial in {folder}: {error}") from error
+    if told is None and (trace := trace_of(folder)):
+        told = {"result": read_trace(trace.parent.parent, folder.name)[-1].get("result")}
+    if not isinstance(told, dict | None):
+        raise UserError(f"{path} is not a record of a trial")
+    return told or {}
+
+
+def read_steps(folder: Path) -> list[Json]:
+    """The lines of a trial's steps so far, in the form of ``steps.jsonl``; none of a folder without any.
+
+    Raises:
+        UserError: they cannot be read.
+    """
+    path = folder / STEPS
+    try:
+        lines = read_whole_lines(path) if path.is_file() else []
+        lines = former_steps(folder, lines) or lines
+        if not lines and (trace := trace_of(folder)):
+            lines = read_trace(trace.parent.parent, folder.name)[:-1]
+        return lines if not lines or "words" in lines[0] else shown(lines)
+    except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
+        raise UserError(f"cannot read the steps in {folder}: {type(error).__name__}: {error}") from error
+
+
+def picture(folder: Path, step: int) -> Path:
+    """Path of the screenshot of a step that changed the screen, whether it is there or not."""
+    path = screenshot(folder, step)
+    return next((each for each in (path, *former_screenshots(path)) if each.exists()), path)
+
+
+def pictures(folder: Path) -> list[Path]:
+    """The screenshots of a trial in order."""
+    found = sorted((folder / SCREENSHOTS).glob("step_*"))
+    return found or sorted(each for path in [screenshot(folder, 0)] for each in path.parent.parent.glob(path.name))
+
+
+def shown(lines: Sequence[Json]) -> list[Json]:
+    """A trace's lines with what a page shows of each step; an action refers to the elements of the step before."""
+    told = []
+    seen: tuple[Element, ...] = ()
+    for line in lines:
+        action = None if line["action"] is None else parse(line["action"])
+        about = {
+            "at_s": round(line["time_s"] - lines[0]["time_s"], 2),
+            "words": action_in_words(action, seen) if line["step"] else "hand-over",
+            "target": target(action.index if action else None, seen),
+            "speed_kmh": round(line["traffic"]["speed_mps"] * KMH_PER_MPS, 1),
+            "picture": line["step"],
+        }
+        told.append(line | about)
+        seen = tuple(map(element, line["elements"]))
+    return told
+
+
+def target(index: int | None, seen: Sequence[Element]) -> list[int] | None:
+    """The box of the element that an action points at: left, top, right, bottom."""
+    if index is None or not 0 <= index < len(seen):
+        return None
+    box = seen[index].bbox_pixels
+    return [box.x_min, box.y_min, box.x_max, box.y_max]
