@@ -187,7 +187,9 @@ class Recorder(AnyTrialObserver):
             path = screenshot(self.folder, step.number)
             Image.fromarray(shot.screenshot).save(path, quality=PICTURE_QUALITY, subsampling=0)
             self._pictured = step.number, shot.screenshot
-        told, begins = step.as_json(), "hand-over" if self._collector else "departure"
+        told, begins = step.as_json(), "hand-over"
+        if self._collector is None:
+            told["context"], begins = shot.session.observation.context or "", "departure"  # as the agent was told
         line = told | {
             "at_s": round(step.moment.time_s - self._begun_s, 2),
             "words": action_in_words(step.action, shot.seen) if step.number else begins,

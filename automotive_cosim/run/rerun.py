@@ -206,7 +206,8 @@ def compare(stored: Sequence[Json], again: Sequence[Json]) -> list[Compared]:
 def _differs(before: Json, now: Json) -> Iterator[str]:
     found = _digests(now)
     yield from (name for name, digest in _digests(before).items() if found[name] != digest)
-    yield from (name for name in ("action", "feedback") if before[name] != now[name])
+    beside = ("action",) if "elements" in before else ("action", "feedback")  # where the screen itself is not kept
+    yield from (name for name in beside if before[name] != now[name])
 
 
 def _digests(step: Json) -> Json:

@@ -1,8 +1,8 @@
 """What can be watched of a running study: each drive up to its last decision, the decisions and their results.
 
-``live/DRIVE/`` in the study's folder is the folder of a trial (``formats.layout``) with its road and its steps. They
-are written only while somebody watches: the watcher locks the file ``live/watched``, and the system releases the lock
-however the watcher ends. The simulation does not change.
+``live/DRIVE/`` in the study's folder is a trial's folder (``formats.layout``), road and steps alone. They
+are written only while somebody watches: the watcher locks the file ``live/watched``, and the system releases the
+lock however the watcher ends. The simulation does not change.
 """
 
 from __future__ import annotations

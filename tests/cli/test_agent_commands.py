@@ -90,7 +90,7 @@ def test_a_missing_memory_is_told_and_not_made(cli, tmp_path):
 @pytest.mark.usefixtures("warm")
 def test_geo_and_switches_stand_in_the_record(cli):
     cli("run", "--json", *GRID, "--geo", "none", "--without", "reflection,screen", "--out", "out")
-    written = json.loads(Path("out/episode.json").read_text(encoding="utf-8"))
+    written = json.loads(Path("out/trial.json").read_text(encoding="utf-8"))["result"]
     assert (written["conditions"]["geo"], written["without"]) == ("none", ["reflection", "screen"])
     lines = Path("out/steps.jsonl").read_text(encoding="utf-8").splitlines()
     stages = [stage["stage"] for line in lines for stage in json.loads(line)["stages"]]
@@ -122,13 +122,13 @@ def test_a_single_run_is_replayed_and_a_change_is_found(cli, tmp_path):
     )
     assert "replay one" in (tmp_path / "one/summary.html").read_text(encoding="utf-8")
     refused = cli("replay", "one", "hvac")
-    assert (refused.code, refused.err) == (2, "error: one holds a single run; omit 'hvac'\n")
-    record = json.loads((tmp_path / "one/episode.json").read_text(encoding="utf-8"))
+    assert (refused.code, refused.err) == (2, "error: one holds a single trial; omit 'hvac'\n")
+    record = json.loads((tmp_path / "one/trial.json").read_text(encoding="utf-8"))
     record["manifest"]["setup"]["seed"] += 1
-    (tmp_path / "one/episode.json").write_text(json.dumps(record), encoding="utf-8")
+    (tmp_path / "one/trial.json").write_text(json.dumps(record), encoding="utf-8")
     assert cli("replay", "one").code == 1
     record["manifest"]["setup"]["seedd"] = 1
-    (tmp_path / "one/episode.json").write_text(json.dumps(record), encoding="utf-8")
+    (tmp_path / "one/trial.json").write_text(json.dumps(record), encoding="utf-8")
     assert "did you mean 'seed'" in cli("replay", "one").err
 
 

@@ -33,7 +33,7 @@ def test_json_prints_one_object_and_the_record_has_a_film_of_every_step(cli, tmp
     folder = tmp_path / told["out"]
     assert folder.parent == tmp_path / "runs"
     left = {path.name for path in folder.iterdir()}
-    assert left == {"episode.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html"}
+    assert left == {"trial.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html"}
     film = folder / "episode.webp"
     assert film.stat().st_size < 5e6
     with Image.open(film) as image:
@@ -145,7 +145,8 @@ def test_ctrl_c_keeps_what_was_recorded_and_ends_every_process(long_run, tmp_pat
     assert "out" in err
     lines = (tmp_path / "out" / "steps.jsonl").read_text(encoding="utf-8").splitlines()
     assert [json.loads(line)["step"] for line in lines] == list(range(len(lines)))
-    assert json.loads((tmp_path / "out" / "episode.json").read_text(encoding="utf-8"))["end"] == "interrupted"
+    told = json.loads((tmp_path / "out" / "trial.json").read_text(encoding="utf-8"))
+    assert told["row"]["end"] == "interrupted"
     assert (tmp_path / "out" / "summary.html").is_file()
     until(lambda: not session(long_run.pid))
 
@@ -156,6 +157,7 @@ def test_a_kill_keeps_the_steps_and_leaves_no_process(long_run, tmp_path, until,
     long_run.communicate()
     for line in (tmp_path / "out" / "steps.jsonl").read_text(encoding="utf-8").splitlines()[:-1]:
         json.loads(line)
+    assert json.loads((tmp_path / "out" / "trial.json").read_text(encoding="utf-8")).keys() == {"manifest"}
     until(lambda: not session(long_run.pid))
 
 

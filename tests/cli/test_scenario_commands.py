@@ -40,12 +40,12 @@ def flat(tmp_path):
 def test_no_gps_runs_to_the_end_with_map_film_and_page(cli, flat, tmp_path):
     result = _episode(cli(*RUN, "--scenario", flat, "--no-gps", "--out", "out"))
     assert result["success"]
-    for name in ("episode.json", "steps.jsonl", "episode.webp", "summary.html"):
+    for name in ("trial.json", "steps.jsonl", "episode.webp", "summary.html"):
         assert (tmp_path / "out" / name).stat().st_size > 1000
     steps = [json.loads(line) for line in (tmp_path / "out" / "steps.jsonl").read_text().splitlines()]
     assert all(step["gps"] is None for step in steps)
     assert all(step["context"].startswith("Place: unknown") for step in steps)
-    assert json.loads((tmp_path / "out" / "episode.json").read_text())["manifest"]["setup"]["gps"] is False
+    assert json.loads((tmp_path / "out" / "trial.json").read_text())["manifest"]["setup"]["gps"] is False
 
 
 @pytest.mark.sumo

@@ -27,8 +27,9 @@ WRITTEN = {"out", "each", "junit"}
 FORMS = ("pipe", "device", "socket", "folder")
 """What is given; the folder has a pipe for every file that a command may look for."""
 INSIDE = (
-    "manifest.json", "episodes.jsonl", "steps.jsonl", "episode.json", "scenario.toml", "plan.toml", "bundle.json",
-    "drive.jsonl", "traces", "decisions.csv.gz", "map.net.xml", "network.net.xml", "a.sumocfg", "own.py",
+    "manifest.json", "episodes.jsonl", "steps.jsonl", "trial.json", "shown.jsonl", "scenario.toml", "plan.toml",
+    "bundle.json", "drive.jsonl", "traces", "decisions.csv.gz", "map.net.xml", "network.net.xml", "a.sumocfg",
+    "own.py",
 )  # fmt: skip
 
 

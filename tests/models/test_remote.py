@@ -27,6 +27,7 @@ from automotive_cosim.models.apis import Chat, ChatTools
 from automotive_cosim.models.remote import _Endpoint
 from automotive_cosim.replay.make import Touches, provider_body, texts
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
+from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
 
@@ -537,7 +538,7 @@ def test_no_key_is_in_the_record_of_an_episode(server, tmp_path):
     server.behaviours = [lambda handler: send(handler, 200, completion(text))]
     agent = ModelAgent(T3A, make_model("local/m"))
     setup = EpisodeSetup(task="hvac_fan_max", scenario="grid", model=agent.model, max_steps=3)
-    result = run_episode(setup, agent, [Recorder(tmp_path / "out", setup, {})])
+    result = run_episode(setup, agent, [Recorder(EpisodeJob(setup), tmp_path / "out")])
     assert result.steps == 3
     assert result.tokens_in == 7 * len(server.asked)
     files = [path for path in (tmp_path / "out").rglob("*") if path.is_file()]
@@ -581,7 +582,7 @@ def test_a_model_at_an_endpoint_works_the_car_in_its_own_format(
     name = f"local/some-model?seed=7&format={form}"
     setup = EpisodeSetup("hvac_fan_max", scenario="grid", agent="native", model=name)
     result = run_episode(
-        setup, make_agent("native", name), (Recorder(tmp_path / "out", setup, {}),), simulations=simulations
+        setup, make_agent("native", name), (Recorder(EpisodeJob(setup), tmp_path / "out"),), simulations=simulations
     )
     assert (result.success, result.model) == (True, name)
     assert (result.tokens_in, result.tokens_out) == (7 * len(said), 3 * len(said))

@@ -99,19 +99,21 @@ def episode() -> Callable[..., dict[str, Any]]:
 
 @pytest.fixture
 def record(tmp_path: Path) -> Callable[..., Path]:
-    """Writes a record with these changes of ``episode.json`` and returns its folder."""
+    """Writes a record with these changes of its result and returns its folder."""
 
     def write(**changes: Any) -> Path:
         folder = tmp_path / "record"
         (folder / "screenshots").mkdir(parents=True)
         actions = (None, {"action_type": "click", "index": 0}, {"action_type": "status", "goal_status": "complete"})
         steps = [_step(number, action) for number, action in enumerate(actions)]
-        (folder / "episode.json").write_text(json.dumps(_episode(**changes)), encoding="utf-8")
+        result = _episode(**changes)
+        told = {"result": result, "manifest": result.pop("manifest")}
+        (folder / "trial.json").write_text(json.dumps(told), encoding="utf-8")
         lines = "".join(json.dumps(step) + "\n" for step in steps)
         (folder / "steps.jsonl").write_text(lines, encoding="utf-8")
         for step in steps:
             Image.new("RGB", (1280, 720), (20, 30, 40)).save(
-                folder / "screenshots" / f"step_{step['step']:03d}.png"
+                folder / "screenshots" / f"step_{step['step']:03d}.jpg"
             )
         return folder
 

@@ -168,12 +168,12 @@ def test_the_case_is_one_that_place_decides_and_shows_both_sides(tmp_path, episo
         row("b", geo="full", tags=("place",)), row("b", geo="wrong", success=False, tags=("place",)),
         row("c", geo="full", success=False), row("c", geo="none", success=True),
     ]  # fmt: skip
-    step = {"step": 0, "time_s": 5.0, "elements": [], "action": None, "thought": ""}
+    step = {"step": 0, "time_s": 5.0, "elements": [], "action": None, "thought": "", "traffic": {"speed_mps": 9.0}}
     alert = {"action_type": "show_alert", "kind": "speed"}
     lines = [step, step | {"step": 1, "time_s": 6.0, "action": alert, "thought": "80 is more than 50"}]
     for each in rows:
         write_trace(tmp_path, each.id, [*lines, {"result": episode(success=each.success)}])
-    pictures = tmp_path / "pictures" / rows[2].id
+    pictures = tmp_path / "pictures" / rows[2].id / "screenshots"
     pictures.mkdir(parents=True)
     Image.new("RGB", (64, 36)).save(pictures / "step_000.jpg")
     sides = contrast(results(*rows, folder=tmp_path))

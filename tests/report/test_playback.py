@@ -19,11 +19,13 @@ def record_of_three(tmp_path: Path) -> Path:
     (tmp_path / "screenshots").mkdir()
     lines = []
     for number, action in enumerate(ACTIONS):
-        Image.new("RGB", (64, 36), (80 * number, 0, 0)).save(tmp_path / "screenshots" / f"step_{number:03d}.png")
+        Image.new("RGB", (64, 36), (80 * number, 0, 0)).save(tmp_path / "screenshots" / f"step_{number:03d}.jpg")
         step = {
             "step": number,
-            "time_s": 900.0 + 2 * number,
-            "traffic": {"speed_mps": 10.0},
+            "at_s": 2.0 * number,
+            "words": "",
+            "speed_kmh": 36.0,
+            "picture": number,
             "action": action,
             "feedback": {"code": "ok", "text": "done"},
         }
@@ -56,6 +58,6 @@ def test_the_film_has_a_picture_a_step_for_as_long_as_it_stood(record_of_three: 
 def test_what_is_no_record_is_refused(tmp_path: Path, record_of_three: Path) -> None:
     with pytest.raises(UserError, match="has no steps"):
         list(frames(tmp_path / "nowhere"))
-    (record_of_three / "screenshots" / "step_001.png").unlink()
+    (record_of_three / "screenshots" / "step_001.jpg").unlink()
     with pytest.raises(UserError, match="is missing"):
         write_film(list(frames(record_of_three)), record_of_three / "film.webp", 1.0)

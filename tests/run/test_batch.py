@@ -18,6 +18,7 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import failed
+from automotive_cosim.run.kept import pictures, read_steps, read_trial
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.queue import JobQueue
@@ -274,7 +275,10 @@ def test_pictures_are_kept_by_choice(tmp_path, simulations, fork_server):
         kept = list((tmp_path / choice / "pictures").glob("*"))
         assert len(kept) == count
         for folder in kept:
-            assert len(list(folder.glob("step_*.jpg"))) == steps[folder.name] + 1
+            lines = read_steps(folder)
+            assert len(lines) == steps[folder.name] + 1
+            assert {path.stem for path in pictures(folder)} == {f"step_{line['picture']:03d}" for line in lines}
+            assert read_trial(folder)["row"]["id"] == folder.name
             assert read_record(folder / "road.jsonl.gz").seconds[-1].at_s >= steps[folder.name]
 
 

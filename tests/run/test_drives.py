@@ -35,13 +35,14 @@ from automotive_cosim.report.stats import LEAST_CLUSTERS
 from automotive_cosim.run.batch import Progress, run_plan
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive import DriveSetup, run_drive
-from automotive_cosim.run.drive_recorder import DriveRecorder
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.jobs import DriveJob, EpisodeJob
+from automotive_cosim.run.kept import read_steps, read_trial
 from automotive_cosim.run.plan import families_named, make_plan
 from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.record import Recorder
 from automotive_cosim.run.regrade import regrade
-from automotive_cosim.run.rerun import compare_drives, driven, rerun
+from automotive_cosim.run.rerun import compare, played, rerun
 from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadRecorder
 from automotive_cosim.run.row import as_json, from_json, from_line, steady
@@ -278,7 +279,7 @@ def test_a_replay_gives_the_same_trace_and_says_what_differs(folder: Path, tmp_p
     *steps, _ = read_trace(folder, row.id)
     job = DriveJob(DriveSetup(row.family, row.seed, settings=row.settings, agent=row.agent, model=row.model))
     quiet = [step | {"action": {"action_type": "wait", "seconds": 1}} if step["action"] else step for step in steps]
-    different = compare_drives(steps, driven(job, row, quiet).steps)
+    different = compare(steps, played(job, quiet, frozenset(row.channels)).lines[:-1])
     assert "action" in next(step for step in different if step.differs).differs
     with pytest.raises(UserError, match="no drive in"):
         rerun(folder, "grid_december")
@@ -304,14 +305,15 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     agent = Slow()
     with (
         closing(Simulations()) as simulations,
-        closing(DriveRecorder(tmp_path / "drive")) as recorder,
+        closing(Recorder(DriveJob(setup), tmp_path / "drive")) as recorder,
         closing(RoadRecorder(tmp_path / "drive", setup.about)) as road_recorder,
     ):
         job = DriveJob(setup)
         first = run_drive(job.planned(), setup, agent, simulations=simulations, observers=(recorder, road_recorder))
-        again = driven(job, first.row, first.steps, simulations)
+        channels = frozenset(first.row.channels)
+        again = played(job, first.steps, channels, simulations=simulations)
     assert len({step["thought_s"] for step in first.steps}) > 2
-    assert not [step for step in compare_drives(first.steps, again.steps) if step.differs]
+    assert not [step for step in compare(first.steps, again.lines[:-1]) if step.differs]
     assert again.row.trace_sha256 == first.row.trace_sha256
     assert (again.row.events, again.row.acts, again.row.score) == (
         first.row.events,
@@ -323,8 +325,12 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     assert lines[-1]["baseline"]
     assert [round(line["at_s"], 1) for line in road] == first.timeline["time_s"][1:]
     assert [line["speed_kmh"] for line in road] == first.timeline["speed_kmh"][1:]
-    shown = (tmp_path / "drive" / "shown.jsonl").read_text(encoding="utf-8").splitlines()
-    assert [json.loads(line)["number"] for line in shown] == list(range(len(first.steps)))
+    recorded = read_steps(tmp_path / "drive")
+    for name in ("step", "action", "thought_s", "feedback", "sha256"):
+        assert [line[name] for line in recorded] == [step[name] for step in first.steps]
+    told = read_trial(tmp_path / "drive")
+    assert told["row"] == as_json(first.row)
+    assert told["result"] == {"timeline": first.timeline}
 
 
 @pytest.mark.long

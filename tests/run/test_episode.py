@@ -53,16 +53,17 @@ def test_the_oracle_succeeds_and_everything_is_recorded(run):
     assert result.success
     assert result.reward == 1.0
     assert result.end is End.DECLARED
-    written = json.loads((episode.folder / "episode.json").read_text(encoding="utf-8"))
-    assert written["trace_sha256"] == result.trace_sha256
-    assert written["verdict"]["success"]
+    written = json.loads((episode.folder / "trial.json").read_text(encoding="utf-8"))
+    assert written["row"]["trace_sha256"] == written["result"]["trace_sha256"] == result.trace_sha256
+    assert written["result"]["verdict"]["success"]
     assert {"automotive-cosim", "python", "libsumo", "gymnasium", "numpy", "pillow"} <= set(
         written["manifest"]["versions"]
     )
     lines = _lines(episode.folder)
     pictures = sorted(path.name for path in (episode.folder / "screenshots").iterdir())
     assert [line["step"] for line in lines] == list(range(result.steps + 1))
-    assert pictures == [f"step_{line['step']:03d}.png" for line in lines]
+    assert pictures == sorted({f"step_{line['picture']:03d}.jpg" for line in lines})
+    assert [line["sha256"] for line in lines] == [trace.digests(line) for line in lines]
 
 
 def test_the_hash_can_be_had_from_the_record(run):
@@ -209,8 +210,8 @@ def test_a_failing_road_is_an_error_and_no_failure(run):
     assert result.error == "the simulation died"
     assert result.success is None
     assert result.verdict is None
-    written = json.loads((episode.folder / "episode.json").read_text(encoding="utf-8"))
-    assert written["error"] == "the simulation died"
+    written = json.loads((episode.folder / "trial.json").read_text(encoding="utf-8"))
+    assert written["row"]["error"] == "the simulation died"
     assert len(_lines(episode.folder)) == 2
     assert trace.sha256(_lines(episode.folder)) == result.trace_sha256
 
@@ -218,9 +219,9 @@ def test_a_failing_road_is_an_error_and_no_failure(run):
 def test_an_interruption_keeps_what_was_recorded_and_is_passed_on(run, tmp_path):
     with pytest.raises(KeyboardInterrupt):
         run(Broken(KeyboardInterrupt()))
-    written = json.loads((tmp_path / "out" / "episode.json").read_text(encoding="utf-8"))
-    assert written["end"] == "interrupted"
-    assert written["success"] is None
+    written = json.loads((tmp_path / "out" / "trial.json").read_text(encoding="utf-8"))
+    assert written["row"]["end"] == "interrupted"
+    assert written["row"]["success"] is None
     assert len(_lines(tmp_path / "out")) == 2
 
 

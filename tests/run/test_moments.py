@@ -26,10 +26,10 @@ from automotive_cosim.run.collect import Collector
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
 from automotive_cosim.run.former import MOVED
 from automotive_cosim.run.harm import drive_figures, nearest_s, overspeed
+from automotive_cosim.run.jobs import EpisodeJob
 from automotive_cosim.run.moments import Judged, judged_file, read_judged, write_judged
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.regrade import regrade
-from automotive_cosim.run.settings import Pictures
 from automotive_cosim.tasking.instance import Instance
 from automotive_cosim.tasking.verdict import judge
 from automotive_cosim.tasks import CATALOGUE
@@ -40,8 +40,8 @@ from ..geo.conftest import CAR, CLEAR, NOON
 @pytest.fixture(scope="session")
 def collected(simulations):
     """An alert in vain on the grid: the collector and the result."""
-    collector = Collector(Pictures.NONE)
     setup = EpisodeSetup("phenomenon_front_window_fogged", "first", "grid", agent="always-alert", model="none")
+    collector = Collector(EpisodeJob(setup))
     result = run_episode(setup, make_agent("always-alert"), [collector], simulations=simulations)
     assert result.success is False
     return collector, result
@@ -49,7 +49,7 @@ def collected(simulations):
 
 @pytest.fixture
 def kept(collected, tmp_path):
-    judged = collected[0].judged()
+    judged = collected[0].record(collected[1]).judged
     (tmp_path / "traces").mkdir()
     write_judged(tmp_path, "a", judged)
     return tmp_path, judged
@@ -83,7 +83,7 @@ def test_the_cockpit_goes_through_a_drive_again_only_if_something_else_was_left_
     def asked():
         raise AssertionError("the counterfactual is asked for")
 
-    judged = collected[0].judged()
+    judged = collected[0].record(collected[1]).judged
     instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
     untouched = judged.baseline
     assert judge(instance, untouched, untouched, asked, None, None).clean.ok
@@ -94,7 +94,7 @@ def test_the_cockpit_goes_through_a_drive_again_only_if_something_else_was_left_
 
 
 def test_an_agent_that_failed_has_no_success_even_where_silence_is_right(collected):
-    judged = collected[0].judged()
+    judged = collected[0].record(collected[1]).judged
     instance = Instance(CATALOGUE["phenomenon_front_window_fogged"], "first", judged.goal, judged.parameters)
     told = (instance, judged.baseline, judged.baseline, lambda: judged.counterfactual, None, None)
     failed = judge(*told, "it crashed")

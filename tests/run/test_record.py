@@ -1,3 +1,4 @@
+import json
 import os
 
 import pytest
@@ -5,7 +6,9 @@ import pytest
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import write_whole
 from automotive_cosim.run.episode import EpisodeSetup
+from automotive_cosim.run.kept import read_steps, read_trial
 from automotive_cosim.run.record import check_folder, default_folder
+from automotive_cosim.run.rerun import rerun
 
 
 def test_an_empty_or_missing_folder_will_do(tmp_path):
@@ -21,8 +24,9 @@ def test_force_replaces_the_record_and_leaves_the_rest(run, tmp_path):
         check_folder(first.folder, force=False)
     check_folder(first.folder, force=True)
     second = run("oracle")
-    pictures = list((second.folder / "screenshots").iterdir())
-    assert len(pictures) == second.result.steps + 1 < first.result.steps + 1
+    pictures = {path.name for path in (second.folder / "screenshots").iterdir()}
+    assert pictures == {f"step_{line['picture']:03d}.jpg" for line in read_steps(second.folder)}
+    assert len(read_steps(second.folder)) == second.result.steps + 1 < first.result.steps + 1
     assert (second.folder / "notes.txt").read_text(encoding="utf-8") == "mine"
 
 
@@ -53,3 +57,21 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path):
     assert path.read_text(encoding="utf-8") == "old"
     write_whole(path, "new")
     assert [entry.name for entry in tmp_path.iterdir()] == ["a.json"]
+
+
+def test_a_run_is_repeated_from_its_folder_and_from_one_of_0_2(run):
+    folder = run("oracle").folder
+    compared = rerun(folder)
+    assert compared
+    assert not [step for step in compared if step.differs]
+    told, lines = read_trial(folder), read_steps(folder)
+    (folder / "trial.json").unlink()
+    (folder / "episode.json").write_text(json.dumps(told["result"] | {"manifest": told["manifest"]}))
+    for line in lines:
+        for name in ("at_s", "words", "target", "speed_kmh", "picture", "sha256"):
+            del line[name]
+    (folder / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    assert rerun(folder) == compared
+    (folder / "episode.json").write_text(json.dumps(told["result"]))
+    with pytest.raises(UserError, match="does not say what was run"):
+        rerun(folder)

@@ -11,8 +11,9 @@ import pytest
 from automotive_cosim.agents import make_agent
 from automotive_cosim.contracts import GroundArea, GroundKind, LaneShape, RoadNetwork, RoadShapes, RoadSnapshot
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.layout import ROAD
 from automotive_cosim.run.episode import EpisodeSetup, run_episode
-from automotive_cosim.run.road import NAME, read_record, read_road
+from automotive_cosim.run.road import read_record, read_road
 from automotive_cosim.run.road_recorder import RoadRecorder, RoadWriter, along
 
 
@@ -24,7 +25,7 @@ def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
         setup, make_agent("oracle"), [RoadRecorder(tmp_path, setup.about)], simulations=simulations
     )
     assert seeing == blind, "the trace's hash included"
-    record = read_record(tmp_path / NAME)
+    record = read_record(tmp_path / ROAD)
     assert [second.at_s for second in record.seconds] == [sample.at_s for sample in blind.path[1:]]
     for sample, second in zip(blind.path[1:], record.seconds, strict=True):
         (ego,) = (each for each in second.vehicles if each.vehicle_id == "ego")
@@ -35,14 +36,14 @@ def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
     assert lights
     assert lights == record.seconds[-1].lights.keys()
     assert max(len(second.vehicles) for second in record.seconds) > 1
-    (baseline,) = (line["baseline"] for line in read_road(tmp_path / NAME) if "baseline" in line)
+    (baseline,) = (line["baseline"] for line in read_road(tmp_path / ROAD) if "baseline" in line)
     assert [row[0] for row in baseline] == [
         second.at_s for second in record.seconds if 0 <= second.at_s <= blind.sim_seconds
     ]
     at_hand_over = next(sample for sample in blind.path if sample.at_s == 0)
     assert baseline[0][1:3] == [at_hand_over.x_m, at_hand_over.y_m]
 
-    path = tmp_path / NAME
+    path = tmp_path / ROAD
     whole = path.read_bytes()
     path.write_bytes(whole[: len(whole) * 2 // 3])
     cut = read_record(path)
@@ -54,7 +55,7 @@ def test_the_road_is_recorded_and_nothing_else_changes(tmp_path, simulations):
     "content", [b"", b"not gzip", gzip.compress(b'{"format":2}\n', mtime=0), gzip.compress(b"[]\n", mtime=0)]
 )
 def test_another_file_is_refused_in_one_line(tmp_path, content):
-    path = tmp_path / NAME
+    path = tmp_path / ROAD
     path.write_bytes(content)
     if not content:
         assert read_record(path).seconds == ()
@@ -64,7 +65,7 @@ def test_another_file_is_refused_in_one_line(tmp_path, content):
 
 
 def test_a_line_that_is_not_json_is_refused(tmp_path):
-    path = tmp_path / NAME
+    path = tmp_path / ROAD
     path.write_bytes(gzip.compress(json.dumps({"format": 1}).encode() + b"\n{\n"))
     with pytest.raises(UserError, match="cannot read"):
         list(read_road(path))
@@ -78,13 +79,13 @@ def test_the_ground_is_told_once_as_it_comes_into_sight_and_read_in_its_drawing_
     shapes = RoadShapes((LaneShape("a_0", "road", 3.2, ((0.0, 0.0), (9.0, 0.0))),), (), (near, far, around))
     network = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
     traffic = SimpleNamespace(shapes=lambda: shapes, network=network)
-    writer = RoadWriter(tmp_path / NAME, traffic, {}, 0.0)
+    writer = RoadWriter(tmp_path / ROAD, traffic, {}, 0.0)
     for x_m in (0.0, 10.0, 800.0, 1600.0):
         writer._seek(x_m, 0.0)
     writer.close()
-    told = [entry["ground"] for entry in read_road(tmp_path / NAME) if "ground" in entry]
+    told = [entry["ground"] for entry in read_road(tmp_path / ROAD) if "ground" in entry]
     assert [[kind for kind, _ in areas] for areas in told] == [["water", "green"], ["water"]]
-    assert read_record(tmp_path / NAME).shapes.ground == (around, near, far)
+    assert read_record(tmp_path / ROAD).shapes.ground == (around, near, far)
 
 
 def test_of_several_departures_only_the_last_is_kept(tmp_path):

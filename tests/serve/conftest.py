@@ -14,12 +14,14 @@ from typing import Any
 import pytest
 from PIL import Image
 
+from automotive_cosim.formats.layout import LIVE
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
+from automotive_cosim.run.kept import shown
 from automotive_cosim.run.row import as_json
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.server import WebServer
 from automotive_cosim.serve.study import PeopleStudy
-from automotive_cosim.studies.live import LIVE, WATCHED
+from automotive_cosim.studies.live import WATCHED
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
 from automotive_cosim.tasking.task import Dimension, Module
@@ -66,7 +68,6 @@ def result(**changes: Any) -> dict[str, Any]:
             for s in range(-2, 8)
         ],
         "violations": [],
-        "manifest": {"started": "2026-11-22T21:59:42+00:00"},
     }  # fmt: skip
     return made | changes
 
@@ -99,23 +100,25 @@ def packed(lines: list[dict[str, Any]]) -> bytes:
 def write_record(folder: Path, steps: int = 4, *, finished: bool = True, **changes: Any) -> Path:
     """A record of ``run``, as it is or as a killed run leaves it."""
     (folder / "screenshots").mkdir(parents=True)
-    lines = [step(number, changes.get("goal", "")) for number in range(steps)]
+    lines = shown([step(number, changes.get("goal", "")) for number in range(steps)])
     (folder / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
     for number in range(steps):
-        Image.new("RGB", (320, 180), (40 * number, 90, 160)).save(folder / "screenshots" / f"step_{number:03d}.png")
+        Image.new("RGB", (320, 180), (40 * number, 90, 160)).save(folder / "screenshots" / f"step_{number:03d}.jpg")
     (folder / "road.jsonl.gz").write_bytes(packed(road()))
+    told: dict[str, Any] = {"manifest": {"started": "2026-11-22T21:59:42+00:00"}}
     if finished:
-        (folder / "episode.json").write_text(json.dumps(result(**changes)), encoding="utf-8")
+        told["result"] = result(**changes)
+    (folder / "trial.json").write_text(json.dumps(told), encoding="utf-8")
     return folder
 
 
 def write_drive(folder: Path) -> Path:
     """A record of ``drive``: one event that was met, one that was missed, and a look-alike."""
     (folder / "screenshots").mkdir(parents=True)
-    shown = [
+    lines = [
         {
             **{
-                "number": number,
+                "step": number,
                 "picture": min(number, 1),
                 "at_s": 2.0 * number,
                 "local_time": "",
@@ -126,7 +129,7 @@ def write_drive(folder: Path) -> Path:
         }
         for number in range(4)
     ]
-    (folder / "shown.jsonl").write_text("".join(json.dumps(line) + "\n" for line in shown), encoding="utf-8")
+    (folder / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
     for number in range(2):
         Image.new("RGB", (320, 180), (90, 40 * number, 160)).save(folder / "screenshots" / f"step_{number:03d}.jpg")
     baseline = {"baseline": [[float(s), 15.0 * s, 0.0, 90.0, 15.0] for s in range(8)]}
@@ -139,7 +142,8 @@ def write_drive(folder: Path) -> Path:
     acts = [{"time_s": 3.0, "words": "warns of speed", "worth": "right"}]
     row = {"family": "grid_june", "scenario": "grid", "agent": "rule-perfect", "model": "none", "seed": 0,
            "value": 50.0, "events": events, "acts": acts, "end": "minutes_over"}  # fmt: skip
-    (folder / "row.json").write_text(json.dumps(row), encoding="utf-8")
+    told = {"row": row, "result": {"timeline": {}}, "manifest": {"setup": {"family": "grid_june", "seed": 0}}}
+    (folder / "trial.json").write_text(json.dumps(told), encoding="utf-8")
     return folder
 
 
@@ -147,7 +151,7 @@ def write_evaluation(
     folder: Path, won: tuple[bool, bool] = (True, False), agent: str = "oracle", model: str = "none"
 ) -> Path:
     (folder / "traces").mkdir(parents=True)
-    (folder / "pictures" / "one").mkdir(parents=True)
+    (folder / "pictures" / "one" / "screenshots").mkdir(parents=True)
     plan = {
         "format": 1,
         "plan": {"agents": [agent]},
@@ -167,7 +171,7 @@ def write_evaluation(
     (folder / "episodes.jsonl").write_text(text, encoding="utf-8")
     trace = [*map(step, range(4)), {"result": result()}]
     (folder / "traces" / "one.jsonl.gz").write_bytes(packed(trace))
-    Image.new("RGB", (320, 180)).save(folder / "pictures" / "one" / "step_000.jpg")
+    Image.new("RGB", (320, 180)).save(folder / "pictures" / "one" / "screenshots" / "step_000.jpg")
     return folder
 
 
@@ -212,14 +216,14 @@ def write_live_drive(study: Path, drive: str, seconds: range = range(1, 8)) -> P
     saved = "decision 1, alternative 1: saves +30 s, all others -4 s"
     words = ("departure", "decision 1: 70 s of delay ahead", saved)
     stages = [{"name": "who chooses what", "text": "alternative 1: always"}]
-    shown = [
-        {**rest, "number": number, "at_s": 2.0 * number, "words": told, "stages": stages}
+    lines = [
+        {**rest, "step": number, "at_s": 2.0 * number, "words": told, "stages": stages}
         for number, told in enumerate(words)
     ]
-    (folder / "shown.jsonl").write_text("".join(json.dumps(line) + "\n" for line in shown), encoding="utf-8")
-    head, *lines = road(seconds)
+    (folder / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
+    head, *rows = road(seconds)
     about = {"task": "avenue", "scenario": "grid", "agent": "departs after 0 s", "model": "none", "seed": 0}
-    (folder / "road.jsonl.gz").write_bytes(packed([head | about, *lines]))
+    (folder / "road.jsonl.gz").write_bytes(packed([head | about, *rows]))
     return folder
 
 

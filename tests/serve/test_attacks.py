@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import socket
 import sys
 import threading
@@ -35,7 +36,7 @@ def shown(browser: Browser) -> list[str]:
 def test_pipes_in_a_folder_hang_nothing(serving: Serving, tmp_path: Path) -> None:
     write_record(tmp_path / "good")
     for name, files in (
-        ("evaluation", ("lock", "manifest.json", "traces/one.jsonl.gz", "pictures/one/step_000.jpg")),
+        ("evaluation", ("lock", "manifest.json", "traces/one.jsonl.gz", "pictures/one/screenshots/step_000.jpg")),
         ("second", ("lock", "episodes.jsonl")),
     ):
         folder = write_evaluation(tmp_path / name)
@@ -46,7 +47,7 @@ def test_pipes_in_a_folder_hang_nothing(serving: Serving, tmp_path: Path) -> Non
     os.mkfifo(folder / "lock")
     os.mkfifo(folder / "pictures" / "one" / "road.jsonl.gz")
     run = write_record(tmp_path / "run")
-    for each in ("road.jsonl.gz", "screenshots/step_000.png"):
+    for each in ("road.jsonl.gz", "screenshots/step_000.jpg"):
         (run / each).unlink()
         os.mkfifo(run / each)
     browser = serving(tmp_path)
@@ -63,9 +64,7 @@ def test_links_in_an_evaluation_do_not_lead_out(serving: Serving, tmp_path: Path
     for number, name in enumerate(("manifest.json", "episodes.jsonl", "traces/one.jsonl.gz", "pictures/one")):
         folder = write_evaluation(tmp_path / "shown" / str(number), agent="mine")
         if (folder / name).is_dir():
-            for each in (folder / name).iterdir():
-                each.unlink()
-            (folder / name).rmdir()
+            shutil.rmtree(folder / name)
         else:
             (folder / name).unlink()
         (folder / name).symlink_to(secret / name)
@@ -89,7 +88,7 @@ def test_json_that_grows_when_it_is_read_is_refused_and_hides_nothing(serving: S
         ("list", "[1]"),
         ("half", '{"goal": "\\ud800", "manifest": 7}'),
     ):
-        (write_record(tmp_path / name) / "episode.json").write_text(text)
+        (write_record(tmp_path / name) / "trial.json").write_text(text)
     browser = serving(tmp_path)
     assert "good" in shown(browser)
     for record in browser("/api/runs").json["records"]:
@@ -205,9 +204,9 @@ def test_the_ids_of_a_forged_evaluation_lead_nowhere(forged, serving, tmp_path_f
 
 def test_a_picture_that_is_a_page_is_not_shown_as_one(serving: Serving, tmp_path: Path) -> None:
     folder = write_evaluation(tmp_path / "forged")
-    (folder / "pictures" / "one" / "step_000.jpg").write_text(f"<html>{HOSTILE}</html>")
+    (folder / "pictures" / "one" / "screenshots" / "step_000.jpg").write_text(f"<html>{HOSTILE}</html>")
     run = write_record(tmp_path / "run")
-    (run / "screenshots" / "step_000.png").write_text(f"<svg>{HOSTILE}</svg>")
+    (run / "screenshots" / "step_000.jpg").write_text(f"<svg>{HOSTILE}</svg>")
     browser = serving(tmp_path)
     for record in browser("/api/runs").json["records"]:
         of = "/episodes/one" if record["kind"] == "evaluation" else ""

@@ -19,6 +19,7 @@ from automotive_cosim.agents.oracle import Oracle
 from automotive_cosim.contracts import Action, ActionType, BoundingBox
 from automotive_cosim.episode.episode import Episode
 from automotive_cosim.run.episode import EpisodeObserver
+from automotive_cosim.run.kept import shown
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.road_recorder import is_being_written, mark_as_written
 from automotive_cosim.serve.dealing import PeoplePlan
@@ -155,7 +156,7 @@ def test_a_running_episode_grows_and_a_lost_connection_comes_back(
             expect(page.locator(".pill")).to_have_text("Running")
             expect(page.locator(".steps button")).to_have_count(1)
             with (run / "steps.jsonl").open("a", encoding="utf-8") as steps:
-                steps.write(json.dumps(step(1)) + "\n")
+                steps.write(json.dumps(shown([step(0), step(1)])[1]) + "\n")
             write(road(range(1, 3))[3:])
             expect(page.locator(".steps button")).to_have_count(2)
 
@@ -165,7 +166,7 @@ def test_a_running_episode_grows_and_a_lost_connection_comes_back(
             page.context.set_offline(False)
             expect(page.locator(".warning")).to_be_hidden()
             expect(page.get_by_label("Time in the drive")).to_have_attribute("max", "7")
-    (run / "episode.json").write_text(json.dumps(result()), encoding="utf-8")
+    (run / "trial.json").write_text(json.dumps({"result": result()}), encoding="utf-8")
     expect(page.locator(".pill")).to_have_text("Success")
     expect(page.get_by_text("✓ Goal")).to_be_visible()
 

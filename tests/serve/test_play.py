@@ -219,7 +219,7 @@ def test_a_person_is_judged_as_an_agent_and_can_leave(
     assert browser(f"/api/runs/{left['record']}").json["end"] == "interrupted"
     assert len(read_results(tmp_path / "people").rows) == 2, "practice gives no row"
     (folder,) = (path for path in tmp_path.iterdir() if path.name != "people")
-    assert {path.name for path in folder.iterdir()} >= {"episode.json", "episode.webp", "summary.html"}
+    assert {path.name for path in folder.iterdir()} >= {"trial.json", "episode.webp", "summary.html"}
 
 
 @pytest.mark.slow

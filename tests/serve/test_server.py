@@ -116,7 +116,7 @@ def test_no_path_leads_out(serving: Serving, tmp_path: Path, path: str) -> None:
 def test_links_in_a_record_do_not_lead_out(serving: Serving, tmp_path: Path) -> None:
     secret = write_record(tmp_path / "secret", goal="a secret")
     run = write_record(tmp_path / "shown" / "run")
-    for name in ("episode.json", "steps.jsonl", "road.jsonl.gz", "screenshots/step_000.png"):
+    for name in ("trial.json", "steps.jsonl", "road.jsonl.gz", "screenshots/step_000.jpg"):
         (run / name).unlink()
         (run / name).symlink_to(secret / name)
     (tmp_path / "shown" / "other").symlink_to(secret)
@@ -183,7 +183,7 @@ def test_an_evaluation_and_its_episodes(serving: Serving, tmp_path: Path) -> Non
 def test_a_damaged_record_is_named_and_hides_no_other(serving: Serving, tmp_path: Path) -> None:
     for name, content in (("a", "{"), ("b", "[]"), ("c", '{"manifest": 3}'), ("d", "[" * 100_000)):
         write_record(tmp_path / name)
-        (tmp_path / name / "episode.json").write_text(content, encoding="utf-8")
+        (tmp_path / name / "trial.json").write_text(content, encoding="utf-8")
     write_record(tmp_path / "whole")
     write_record(tmp_path / "killed", finished=False)
     browser = serving(tmp_path)
@@ -203,6 +203,8 @@ def test_a_step_without_an_action_is_shown(serving: Serving, tmp_path: Path) -> 
     run = write_record(tmp_path / "run")
     lines = [json.loads(line) for line in (run / "steps.jsonl").read_text(encoding="utf-8").splitlines()]
     lines[2]["action"] = None
+    for line in lines:
+        del line["words"]  # as in a trace
     (run / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines), encoding="utf-8")
     browser = serving(tmp_path)
     shown = browser(f"/api/runs/{ids(browser)[0]}/steps").json["steps"][2]

@@ -20,10 +20,9 @@ from automotive_cosim.cli.results import report
 from automotive_cosim.cli.study import app
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.layout import LIVE, ROAD, STEPS
 from automotive_cosim.run.batch import Progress
-from automotive_cosim.run.drive_recorder import SHOWN
 from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.road import NAME as ROAD
 from automotive_cosim.run.road import read_record
 from automotive_cosim.run.road_recorder import mark_as_written
 from automotive_cosim.run.row import steady as steady_part
@@ -33,7 +32,7 @@ from automotive_cosim.studies.batch import run_study
 from automotive_cosim.studies.data import futures
 from automotive_cosim.studies.demand import read_demand
 from automotive_cosim.studies.drive import NO_ROOM
-from automotive_cosim.studies.live import LIVE, WATCHED, LiveDrive
+from automotive_cosim.studies.live import WATCHED, LiveDrive
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.points import NOT_CLEARED
@@ -138,8 +137,8 @@ def test_watching_shows_every_drive_and_changes_nothing(plan: StudyPlan, folder:
         seconds = read_record(watched / LIVE / row.id / ROAD).seconds
         assert [second.at_s for second in seconds] == list(range(1, len(seconds) + 1))
         assert all("ego" in {each.vehicle_id for each in second.vehicles} for second in seconds)
-        shown = [json.loads(line) for line in (watched / LIVE / row.id / SHOWN).read_text().splitlines()]
-        assert [line["number"] for line in shown] == list(range(len(shown)))
+        shown = [json.loads(line) for line in (watched / LIVE / row.id / STEPS).read_text().splitlines()]
+        assert [line["step"] for line in shown] == list(range(len(shown)))
         assert shown == sorted(shown, key=lambda line: line["at_s"])
         assert "always" in shown[1]["stages"][0]["text"]
         gain_s = row.decisions[0].gains(0).time_s
