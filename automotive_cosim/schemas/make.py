@@ -20,10 +20,7 @@ DIALECT = {"$schema": "http://json-schema.org/draft-07/schema#"}
 FORMATS: Mapping[str, tuple[str, Callable[[], Json]]] = {
     "action": ("one action of an agent, a line of `run --actions`", actions.json_schema),
     "bundle": ("bundle.json, what a bundle of an evaluation holds", lambda: documented(Contents)),
-    "episode": (
-        "what one episode runs, `setup` in an episode's trial.json",
-        lambda: documented(EpisodeSetup, null=True),
-    ),
+    "episode": ("what one episode runs, `setup` in a trial.json", lambda: documented(EpisodeSetup, null=True)),
     "plan": ("plan.toml, what `eval --plan` runs", lambda: documented(Plan)),
     "rules": ("traffic rules of a place, a file in `show context --rules FOLDER`", lambda: documented(RuleFile)),
     "scenario": ("scenario.toml, what SUMO's own files have no word for", lambda: documented(ScenarioFile)),
