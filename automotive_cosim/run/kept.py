@@ -45,9 +45,10 @@ def read_trial(folder: Path) -> Json:
         raise UserError(f"cannot read the trial in {folder}: {error}") from error
     if told is None and (trace := trace_of(folder)):
         told = {"result": read_trace(trace.parent.parent, folder.name)[-1].get("result")}
-    if not isinstance(told, dict | None):
+    told = {} if told is None else told
+    if not isinstance(told, dict) or not all(isinstance(part, dict | None) for part in told.values()):
         raise UserError(f"{path} is not a record of a trial")
-    return told or {}
+    return told
 
 
 def read_steps(folder: Path) -> list[Json]:

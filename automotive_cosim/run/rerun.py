@@ -123,7 +123,7 @@ def _single(folder: Path, trial: str) -> list[Compared]:
         raise UserError(f"{folder} holds a single trial; omit {trial!r}")
     told, stored = read_trial(folder), read_steps(folder)
     job, row = _job(folder, told), (told.get("result") or {}) | (told.get("row") or {})
-    channels = _channels(job.setup) if isinstance(job, EpisodeJob) else frozenset(map(Channel, row["channels"]))
+    channels = frozenset(map(Channel, row["channels"])) if "channels" in row else _channels(job.setup)
     return _again(job, stored, channels, row.get("agent_error"))
 
 
@@ -147,10 +147,11 @@ def _again(
     return compare(stored, [line for line in played(job, stored, channels, failure).lines if "step" in line])
 
 
-def _channels(setup: EpisodeSetup) -> frozenset[Channel]:
+def _channels(setup: EpisodeSetup | DriveSetup) -> frozenset[Channel]:
     """The channels that its agent was given; no model is needed."""
     if setup.agent in PROFILES:
-        settings = AgentSettings(setup.conditions, parts(setup.without))
+        without = setup.without if isinstance(setup, EpisodeSetup) else ()
+        settings = AgentSettings(setup.conditions, parts(without))
         return PROFILES[setup.agent].under(settings).channels
     if setup.agent == ScriptedAgent.name:
         return ALL

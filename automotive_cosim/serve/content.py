@@ -220,8 +220,7 @@ class Content:
             told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
             told["is_search"] = (entry.folder / PAGE).is_file()
             return {**shared, **told}
-        head = self._head(self.records.trial(entry, None))
-        return shared | head
+        return shared | self._head(self.records.trial(entry, None))
 
     def _head(self, folder: Path) -> Json:
         """What is known about a trial, also of one that is running or was killed."""
@@ -237,10 +236,9 @@ class Content:
             is_told = _kind(plan) == "evaluation" and "oracle" in plan["agents"]
             for row in read_trials(entry.folder).values() if is_told else ():
                 is_solved = (row.subject, row.agent, row.outcome) == (task, "oracle", True)
-                if is_solved and isinstance(row, EpisodeRow):
-                    folder = self.records.trial(entry, row.id)
-                    if _has_picture(self.records, entry, folder, 0):
-                        solved.append((row.half, row.id))
+                folder = entry.folder / PICTURES / row.id
+                if is_solved and isinstance(row, EpisodeRow) and _has_picture(self.records, entry, folder, 0):
+                    solved.append((row.half, row.id))
         else:
             head = self._head(self.records.trial(entry, None))
             if (head["task"], head["agent"], head["success"]) == (task, "oracle", True):
