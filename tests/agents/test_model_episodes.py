@@ -37,7 +37,7 @@ class Says:
 
 
 def _run(simulations, agent, folder=None):
-    watchers = [Recorder(EpisodeJob(QUICK), folder)] if folder else []
+    watchers = [Recorder(EpisodeJob(QUICK), folder, whole=True)] if folder else []
     return run_episode(QUICK, agent, watchers, simulations=simulations)
 
 

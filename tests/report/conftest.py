@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 from PIL import Image
 
+from automotive_cosim.run.kept import shown
+
 
 def _path() -> list[dict[str, Any]]:
     """20 s up to 80 km/h where 50 is posted, 10 s at it, 15 s down to 49; the last seconds without a limit."""
@@ -84,6 +86,7 @@ def _step(number: int, action: dict[str, Any] | None) -> dict[str, Any]:
     return {
         "step": number,
         "time_s": 900.0 + number,
+        "traffic": {"speed_mps": 20.0},
         "elements": [element],
         "action": action,
         "feedback": {"code": "ok", "text": ""},
@@ -109,7 +112,7 @@ def record(tmp_path: Path) -> Callable[..., Path]:
         result = _episode(**changes)
         told = {"result": result, "manifest": result.pop("manifest")}
         (folder / "trial.json").write_text(json.dumps(told), encoding="utf-8")
-        lines = "".join(json.dumps(step) + "\n" for step in steps)
+        lines = "".join(json.dumps(step) + "\n" for step in shown(steps))
         (folder / "steps.jsonl").write_text(lines, encoding="utf-8")
         for step in steps:
             Image.new("RGB", (1280, 720), (20, 30, 40)).save(
