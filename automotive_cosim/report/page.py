@@ -11,6 +11,7 @@ from pathlib import Path
 from PIL import Image
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import write_whole
 from automotive_cosim.formats.layout import FILM, PAGE
 from automotive_cosim.report.plot import Plot
@@ -34,8 +35,13 @@ def write_page(folder: Path) -> Path:
 
     Args:
         folder: of a trial (``formats.layout``).
+
+    Raises:
+        UserError: it cannot be read, or its trial has not ended.
     """
     told = read_trial(folder)
+    if not told.get("result"):
+        raise UserError(f"{folder} has no result: its trial has not ended")
     result, manifest = from_json(EpisodeResult, told["result"]), told["manifest"]
     film = folder / FILM
     drive = result.path, result.timeline

@@ -4,6 +4,7 @@ from pathlib import Path
 
 import pytest
 
+from automotive_cosim.errors import UserError
 from automotive_cosim.report.page import write_page
 
 VOID = {"meta", "img", "br", "hr", "link", "input"}
@@ -104,3 +105,10 @@ def _contrast(one: tuple[float, ...], other: tuple[float, ...]) -> float:
 
     lighter, darker = sorted((luminance(one), luminance(other)), reverse=True)
     return (lighter + 0.05) / (darker + 0.05)
+
+
+def test_a_trial_that_has_not_ended_has_no_page(record):
+    folder = record()
+    (folder / "trial.json").write_text('{"manifest": {"setup": {}}}', encoding="utf-8")
+    with pytest.raises(UserError, match="has not ended"):
+        write_page(folder)
