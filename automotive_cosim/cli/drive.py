@@ -84,7 +84,7 @@ def drive(
     job = DriveJob(setup)
     folder = out or stamped_folder(f"{family}-{player.name}-seed{seed}")
     check_folder(folder, force=force)
-    recorder, road = Recorder(job, folder), RoadRecorder(folder, setup.about)
+    recorder, road = Recorder(job, folder, {"out": str(folder)}), RoadRecorder(folder, setup.about)
     with closing(recorder), closing(road):
         record = run_drive(job.planned(), setup, player, observers=(recorder, road), wall_s=limited.wall_s)
     if as_json:

@@ -1,7 +1,8 @@
 """Where results lie. A trial's folder is the same for a half of a task and for a drive, whatever ran it:
 
-    trial.json      how it was run (``manifest``), from the beginning; at the end also its ``row`` as in
-                    ``episodes.jsonl`` and its ``result`` as in the last line of a trace
+    trial.json      from the beginning its ``manifest``: the setup and, outside of evaluations, versions and more; at
+                    the end also its ``row`` as in ``episodes.jsonl`` and its ``result`` as in the last line of a
+                    trace
     steps.jsonl     one line per step, written step by step: what a page shows, and hashes of the state for a replay
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
     road.jsonl.gz   the road with every vehicle, second by second (format: ``run.road``)

@@ -112,14 +112,15 @@ class Recorder(AnyTrialObserver):
         Args:
             job: what is run.
             folder: the trial's, which may not exist yet; None keeps no folder.
-            arguments: the command's, for the manifest.
+            arguments: the command's, of a trial that it runs alone; None in an evaluation, whose manifest has what
+                is the same for all its trials.
             whole: write the whole state after each step.
         """
         self.folder = folder
         self.record: TrialRecord | None = None
         """Once the trial is over."""
         self._job = job
-        self._arguments = arguments or {}
+        self._arguments = arguments
         self._whole = whole
         self._collector = Collector(job) if isinstance(job, EpisodeJob) else None
         self._lines: IO[str] | None = None
@@ -210,6 +211,8 @@ class Recorder(AnyTrialObserver):
 
     def _manifest(self) -> Json:
         setup = self._job.setup
+        if self._arguments is None:
+            return {"setup": asdict(setup)}
         return {
             "versions": installed(STAMPED) | {"python": platform.python_version()},
             "platform": platform.platform(),

@@ -320,7 +320,7 @@ class Game(AnyTrialObserver):
     def _practise(self, job: TrialJob, folder: Path) -> None:
         """Plays a trial and records it as ``run`` and ``drive`` do."""
         is_episode, simulations = isinstance(job, EpisodeJob), self._simulations
-        recorder, road = Recorder(job, folder, whole=is_episode), RoadRecorder(folder, job.setup.about)
+        recorder, road = Recorder(job, folder, {}, whole=is_episode), RoadRecorder(folder, job.setup.about)
         both = self, recorder, road  # the person first
         with suppress(PersonLeftError), closing(recorder), closing(road):
             if isinstance(job, EpisodeJob):

@@ -57,7 +57,7 @@ def run(tmp_path: Path, simulations: Simulations) -> Callable[..., Episode]:
             conditions=Conditions.named(named),
         )
         memory = Memory()
-        watchers = [Recorder(EpisodeJob(setup), tmp_path / out, whole=True), memory]
+        watchers = [Recorder(EpisodeJob(setup), tmp_path / out, {}, whole=True), memory]
         return Episode(run_episode(setup, player, watchers, simulations=simulations), tmp_path / out, memory)
 
     return run_
