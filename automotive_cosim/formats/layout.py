@@ -1,7 +1,7 @@
 """Where results lie. A trial's folder is the same for a half of a task and for a drive, whatever ran it:
 
-    trial.json      from the beginning its ``manifest``: the setup and, outside of evaluations, versions and more; at
-                    the end also its ``row`` as in ``episodes.jsonl`` and its ``result`` as in the last line of a
+    trial.json      from the beginning its ``manifest``: the setup and, outside of evaluations, versions and more;
+                    at the end also its ``row`` as in ``episodes.jsonl`` and its ``result`` as in the last line of a
                     trace
     steps.jsonl     one line per step, written step by step: what a page shows, and hashes of the state for a replay
     screenshots/    step_000.jpg, ...: the cockpit after each step that changed it; a line says which one shows it
