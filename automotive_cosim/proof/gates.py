@@ -581,14 +581,16 @@ def _observed(episode: Episode, actions: list[Action]) -> list[str]:
 
 
 def road(ground: Ground, simulations: Simulations) -> Wrong:
-    """Parks the car; a task that requires a stationary car is skipped."""
+    """Parks the car, in traffic that moves in steps of a second: a parked car needs no finer one. A task that
+    requires a stationary car is skipped."""
     half = ground.task.half(ground.half_name)
     if half.start.parked or _stands(half.trigger.condition):
         return
     parked = replace(half, start=replace(half.start, parked=True))
     changed = {"first": parked} if ground.half_name == "first" else {"second": parked}
     try:
-        Ground.reach(replace(ground.task, **changed), ground.half_name, ground.seed, simulations).close()  # type: ignore[arg-type]
+        parked_task = replace(ground.task, **changed)  # type: ignore[arg-type]
+        Ground.reach(parked_task, ground.half_name, ground.seed, simulations, coarse=True).close()
     except TriggerNotReachedError:
         return
     yield "its trigger is reached by a parked car"
