@@ -24,7 +24,7 @@ from automotive_cosim.geo.locate import Geo
 from automotive_cosim.geo.signs import signs_of
 from automotive_cosim.scenarios import LinkAt, Scenario, WeatherAt
 from automotive_cosim.traffic.base import Traffic
-from automotive_cosim.traffic.future import Future
+from automotive_cosim.traffic.future import SharedFuture
 from automotive_cosim.traffic.shadow import SharedTraffic
 
 TICK_S = 1.0
@@ -87,10 +87,10 @@ class CoSimulation:
         """
         return CoSimulation(self.traffic.shadow(), self.car.copy(), self.moment)
 
-    def share_future(self) -> Future:
+    def share_future(self) -> SharedFuture:
         """From here on, this drive and its copies share what comes if nobody asks the road for anything: it is
         driven once, for who plays many times from one instant. Close what it returns after all of them."""
-        future = Future(self.traffic, self.traffic.step_s)
+        future = SharedFuture(self.traffic, self.traffic.step_s)
         self.traffic = SharedTraffic(future.drive(), self.traffic.step_s)
         return future
 

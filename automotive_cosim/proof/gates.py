@@ -400,7 +400,7 @@ def random(ground: Ground) -> Wrong:
     wins = sum(run.success for run in runs)
     if wins <= RANDOM_WINS:
         return
-    declared = sum(run.actions[-1] is not None and run.actions[-1].goal_status is not None for run in runs)
+    declared = sum(any(act is not None and act.goal_status is not None for act in run.actions) for run in runs)
     right = sum(ground.declares(status).success for status in GoalStatus) / len(GoalStatus)
     most = max(RANDOM_WINS, by_chance(declared, right))
     if wins > most:

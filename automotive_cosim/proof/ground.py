@@ -25,7 +25,7 @@ from automotive_cosim.tasking.moves import Move, Tap
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.traffic.future import Future
+from automotive_cosim.traffic.future import SharedFuture
 
 SETUP = SessionSetup(ALL - {Channel.SCREENSHOT})
 """Every channel except the screenshot, which shows what the elements list."""
@@ -107,7 +107,7 @@ class Ground:
     half_name: str
     seed: int
     episode: Episode
-    future: Future
+    future: SharedFuture
     """What all plays share until they ask the road for something."""
     _begun: list[int] = field(default_factory=list)
 

@@ -1,6 +1,6 @@
 """Drives from one instant that share a future until they ask the road for something.
 
-    future = Future(traffic, step_s)
+    future = SharedFuture(traffic, step_s)
     one, other = future.drive(), future.drive()      # exact copies of the drive at that instant
     one.advance(60.0)                                # simulated
     other.advance(60.0)                              # known already
@@ -25,7 +25,7 @@ from automotive_cosim.traffic.base import Advance, Traffic
 from automotive_cosim.traffic.shadow import Passed, by_step
 
 
-class Future:
+class SharedFuture:
     """What a drive comes to if nobody asks it for anything: driven once, as far as somebody wants to know."""
 
     def __init__(self, traffic: Traffic, step_s: float) -> None:
@@ -96,7 +96,7 @@ class Future:
 class FutureDrive:
     """A drive into a future; it gets a simulation of its own when it asks the road for something."""
 
-    def __init__(self, future: Future, done: int = 0, state: DrivingState | None = None) -> None:
+    def __init__(self, future: SharedFuture, done: int = 0, state: DrivingState | None = None) -> None:
         self._future = future
         self._done = done
         self._state = future.begin.state if state is None else state

@@ -12,7 +12,7 @@ from automotive_cosim.errors import TrafficError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.future import Future
+from automotive_cosim.traffic.future import SharedFuture
 from automotive_cosim.traffic.shadow import SharedTraffic
 from tests.scripted.traffic import Scripted, Stretch
 
@@ -151,7 +151,7 @@ def test_drives_into_one_future_are_branches(depart: Depart, seed: int) -> None:
     draw = random.Random(seed)
     traffic = depart()
     traffic.advance(2.0)
-    future = Future(traffic, STEP_S)
+    future = SharedFuture(traffic, STEP_S)
     branches: list[Traffic] = [traffic.branch()]
     drives: list[Traffic] = [future.drive()]
     for _ in range(24):
@@ -178,7 +178,7 @@ def test_drives_into_one_future_are_branches(depart: Depart, seed: int) -> None:
 def test_a_future_is_driven_once(depart: Depart) -> None:
     made: list[int] = []
     traffic = depart()
-    future = Future(Counted(traffic, made), STEP_S)
+    future = SharedFuture(Counted(traffic, made), STEP_S)
     whole = driven(future.drive(), 3.0, 400.0)
     drives = [future.drive() for _ in range(5)]
     assert [driven(drive, 403.0) for drive in drives] == [whole] * 5
