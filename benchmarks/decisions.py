@@ -11,6 +11,9 @@ machine than wall time: that of this process, with cockpit, place and judge, and
 | ``reset_sumo_ms``, ``reset_wall_ms`` | of the simulations' processes, and wall time, for a reset on warm traffic |
 | ``per_s`` | decisions per second of wall time, meaningful only on an idle machine |
 
+``drives`` and ``drives_lean`` are vectors of ``FlatDrive-v0``, a process for each core, with waits of two seconds;
+``simulated_s_per_s`` is simulated time per wall time, over all of them.
+
 ``--profile`` adds where this process spends its time, by part of the project; libraries count for their callers.
 ``--check`` compares the traces of every environment of a vector with those of the same environment alone.
 """
@@ -35,12 +38,15 @@ import gymnasium as gym
 import numpy as np
 
 import automotive_cosim
+from automotive_cosim.envs.flat_drive import SOON, SOON_S
 from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.remote import RemoteProcess
 
 TASKS = ("hvac_fan_max", "hvac_driver_seat_heater")
 SCENARIO = "grid"
+FAMILY, MINUTES = "grid_june", 10.0
 SEED = 0
+CORES = os.cpu_count() or 1
 
 
 class Children:
@@ -176,6 +182,22 @@ def vector(mode: str | None, count: int, rounds: int, children: Children, *, che
     }
 
 
+def drives(count: int, rounds: int, *, lean: bool) -> dict[str, Any]:
+    """Drives for training, each in a process of its own, whose agents look every two seconds."""
+    envs = gym.make_vec(
+        "AutomotiveCosim/FlatDrive-v0", num_envs=count, vectorization_mode="async",
+        families=FAMILY, minutes=MINUTES, lean=lean,
+    )  # fmt: skip
+    with closing(envs):
+        envs.reset(seed=SEED)
+        looks = np.full(count, SOON)
+        began_s = time.perf_counter()
+        for _ in range(rounds):
+            envs.step(looks)
+        per_s = count * rounds / (time.perf_counter() - began_s)
+    return {"envs": count, "decisions": count * rounds, "per_s": per_s, "simulated_s_per_s": SOON_S * per_s}
+
+
 def _alone(options: dict[str, Any], actions: Any, seed: int, shared: dict[str, int]) -> list[str]:
     """The traces of one environment by itself; the step after an episode's end resets, as in a vector."""
     with closing(gym.make("AutomotiveCosim/Flat-v0", **options)) as env:
@@ -223,7 +245,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="The cost of a decision.")
     parser.add_argument("--decisions", type=int, default=300)
     parser.add_argument("--envs", type=int, default=8)
-    parser.add_argument("--only", choices=("flat", "cockpit", "vector"))
+    parser.add_argument("--only", choices=("flat", "cockpit", "vector", "drives"))
     parser.add_argument("--profile", action="store_true")
     parser.add_argument("--check", action="store_true", help="compare each trace of the vector with the env alone")
     chosen = parser.parse_args()
@@ -246,6 +268,9 @@ def main() -> None:
             rounds = max(1, chosen.decisions // chosen.envs)
             for name, mode in (("vector", None), ("vector_sync", "sync")):
                 figures[name] = vector(mode, chosen.envs, rounds, children, check=chosen.check)
+    if chosen.only in (None, "drives"):
+        for name, lean in (("drives", False), ("drives_lean", True)):
+            figures[name] = drives(CORES, max(1, chosen.decisions // CORES), lean=lean)
     print(json.dumps(_rounded(figures), indent=1))
 
 

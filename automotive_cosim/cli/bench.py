@@ -25,7 +25,11 @@ def bench(as_json: AsJson = False, **settings: Any) -> None:
 
     progress = Console(stderr=True, quiet=as_json, highlight=False)
     told = filled(BenchSettings, settings)
-    figures = measure(told.scenario, told.steps, lambda what: progress.print(f"measuring: {what}"))
+
+    def say(what: str) -> None:
+        progress.print(f"measuring: {what}")
+
+    figures = measure(told.scenario, told.steps, say, peers=told.peers)
     if as_json:
         typer.echo(json.dumps(figures.as_json()))
     else:
@@ -34,6 +38,8 @@ def bench(as_json: AsJson = False, **settings: Any) -> None:
 
 def _table(figures: Figures) -> Table:
     from rich.table import Table
+
+    from automotive_cosim.run.peers import EPISODE_S
 
     what = f"{figures.vehicles} vehicles, {figures.steps} steps of {figures.step_length_s:g} s"
     table = Table(title=f"{figures.scenario}: {what}", title_justify="left")
@@ -66,6 +72,13 @@ def _table(figures: Figures) -> Table:
         "memory of one environment", _megabytes(figures.rss_mb), "all its processes, shared pages counted once"
     )
     table.add_row("memory of each additional one", _megabytes(figures.rss_per_extra_env_mb), "on the same traffic")
+    for peer in figures.peers:
+        ratio = f"{peer.s_per_second / figures.peers[0].s_per_second:.2f} of the loop"
+        table.add_row(f"{peer.name}, steps of 1 s", f"{peer.s_per_second * 1000:.3f} ms", ratio)
+        if peer.reset_s is not None and peer.s_per_second_of_episodes is not None:
+            whole = f"{peer.s_per_second_of_episodes * 1000:.3f} ms per second"
+            spread = f"{whole} in episodes of {EPISODE_S / 60:.0f} min"
+            table.add_row(f"{peer.name}, a new episode", f"{peer.reset_s * 1000:.0f} ms", spread)
     return table
 
 

@@ -12,6 +12,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from functools import lru_cache
 from typing import Annotated, Any
 
 from annotated_types import Gt, Le
@@ -138,8 +139,14 @@ def seated_by(values: Mapping[str, Any]) -> Iterator[Occupant]:
 
 def _seated(read: Callable[[Signal[Any]], Any]) -> Iterator[Occupant]:
     for seat, at in SIGNALS.items():
-        if read(at.occupied) and read(at.kind) != "NONE":
-            yield Occupant(seat, Kind(read(at.kind).lower()), read(at.weight), read(at.asleep), read(at.belted))
+        if read(at.occupied) and (kind := read(at.kind)) != "NONE":
+            yield _occupant(seat, kind, read(at.weight), read(at.asleep), read(at.belted))
+
+
+@lru_cache(maxsize=256)
+def _occupant(seat: Seat, kind: str, weight_kg: float, asleep: bool, belted: bool) -> Occupant:
+    """Cached, because whoever looks asks again every second."""
+    return Occupant(seat, Kind(kind.lower()), weight_kg, asleep, belted)
 
 
 def in_words(signals: Signals) -> str:

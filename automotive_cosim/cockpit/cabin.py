@@ -409,8 +409,11 @@ def _wet(pane: Pane, dt_s: float, outside: Air, sweeps_per_minute: float) -> Pan
     lost_per_s = wiped_per_s + 1 / RAIN_RUNS_OFF_S
     falling = outside.rain_mm_h / 3600 * (1 + outside.speed_mps / 10)
     steady = falling / lost_per_s
-    return replace(
-        pane,
+    return Pane(
+        pane.temperature_c,
+        pane.inner_c,
+        pane.outer_c,
+        fog=pane.fog,
         rain=min(steady + (pane.rain - steady) * math.exp(-lost_per_s * dt_s), 3 * RAIN_OPAQUE),
         dew=pane.dew * math.exp(-wiped_per_s * dt_s),
     )

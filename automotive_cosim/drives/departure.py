@@ -40,10 +40,7 @@ def depart(script: DriveScript, simulations: Simulations, observer: Observer | N
         TrafficError: the traffic simulation failed.
     """
     observer = observer or Observer()
-    scenario = open_scenario(script.scenario, origin=script.origin)
-    if script.density != 1.0:
-        scale = scenario.sumo.scale * script.density
-        scenario = replace(scenario, sumo=replace(scenario.sumo, scale=scale))
+    scenario = scenario_of(script)
     draws = Draws(script.family, script.seed)
     ego = _ego_plan(script, scenario, draws)
     observer.loading(scenario)
@@ -99,6 +96,22 @@ def departed_on_a_free_road(simulation: Simulation, ego: EgoPlan) -> tuple[EgoPl
             ego = replace(ego, trip=ego.onward[0], onward=(*ego.onward[1:], ego.onward[0]))
     assert full is not None
     raise full
+
+
+def scenario_of(script: DriveScript) -> Scenario:
+    """The scenario of a script, with the traffic and the steps that the script asks for.
+
+    Raises:
+        UnknownNameError: there is no such scenario.
+        ScenarioError: it cannot be read.
+    """
+    scenario = open_scenario(script.scenario, origin=script.origin)
+    sumo = scenario.sumo
+    if script.density != 1.0:
+        sumo = replace(sumo, scale=sumo.scale * script.density)
+    if script.coarse:
+        sumo = sumo.stepping(1.0)
+    return replace(scenario, sumo=sumo)
 
 
 def _ego_plan(script: DriveScript, scenario: Scenario, draws: Draws) -> EgoPlan:

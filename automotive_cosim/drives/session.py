@@ -47,25 +47,20 @@ class Twin:
     index: int
     """Number of the event."""
     event: DriveEvent
-    world: CoSimulation
+    copy: Baseline
     drive: list[Moment]
+    """The drive before that instant, and the copy's."""
     tracker: Tracker
     due_s: float | None = None
     """When the obligation arose in it."""
 
     def follow(self, time_s: float) -> bool:
-        """Drives to that simulation time; returns whether there is more to see.
-
-        Raises:
-            TrafficError: the traffic simulation failed.
-        """
-        while self.drive[-1].time_s < time_s - ROUNDING_S:
-            passed = self.world.advance(TICK_S)
-            if not passed:
-                return False
-            for moment in passed:
-                self.drive.append(moment)
-                self.tracker.see(self.drive)
+        """Looks at what the copy has driven up to that simulation time; returns whether there is more to see."""
+        for moment in self.copy.since(self.drive[-1].time_s):
+            self.drive.append(moment)
+            self.tracker.see(self.drive)
+        if self.drive[-1].time_s < time_s - ROUNDING_S:
+            return False
         same = [
             event for event in self.tracker.events if event.subject == self.event.subject and not event.lookalike
         ]
@@ -160,12 +155,16 @@ class DriveSession(JudgedSession):
     def close(self) -> None:
         """Ends the drive and all its copies; may be called again."""
         for twin in self.twins:
-            twin.world.close()
+            twin.copy.close()
         self.twins.clear()
         self.baseline.close()
         self.world.close()
 
     # --- inside -------------------------------------------------------------------------------------------
+
+    @property
+    def _copies(self) -> Sequence[Baseline]:
+        return (self.baseline, *(twin.copy for twin in self.twins))
 
     def _spend(self, action: Action | None, feedback: Feedback, cost_s: float) -> Feedback:
         """Lets an action's time pass: a wait lasts until something wakes."""
@@ -249,7 +248,7 @@ class DriveSession(JudgedSession):
                 tracker = Tracker({event.kind: KINDS[event.kind]})
                 drive = list(self.moments)
                 tracker.see(drive)
-                self.twins.append(Twin(index, event, self.world.shadow(), drive, tracker))
+                self.twins.append(Twin(index, event, Baseline(self.world), drive, tracker))
 
     def _follow(self) -> None:
         kept = []
@@ -258,7 +257,7 @@ class DriveSession(JudgedSession):
                 kept.append(twin)
             else:
                 self.due_anyway[twin.index] = twin.due_s
-                twin.world.close()
+                twin.copy.close()
         self.twins = kept
 
     def _untouched(self) -> Sequence[DriveEvent]:

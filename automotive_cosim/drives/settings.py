@@ -62,6 +62,9 @@ class DriveSettings:
     appears."""
     aboard: Annotated[str, OneOf((NOBODY, *Kind), "occupant")] | None = None
     """Who rides on the rear seat, behind the passenger's, besides the driver and nobody else."""
+    coarse: bool | None = None
+    """Whether SUMO runs in steps of a second, which takes a fraction of the time; the traffic is another then, and
+    drivers act only once a second."""
 
     @property
     def tags(self) -> tuple[str, ...]:
@@ -92,6 +95,7 @@ class DriveSettings:
             driver=script.driver if self.driver is None else self.driver,
             driven_s=made.driven_s if self.driven_min is None else self.driven_min * 60,
             density=script.density if self.density is None else self.density,
+            coarse=script.coarse if self.coarse is None else self.coarse,
             duration_s=min(script.duration_s, inf if self.minutes is None else self.minutes * 60),
         )
 

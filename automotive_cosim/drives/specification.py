@@ -56,6 +56,8 @@ class DriveSpec:
         channels: frozenset[Channel] = ALL,
         observer: Observer | None = None,
         script: DriveScript | None = None,
+        *,
+        lean: bool = False,
     ) -> DriveSession:
         """Departs; the caller closes the session.
 
@@ -64,6 +66,7 @@ class DriveSpec:
             channels: what the agent wants to see.
             observer: notified of progress.
             script: used instead of its own.
+            lean: lays out no screen (``SessionSetup.lean``).
 
         Raises:
             UserError: something in the specification does not exist.
@@ -72,7 +75,7 @@ class DriveSpec:
         drive = script or self.script
         if self.conditions.language is not Language.ENGLISH:
             drive = replace(drive, signals={HMI.LANGUAGE.path: str(self.conditions.language), **drive.signals})
-        setup = SessionSetup(channels, self.conditions, self.max_steps, drive.duration_s)
+        setup = SessionSetup(channels, self.conditions, self.max_steps, drive.duration_s, lean=lean)
         world = depart(drive, simulations, observer)
         try:
             return DriveSession.depart_with(world, setup, observer)

@@ -201,7 +201,7 @@ class FlatEnv(SessionEnv[npt.NDArray[np.float32], np.int64, Episode]):
     def _numbers(self) -> npt.NDArray[np.float32]:
         seen = self.episode.observation
         spent = (len(self.episode.steps) - 1) / self._max_steps
-        words = hashed(" ".join([seen.goal, *seen.said]), GOAL_SLOTS)
+        words = hashed((seen.goal, *seen.said), GOAL_SLOTS)
         parts = [*words, *self._switches(seen), *_car(seen), spent]
         return np.clip(np.array(parts, np.float32), -1.0, 1.0)
 

@@ -21,6 +21,8 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
+from itertools import chain
 from math import exp, log10
 from typing import Any
 
@@ -31,7 +33,6 @@ import numpy.typing as npt
 from automotive_cosim.contracts import Action, ActionType, AlertKind
 from automotive_cosim.drives.families import family_named
 from automotive_cosim.drives.reading import Gathered, Reader
-from automotive_cosim.drives.result import result_of
 from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
@@ -40,6 +41,7 @@ from automotive_cosim.drives.watchers import READS
 from automotive_cosim.envs.base import SessionEnv, ended
 from automotive_cosim.envs.drive import settings_of
 from automotive_cosim.envs.numbers import hashed, number_of
+from automotive_cosim.episode.specification import SCREEN
 from automotive_cosim.errors import UserError
 from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.traffic.fork import Simulations
@@ -173,6 +175,7 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         *,
         scenario: str = "",
         minutes: float | None = None,
+        lean: bool = False,
         render_mode: str | None = None,
         simulations: Simulations | None = None,
     ) -> None:
@@ -182,6 +185,8 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
             families: ids of families, or one; ``automotive-cosim show drives`` lists them.
             scenario: where to drive instead of on the families' own roads.
             minutes: when a drive is over, if its script ends later.
+            lean: for training at several times the speed: SUMO in steps of a second, no screen is laid out, and
+                ``info`` holds no ``trace_sha256``. The traffic is not that of the same seed in steps of 0.1 s.
             render_mode: ``"rgb_array"`` or None.
             simulations: warm simulations; by default those that the environments of this process share.
 
@@ -192,7 +197,8 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         names = (families,) if isinstance(families, str) else tuple(families)
         if not names:
             raise UserError("a flat environment of drives requires at least one family")
-        settings = settings_of(minutes=minutes)
+        settings = settings_of(minutes=minutes, coarse=lean or None)
+        self._lean = lean
         self._specs = [DriveSpec(family_named(name).id, scenario=scenario, settings=settings) for name in names]
         super().__init__(simulations, render_mode)
         size = len(FEATURES) + sum(SLOTS) + len(READINGS) + len(AlertKind)
@@ -212,7 +218,7 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         self._end()
         drawn = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
         spec = replace(self._specs[int(self.np_random.integers(len(self._specs)))], seed=drawn)
-        self._episode = spec.begin(self._simulations, READS)
+        self._episode = spec.begin(self._simulations, READS - SCREEN if self._lean else READS, lean=self._lean)
         self._reader, self._utility = Reader(), 0.0
         self._shown_s: dict[AlertKind, float] = {}
         return self._numbers(), {}
@@ -242,7 +248,7 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         before, self._utility = self._utility, found.utility / (2 * LEAST_WORTH)
         info: dict[str, Any] = {}
         if session.end is not None:
-            info = {"score": result_of(session).value, "trace_sha256": session.trace_sha256}
+            info = {"score": found.value} | ({} if self._lean else {"trace_sha256": session.trace_sha256})
         return self._numbers(), self._utility - before, *ended(session), info
 
     def _numbers(self) -> npt.NDArray[np.float32]:
@@ -256,7 +262,7 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         )
         parts = [
             *(feature(known) for feature in FEATURES.values()),
-            *(slot for count, lines in zip(SLOTS, texts, strict=True) for slot in _words(lines, count)),
+            *chain.from_iterable(map(_words, texts, SLOTS)),
             *(float(name in known.changed) for name in READINGS),
             *(self._lately(kind, seen.time_s) for kind in AlertKind),
         ]
@@ -269,4 +275,9 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
 
 def _words(lines: Iterable[str], slots: int) -> list[float]:
     """Slots of the words of some lines, without numbers: these are features."""
-    return hashed(re.sub(r"\d+(\.\d+)?", " ", " ".join(lines)), slots)
+    return hashed(map(_without_numbers, lines), slots)
+
+
+@lru_cache(maxsize=4096)
+def _without_numbers(line: str) -> str:
+    return re.sub(r"\d+(\.\d+)?", " ", line)

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
+from functools import lru_cache
 from hashlib import blake2b
 
 import numpy as np
@@ -24,9 +26,17 @@ def number_of(given: object, count: int) -> int:
     return int(array.item())
 
 
-def hashed(text: str, count: int) -> list[float]:
-    """1 in each of ``count`` slots that a word of the text hashes into, 0 in the others."""
+def hashed(texts: Iterable[str], count: int) -> list[float]:
+    """1 in each of ``count`` slots that a word of the texts hashes into, 0 in the others."""
     slots = [0.0] * count
-    for word in re.findall(r"\w+", text.casefold()):
-        slots[int.from_bytes(blake2b(word.encode(), digest_size=4).digest()) % count] = 1.0
+    for text in texts:
+        for slot in _slots(text, count):
+            slots[slot] = 1.0
     return slots
+
+
+@lru_cache(maxsize=4096)
+def _slots(text: str, count: int) -> tuple[int, ...]:
+    """The slots of one text's words; cached, because most lines are the same from second to second."""
+    words = set(re.findall(r"\w+", text.casefold()))
+    return tuple(int.from_bytes(blake2b(word.encode(), digest_size=4).digest()) % count for word in words)

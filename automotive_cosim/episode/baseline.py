@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import takewhile
 
 from automotive_cosim.cosim.moment import Moment
 from automotive_cosim.cosim.simulation import TICK_S, CoSimulation
@@ -54,6 +55,11 @@ class Baseline:
             len(self._moments) - 1,
         )
         return tuple(self._moments[: last + 1])
+
+    def since(self, time_s: float) -> list[Moment]:
+        """Its moments so far that are later than that."""
+        later = takewhile(lambda moment: moment.time_s > time_s + ROUNDING_S, reversed(self._moments))
+        return list(later)[::-1]
 
     def follow(self, time_s: float) -> None:
         """Drives to that simulation time.

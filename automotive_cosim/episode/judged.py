@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from automotive_cosim.contracts import Action, ActionType, Feedback
@@ -30,21 +31,29 @@ class JudgedSession(Session, ABC):
         """The baseline run from the beginning to now."""
         return self.baseline.until(self.moments[-1].time_s)
 
+    @property
+    def _copies(self) -> Sequence[Baseline]:
+        """All drives that go on beside this one with nobody at the cockpit."""
+        return (self.baseline,)
+
     def _performed(self, action: Action) -> Feedback:
         if action.action_type is not ActionType.WAIT:
-            self.baseline.part()
+            for copy in self._copies:
+                copy.part()
         return super()._performed(action)
 
     def _advance(self, duration_s: float) -> None:
-        """Advances second by second together with the baseline run: both simulations run at the same time."""
+        """Advances second by second together with the copies: all simulations run at the same time."""
         left_s = duration_s
         while left_s > ROUNDING_S and self.world.moment.driving.end is None:
             tick_s = min(TICK_S, left_s)
-            self.baseline.prepare(tick_s)
-            self.baseline.start(self.world.moment.time_s + tick_s)
+            for copy in self._copies:
+                copy.prepare(tick_s)
+                copy.start(self.world.moment.time_s + tick_s)
             passed = self._heard(self.world.advance(tick_s))
-            self.baseline.see(passed)
-            self.baseline.follow(self.world.moment.time_s)
+            for copy in self._copies:
+                copy.see(passed)
+                copy.follow(self.world.moment.time_s)
             self._passed(passed)
             left_s -= tick_s
 

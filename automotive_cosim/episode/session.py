@@ -258,6 +258,7 @@ class Session:
             feedback,
             self.heard,
             self.setup.conditions.policy,
+            lean=self.setup.lean,
         )
         self.steps.append(
             trace.Step(len(self.steps), self.world.moment, self.elements, action, feedback, self.thought_s, said)
@@ -308,7 +309,7 @@ def beginning(
     told = shown(setup.conditions.geo, Geo(), drive[0] if drive else first)
     feedback = Feedback(FeedbackCode.NONE, "")
     elements, observation = _seen(
-        world, goal, setup.given, told, first.time_s, feedback, policy=setup.conditions.policy
+        world, goal, setup.given, told, first.time_s, feedback, policy=setup.conditions.policy, lean=setup.lean
     )
     return {
         "world": world,
@@ -333,8 +334,10 @@ def _seen(
     feedback: Feedback,
     said: tuple[str, ...] = (),
     policy: ToldPolicy = ToldPolicy.NONE,
+    *,
+    lean: bool = False,
 ) -> tuple[tuple[Element, ...], Observation]:
     """The elements on the screen, and the agent's observation."""
-    elements = world.cockpit.elements()
+    elements = () if lean else world.cockpit.elements()
     seen = observe(world, goal, begun_s, elements, feedback, channels, said, policy)
     return elements, told.observation(seen, world.moment)

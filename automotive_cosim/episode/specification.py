@@ -41,13 +41,18 @@ class SessionSetup:
     """Simulated seconds from the beginning after which it is cut off; None leaves that to ``max_steps``."""
     action_cost_s: float = ACTION_COST_S
     """Simulated seconds per action; a ``wait`` takes as many for each of its seconds."""
+    lean: bool = False
+    """Whether no screen is laid out, which saves time: nobody sees an element or can name one, and the trace has
+    none."""
 
     def __post_init__(self) -> None:
         """Refuses to blind the agent.
 
         Raises:
-            UserError: nothing of the screen is left that it can see.
+            UserError: nothing of the screen is left that it can see, or it wants a screen that is not laid out.
         """
+        if self.lean and self.channels & SCREEN:
+            raise UserError("a lean session has no screen; leave screenshot and elements out of the channels")
         if self.conditions.see is See.NOTHING and not self.conditions.interface.calls:
             raise UserError("--see nothing leaves an agent at the screen nothing; give --interface functions too")
         if self.channels & SCREEN and not self.given & SCREEN and not self.conditions.interface.calls:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
@@ -41,6 +41,10 @@ class Sumo:
     lateral_resolution_m: Annotated[float, Gt(0)] | None = None
     """Width of SUMO's sublanes, e.g. 0.8: vehicles then form a corridor for blue lights, at about twice the cost.
     None keeps each vehicle in the middle of its lane."""
+
+    def stepping(self, step_s: float) -> Sumo:
+        """The same in steps of another length; nobody acts more often than that."""
+        return replace(self, step_length_s=step_s, action_step_length_s=max(step_s, self.action_step_length_s))
 
 
 @dataclass(frozen=True, slots=True)

@@ -91,13 +91,13 @@ class GeoContext:
         posted = self.road.limit.posted_mps
         return None if posted is None else posted * KMH_PER_MPS
 
-    @property
+    @cached_property
     def default_limits(self) -> tuple[AppliedRule, ...]:
         """The legal limits for this road: several if the network does not determine which, none if no law is
         known."""
         return tuple(found for found in self._limits if found.rule.fixed)
 
-    @property
+    @cached_property
     def reduced_limits(self) -> tuple[AppliedRule, ...]:
         """Lower limits of this road under conditions of weather, light or hour, whether or not these hold now."""
         return tuple(found for found in self._limits if not found.rule.fixed)
@@ -107,12 +107,12 @@ class GeoContext:
         """The other topics, in the order of ``rules.TOPICS``."""
         return tuple(other_rules(self.place, self._facts))
 
-    @property
+    @cached_property
     def country(self) -> str:
         """ISO 3166-1 code; empty if unknown."""
         return self.place.country
 
-    @property
+    @cached_property
     def default_limit(self) -> AppliedRule | None:
         """The legal limit for this road if it is certain."""
         return self.default_limits[0] if len(self.default_limits) == 1 and self.default_limits[0].certain else None

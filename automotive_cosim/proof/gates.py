@@ -400,7 +400,7 @@ def random(ground: Ground) -> Wrong:
     wins = sum(run.success for run in runs)
     if wins <= RANDOM_WINS:
         return
-    declared = sum(run.actions[-1] is not None and run.actions[-1].goal_status is not None for run in runs)
+    declared = sum(any(act is not None and act.goal_status is not None for act in run.actions) for run in runs)
     right = sum(ground.declares(status).success for status in GoalStatus) / len(GoalStatus)
     most = max(RANDOM_WINS, by_chance(declared, right))
     if wins > most:
@@ -581,14 +581,16 @@ def _observed(episode: Episode, actions: list[Action]) -> list[str]:
 
 
 def road(ground: Ground, simulations: Simulations) -> Wrong:
-    """Parks the car; a task that requires a stationary car is skipped."""
+    """Parks the car, in traffic that moves in steps of a second: a parked car needs no finer one. A task that
+    requires a stationary car is skipped."""
     half = ground.task.half(ground.half_name)
     if half.start.parked or _stands(half.trigger.condition):
         return
     parked = replace(half, start=replace(half.start, parked=True))
     changed = {"first": parked} if ground.half_name == "first" else {"second": parked}
     try:
-        Ground.reach(replace(ground.task, **changed), ground.half_name, ground.seed, simulations).close()  # type: ignore[arg-type]
+        parked_task = replace(ground.task, **changed)  # type: ignore[arg-type]
+        Ground.reach(parked_task, ground.half_name, ground.seed, simulations, coarse=True).close()
     except TriggerNotReachedError:
         return
     yield "its trigger is reached by a parked car"

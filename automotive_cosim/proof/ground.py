@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 from automotive_cosim.agents.base import Agent, Privileged
 from automotive_cosim.agents.oracle import Oracle
+from automotive_cosim.cockpit.actions import perform
 from automotive_cosim.cockpit.state import CommandRecord
 from automotive_cosim.contracts import Action, ActionType, FeedbackCode, GoalStatus, Observation
 from automotive_cosim.cosim.moment import Moment
@@ -24,6 +25,7 @@ from automotive_cosim.tasking.moves import Move, Tap
 from automotive_cosim.tasking.task import Half, Task
 from automotive_cosim.tasking.verdict import Verdict
 from automotive_cosim.traffic.fork import Simulations
+from automotive_cosim.traffic.future import SharedFuture
 
 SETUP = SessionSetup(ALL - {Channel.SCREENSHOT})
 """Every channel except the screenshot, which shows what the elements list."""
@@ -105,20 +107,40 @@ class Ground:
     half_name: str
     seed: int
     episode: Episode
+    future: SharedFuture
+    """What all plays share until they ask the road for something."""
     _begun: list[int] = field(default_factory=list)
 
     @classmethod
     def reach(
-        cls, task: Task, half_name: str, seed: int, simulations: Simulations, scenario: str | None = None
+        cls,
+        task: Task,
+        half_name: str,
+        seed: int,
+        simulations: Simulations,
+        scenario: str | None = None,
+        *,
+        coarse: bool = False,
     ) -> Ground:
         """Drives up to the hand-over, in the task's own scenario or another.
+
+        Args:
+            task: the task.
+            half_name: which half.
+            seed: determines traffic, drive, phrasing and parameters.
+            simulations: warm traffic.
+            scenario: used instead of the task's own.
+            coarse: in steps of a second, which is quicker and other traffic.
 
         Raises:
             TriggerNotReachedError, TrafficError: see ``SituationFinder.find``.
         """
-        spec = EpisodeSpec(task.id, half_name, scenario, seed=seed)
-        hand_over = SituationFinder(spec, simulations, task=task).find(SeedSource(seed).next())
-        return cls(task, half_name, seed, Episode.take_over(hand_over, SETUP))
+        finder = SituationFinder(EpisodeSpec(task.id, half_name, scenario, seed=seed), simulations, task=task)
+        if coarse:
+            finder.scenario = replace(finder.scenario, sumo=finder.scenario.sumo.stepping(1.0))
+        hand_over = finder.find(SeedSource(seed).next())
+        episode = Episode.take_over(hand_over, SETUP)
+        return cls(task, half_name, seed, episode, episode.world.share_future())
 
     @property
     def instance(self) -> Instance:
@@ -169,6 +191,7 @@ class Ground:
     def close(self) -> None:
         """Ends the drive."""
         self.episode.close()
+        self.future.close()
 
 
 @dataclass(slots=True)
@@ -188,6 +211,12 @@ SENT = frozenset({"alerts", "requests", "horn", "washer"})
 """The commands of a cockpit that cannot be undone."""
 
 
+HARMLESS = frozenset({
+    ActionType.ANSWER, ActionType.ASK_DRIVER, ActionType.QUERY, ActionType.STATUS, ActionType.WAIT,
+})  # fmt: skip
+"""Actions that command nothing."""
+
+
 def is_lost(episode: Episode) -> bool:
     """Whether an episode can no longer succeed, because of lasting side effects or its deadline."""
     half = episode.instance.half
@@ -197,6 +226,18 @@ def is_lost(episode: Episode) -> bool:
     if now.time_s - start.time_s <= half.deadline.seconds:
         return False
     return half.declares is not GoalStatus.COMPLETE or not half.goal.holds(start, now, episode.moments)
+
+
+def would_lose(episode: Episode, action: Action) -> bool:
+    """Whether an action sends what cannot be undone and is not asked for, tried on a copy of the cockpit: so the
+    road need not be driven on."""
+    if action.action_type in HARMLESS:
+        return False
+    cockpit = episode.world.cockpit.copy()
+    before = cockpit.commands()
+    perform(action, cockpit, episode.elements)
+    after = cockpit.commands()
+    return any(after[key] != before[key] for key in SENT - episode.instance.half.allowed_writes)
 
 
 @dataclass(slots=True)
@@ -212,10 +253,13 @@ class _Stopping:
         if self.stops_when_lost and is_lost(self.episode):
             raise OutOfBudgetError("the episode can no longer succeed")
         try:
-            return self.actor.act(observation)
+            action = self.actor.act(observation)
         except ActionError as error:
             self.stuck = str(error)
             raise OutOfBudgetError(self.stuck) from error
+        if self.stops_when_lost and would_lose(self.episode, action):
+            raise OutOfBudgetError("the episode could no longer succeed")
+        return action
 
 
 def finish(episode: Episode, actor: Actor, *, stop_when_lost: bool = False) -> Played:

@@ -14,6 +14,7 @@ import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import asdict, dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from statistics import median
 from time import perf_counter
@@ -23,6 +24,7 @@ from automotive_cosim.contracts import Action, ActionType, Json
 from automotive_cosim.envs.cockpit import CockpitEnv
 from automotive_cosim.errors import SetupError, TrafficError
 from automotive_cosim.interface.observe import ALL, Channel
+from automotive_cosim.run.peers import NAMES, WAYS, PeerFigures
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
@@ -35,6 +37,8 @@ TASK = "hvac_fan_max"
 SECOND = Action(ActionType.WAIT, seconds=1)
 REPEATS = 3
 RESETS = 9
+PEER_S = 600
+"""Most simulated seconds over which peers are compared."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,25 +77,32 @@ class Figures:
     """What each additional environment on the same scenario adds."""
     bare_sumo_missing: str | None
     """Why there is no figure for bare SUMO."""
+    peers: tuple[PeerFigures, ...] = ()
+    """A libsumo loop, the driving states and sumo-rl in steps of a second, if they were asked for."""
 
     def as_json(self) -> Json:
         """The figures as a JSON object."""
         return asdict(self)
 
 
-def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
+def measure(scenario: str, steps: int, say: Callable[[str], None], *, peers: bool = False) -> Figures:
     """Measures everything, one after the other.
 
     Args:
         scenario: a name or a folder.
         steps: SUMO steps to measure.
         say: called with what is being measured.
+        peers: also compares with sumo-rl, over as many seconds as there are steps, at most ``PEER_S``.
 
     Raises:
-        UserError: the scenario is missing or invalid.
+        UserError: the scenario is missing or invalid, or sumo-rl is asked for and not installed.
         InfrastructureError: it does not run.
     """
     loaded = open_scenario(scenario)
+    compared: tuple[PeerFigures, ...] = ()
+    if peers:
+        say("sumo-rl, and the same in steps of a second")
+        compared = _peers(scenario, min(steps, PEER_S))
     say("bare sumo")
     bare, missing = _bare(loaded, steps)
     say("plain libsumo loop")
@@ -134,6 +145,7 @@ def measure(scenario: str, steps: int, say: Callable[[str], None]) -> Figures:
         rss_mb=one_mb,
         rss_per_extra_env_mb=extra_mb,
         bare_sumo_missing=missing,
+        peers=compared,
     )
 
 
@@ -178,13 +190,33 @@ def _plain(scenario: Scenario, steps: int) -> float:
         return float(median(_in_own_process("plain", job) for _ in range(REPEATS))) / steps
 
 
-def _in_own_process(module: str, *arguments: str) -> Any:
+def _in_own_process(module: str, *arguments: str, environment: Mapping[str, str] | None = None) -> Any:
     """What a module of this package prints, as JSON."""
     command = [sys.executable, "-m", f"{__package__}.{module}", *arguments]
-    done = subprocess.run(command, capture_output=True, check=False)
+    done = subprocess.run(command, capture_output=True, check=False, env=environment)
     if done.returncode != 0:
         raise TrafficError(f"the part {module!r} failed: " + done.stderr.decode("utf-8", "replace")[-300:])
     return json.loads(done.stdout.splitlines()[-1])
+
+
+def _peers(scenario: str, seconds: int) -> tuple[PeerFigures, ...]:
+    """The ways in turn, so that a busy machine slows all of them down; of each the fastest."""
+    if find_spec("sumo_rl") is None:
+        raise SetupError("this compares with sumo-rl, which is not installed: pip install sumo-rl eclipse-sumo")
+    environment = {**sumo_programs.environment(), "LIBSUMO_AS_TRACI": "1"}
+    found: dict[str, list[PeerFigures]] = {way: [] for way in WAYS}
+    for _ in range(REPEATS):
+        for way, figures in found.items():
+            told = _in_own_process("peers", way, scenario, str(seconds), environment=environment)
+            figures.append(PeerFigures(NAMES[way], **told))
+    return tuple(
+        PeerFigures(
+            NAMES[way],
+            round(min(each.s_per_second for each in figures), 7),
+            min((round(each.reset_s, 4) for each in figures if each.reset_s is not None), default=None),
+        )
+        for way, figures in found.items()
+    )
 
 
 @contextmanager

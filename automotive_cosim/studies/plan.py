@@ -185,11 +185,9 @@ def driven_at(
     incidents: Sequence[AnyIncident],
 ) -> Scenario:
     """A scenario as a study drives it; what is None stays the scenario's own, and incidents come on top."""
-    sumo = scenario.sumo
+    sumo = scenario.sumo.stepping(step_s)
     sumo = replace(
         sumo,
-        step_length_s=step_s,
-        action_step_length_s=max(step_s, sumo.action_step_length_s),
         background_rerouting=sumo.background_rerouting if share is None else share,
         scale=sumo.scale if scale is None else scale,
         warm_up_s=sumo.warm_up_s if warm_up_s is None else warm_up_s,

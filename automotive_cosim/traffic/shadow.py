@@ -26,6 +26,20 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.traffic.base import Advance, Event, Traffic
 
+Passed = tuple[DrivingState, tuple[Event, ...]]
+"""A step: its state, and what happened in it."""
+
+
+def by_step(passed: Advance) -> list[Passed]:
+    """What passed, step by step."""
+    events, steps = deque(passed.events), list[Passed]()
+    for state in passed.states:
+        happened = []
+        while events and events[0].time_s <= state.time_s:
+            happened.append(events.popleft())
+        steps.append((state, tuple(happened)))
+    return steps
+
 
 class SharedTraffic:
     """A drive with shadows; otherwise it behaves like the drive that it wraps."""
@@ -38,7 +52,7 @@ class SharedTraffic:
             step_s: length of its steps.
         """
         self._traffic = traffic
-        self._step_s = step_s
+        self.step_s = step_s
         self._shadows: WeakSet[Shadow] = WeakSet()
 
     @property
@@ -85,13 +99,13 @@ class SharedTraffic:
 
     def branch(self) -> SharedTraffic:
         """See ``Traffic.branch``; it has no shadows."""
-        return SharedTraffic(self._traffic.branch(), self._step_s)
+        return SharedTraffic(self._traffic.branch(), self.step_s)
 
     def shadow(self) -> SharedTraffic:
         """An exact copy from this instant, for somebody who makes no requests to the road."""
-        shadow = Shadow(self, self._step_s)
+        shadow = Shadow(self, self.step_s)
         self._shadows.add(shadow)
-        return SharedTraffic(shadow, self._step_s)
+        return SharedTraffic(shadow, self.step_s)
 
     def dismiss(self, shadow: Shadow) -> None:
         """Stops reporting to a shadow."""
@@ -110,7 +124,7 @@ class Shadow:
         self._step_s = step_s
         self._state = shared.state
         self._own: Traffic | None = None
-        self._ahead: deque[tuple[DrivingState, tuple[Event, ...]]] = deque()
+        self._ahead: deque[Passed] = deque()
         """Steps that the other has driven and this one has not."""
         self._heard: dict[tuple[float, float], tuple[RouteOption, ...]] = {}
         """Alternatives, by the time of the query and the age of the news."""
@@ -194,12 +208,7 @@ class Shadow:
 
     def see(self, passed: Advance) -> None:
         """Stores the other's states."""
-        events = deque(passed.events)
-        for state in passed.states:
-            happened = []
-            while events and events[0].time_s <= state.time_s:
-                happened.append(events.popleft())
-            self._ahead.append((state, tuple(happened)))
+        self._ahead.extend(by_step(passed))
 
     def hear(self, time_s: float, age_s: float, options: tuple[RouteOption, ...]) -> None:
         """Stores the other's alternatives."""

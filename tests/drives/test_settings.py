@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import pytest
 
+from automotive_cosim.drives.departure import scenario_of
 from automotive_cosim.drives.families import FAMILIES, family_named
 from automotive_cosim.drives.script import read_script, script_json
 from automotive_cosim.drives.settings import AS_SCRIPTED, DriveSettings
@@ -27,6 +28,18 @@ def test_settings_change_what_they_say_in_every_family() -> None:
         assert made.staged == drawn.staged
         assert read_script(script_json(made)) == made
         assert AS_SCRIPTED.applied(drawn) == drawn
+
+
+def test_a_coarse_drive_runs_in_steps_of_a_second_and_has_another_name() -> None:
+    drawn = family_named("grid_june").draw(0)
+    settings = DriveSettings(coarse=True)
+    made = settings.applied(drawn)
+    sumo = scenario_of(made).sumo
+    assert (sumo.step_length_s, sumo.action_step_length_s) == (1.0, 1.0)
+    assert scenario_of(drawn).sumo.step_length_s == 0.1
+    assert read_script(script_json(made)) == made
+    assert "coarse" not in script_json(drawn)
+    assert settings.tags == ("coarseon",)
 
 
 def test_rain_only_adds() -> None:

@@ -1,6 +1,7 @@
 """The flat view of drives: what reinforcement learning sees of a drive."""
 
 import warnings
+from contextlib import closing
 
 import gymnasium as gym
 import numpy as np
@@ -12,7 +13,9 @@ from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.watchers import READS, RulePerfect
 from automotive_cosim.envs.drive import DriveEnv
 from automotive_cosim.envs.flat_drive import ACTIONS, FEATURES, READINGS, SOON, FlatDriveEnv
+from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import ActionError, UnknownNameError, UserError
+from automotive_cosim.interface.observe import Channel
 
 SEED, MINUTES = 0, 3
 """A drive of which three minutes hold an event."""
@@ -91,6 +94,44 @@ def test_the_same_acts_give_the_trace_of_the_drive(flat, simulations):
         *_, told = env.step(ACTIONS[number])
     assert (told["trace_sha256"], told["score"]) == (info["trace_sha256"], info["score"])
     env.close()
+
+
+def test_a_lean_drive_has_no_screen_and_coarse_traffic_and_the_same_worth(simulations):
+    env = FlatDriveEnv("grid_june", minutes=MINUTES, lean=True, simulations=simulations)
+    actions, views, rewards, info = played(env, rules(env))
+    session = env.episode
+    judged = score(session.judgement, session.seconds)
+    assert info == {"score": judged.value}
+    assert judged.value >= 90
+    assert sum(rewards) == pytest.approx(judged.utility / (2 * LEAST_WORTH))
+    assert {step.elements for step in session.steps} == {()}
+    assert session.observation.elements is None
+    assert {len(moment.passed) for moment in session.moments[1:]} == {1}
+    trace = session.trace_sha256
+    again = played(env, iter(actions).__next__)
+    assert np.array_equal(again[1], views)
+    assert env.episode.trace_sha256 == trace
+    env.close()
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_lean_drives_in_processes_of_their_own_are_what_they_are_alone(simulations):
+    options = {"families": "grid_june", "minutes": 1.0, "lean": True}
+    envs = gym.make_vec("AutomotiveCosim/FlatDrive-v0", num_envs=2, vectorization_mode="async", **options)
+    acts = np.random.default_rng(0).integers(1, len(ACTIONS), size=(8, 2))
+    begun, _ = envs.reset(seed=[3, 4])
+    together = [begun, *(envs.step(each)[0] for each in acts)]
+    envs.close()
+    for number, seed in enumerate((3, 4)):
+        with closing(FlatDriveEnv(**options, simulations=simulations)) as env:
+            alone = [env.reset(seed=seed)[0], *(env.step(each[number])[0] for each in acts)]
+        assert np.array_equal(alone, [views[number] for views in together])
+
+
+def test_a_lean_session_has_no_screen_to_see():
+    with pytest.raises(UserError, match="a lean session has no screen"):
+        SessionSetup(frozenset({Channel.ELEMENTS}), lean=True)
 
 
 def test_what_disturbs_costs_at_once(flat):

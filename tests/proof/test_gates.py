@@ -341,7 +341,9 @@ def test_only_what_is_lost_is_given_up(ground):
 def test_a_side_effect_that_stays_ends_a_hopeless_run(ground):
     at = ground(SOUND)
     alerts = Script((Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED), Action(ActionType.WAIT, seconds=1)))
-    assert len(at.play(alerts, stop_when_lost=True).actions) == 1
+    assert at.play(alerts, stop_when_lost=True).actions == ()
+    harmless = Script((Action(ActionType.OPEN_APP, app_name="Media"), *alerts.actions))
+    assert len(at.play(harmless, stop_when_lost=True).actions) == 1
     assert len(at.play(alerts).actions) > 1
 
 

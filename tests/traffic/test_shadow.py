@@ -12,6 +12,7 @@ from automotive_cosim.errors import TrafficError
 from automotive_cosim.scenarios import Trip
 from automotive_cosim.traffic.base import EgoPlan, Event, Traffic
 from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.future import SharedFuture
 from automotive_cosim.traffic.shadow import SharedTraffic
 from tests.scripted.traffic import Scripted, Stretch
 
@@ -142,3 +143,52 @@ def test_what_a_shadow_cannot_do() -> None:
     assert shadow.advance(1.0).states, "what it was told it still knows"
     with pytest.raises(TrafficError, match="closed"):
         shadow.advance(1.0)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_drives_into_one_future_are_branches(depart: Depart, seed: int) -> None:
+    """In slices of any length, copies of copies, before and after requests of the one or the other."""
+    draw = random.Random(seed)
+    traffic = depart()
+    traffic.advance(2.0)
+    future = SharedFuture(traffic, STEP_S)
+    branches: list[Traffic] = [traffic.branch()]
+    drives: list[Traffic] = [future.drive()]
+    for _ in range(24):
+        which = draw.randrange(len(drives))
+        branch, drive = branches[which], drives[which]
+        what = draw.random()
+        if what < 0.15:
+            branches.append(branch.branch())
+            drives.append(drive.branch())
+        elif what < 0.3:
+            request = draw.choice(REQUESTS)
+            assert drive.request(request) == branch.request(request)
+        elif what < 0.4:
+            assert drive.alternatives() == branch.alternatives()
+        else:
+            duration_s = draw.choice((0.1, 0.3, 1.0, 8.0))
+            assert driven(drive, duration_s) == driven(branch, duration_s)
+    assert [drive.state for drive in drives] == [branch.state for branch in branches]
+    for each in (*drives, *branches):
+        each.close()
+    future.close()
+
+
+def test_a_future_is_driven_once(depart: Depart) -> None:
+    made: list[int] = []
+    traffic = depart()
+    future = SharedFuture(Counted(traffic, made), STEP_S)
+    whole = driven(future.drive(), 3.0, 400.0)
+    drives = [future.drive() for _ in range(5)]
+    assert [driven(drive, 403.0) for drive in drives] == [whole] * 5
+    assert whole[0][-1].end is not None
+    assert driven(drives[0], 1.0)[0] == [whole[0][-1]]
+    assert len(made) == 1
+    early = future.drive()
+    early.advance(1.0)
+    early.request(SlowDown(20.0))
+    assert len(made) == 2
+    assert driven(early, 5.0) != driven(future.drive(), 6.0)
+    early.close()
+    future.close()
