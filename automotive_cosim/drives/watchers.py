@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
 from automotive_cosim.drives.hands import Hands
 from automotive_cosim.drives.looks import LOOK_S, LOOKS, Concern, fog_lamps_lit
-from automotive_cosim.drives.reading import Reader
+from automotive_cosim.drives.reading import Gathered, Reader
 from automotive_cosim.interface.observe import Channel
 
 READS = frozenset({Channel.VEHICLE, Channel.CONTEXT, Channel.ELEMENTS})
@@ -47,8 +47,7 @@ class RulePerfect:
         unknown = next((label for label in fog_lamps_lit(known) if self._reader.can_ask(known, label)), None)
         if unknown is not None:
             return self._reader.ask(known, unknown)
-        concerns = [concern for look in LOOKS for concern in look(known)]
-        self._note(concerns, known.time_s)
+        concerns = self._concerns(known)
         for concern in concerns:
             if self._is_time(concern, known.time_s):
                 self._told[concern.key] = _Telling(known.time_s, concern.due)
@@ -62,6 +61,22 @@ class RulePerfect:
         if any(concern.now and self._is_untold(concern, known.time_s) for concern in concerns):
             return Action(ActionType.WAIT, seconds=1)
         return Action(ActionType.WAIT, seconds=LOOK_S) if concerns else Action(ActionType.WAIT)
+
+    def look_on(self, observation: Observation, given: Action) -> None:
+        """Notes what somebody else does in its stead: an alert tells of all its concerns that are there."""
+        known = self._reader.read(observation)
+        if known is None:
+            return
+        for concern in self._concerns(known):
+            is_told = given.action_type is ActionType.SHOW_ALERT and given.kind is concern.alert
+            if is_told and (concern.now or concern.is_there) and self._is_untold(concern, known.time_s):
+                self._told[concern.key] = _Telling(known.time_s, concern.now and concern.due)
+
+    def _concerns(self, known: Gathered) -> list[Concern]:
+        """What there is to tell or to watch, noted."""
+        concerns = [concern for look in LOOKS for concern in look(known)]
+        self._note(concerns, known.time_s)
+        return concerns
 
     def _note(self, concerns: Sequence[Concern], now_s: float) -> None:
         """Since when each lasts; one that was away for long is another concern."""

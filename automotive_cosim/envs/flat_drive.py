@@ -9,45 +9,48 @@
 | observation, float32 in [-1, 1] | number |
 |---|---|
 | ``FEATURES``: speed, limits, gaps, sight, grip, what is ahead, ... | ``len(FEATURES)`` |
-| words of the car's readings, of road and weather, of the law's lines, each hashed into slots | ``sum(SLOTS)`` |
+| words of road and weather, of the law's lines, each hashed into slots | ``sum(SLOTS)`` |
 | per reading: whether it is marked as changed | ``len(READINGS)`` |
-| per kind of alert: how lately it was shown, 1 just now, 0 never | ``len(AlertKind)`` |
+| per sign: for how long it has been as it is, 0 without it, 1 from ten minutes on | ``len(SIGNS)`` |
+| per sign: whether it is there and has not been told of | ``len(SIGNS)`` |
+| per kind of alert: how long ago it was shown, 0 just now, 1 from ten minutes on or never | ``len(AlertKind)`` |
 
-Everything is read from what an agent is given: its vehicle state, readings and local context.
+Everything is read from what an agent is given: its vehicle state, readings and local context, now and before.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import lru_cache
 from itertools import chain
-from math import exp, log10
-from typing import Any
+from math import inf, log1p, log10
+from typing import Any, NamedTuple
 
 import gymnasium as gym
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.contracts import Action, ActionType, AlertKind
+from automotive_cosim.contracts import Action, ActionType, AlertKind, Observation
 from automotive_cosim.drives.families import family_named
-from automotive_cosim.drives.reading import Gathered, Reader
+from automotive_cosim.drives.reading import NO_LINE, Gathered, Reader
 from automotive_cosim.drives.score import LEAST_WORTH, score
 from automotive_cosim.drives.session import DriveSession
 from automotive_cosim.drives.specification import DriveSpec
 from automotive_cosim.drives.wakes import DUE_S, LONGEST_S, WAKES
-from automotive_cosim.drives.watchers import READS
 from automotive_cosim.envs.base import SessionEnv, ended
 from automotive_cosim.envs.drive import settings_of
 from automotive_cosim.envs.numbers import hashed, number_of
-from automotive_cosim.episode.specification import SCREEN
 from automotive_cosim.errors import UserError
+from automotive_cosim.interface.observe import Channel
 from automotive_cosim.tasking.draws import SEED_LIMIT
 from automotive_cosim.traffic.fork import Simulations
 
-SLOTS = (64, 48, 64)
-"""Slots of the words of readings, of road and weather, and of the law's lines."""
+CHANNELS = frozenset({Channel.VEHICLE, Channel.CONTEXT})
+"""What the numbers are read from; no action of this view touches an element."""
+SLOTS = (48, 64)
+"""Slots of the words of road and weather, and of the law's lines."""
 READINGS = tuple(wake.name for wake in WAKES)
 """Names of the car's readings."""
 SOON_S = 2
@@ -60,10 +63,14 @@ ACTIONS = (
 """Actions by their number."""
 SOON = 1
 """Number of the short wait."""
-LATELY_S = 60.0
-"""Time constant of how lately an alert was shown: as long as the judge calls the same one a repeat."""
+LONG_S = 600.0
+"""Ages are told up to this, on a logarithmic scale: all alike, so that the age of what there is and the age of what
+was said of it can be compared."""
+METER_KMH = 3.0
+"""What a speed meter may show too much (OIML R 91)."""
 HORIZON_S = 30.0
 """What is further ahead than this at the speed driven is not told from what is not there."""
+_PEOPLE = "adult|elderly|child|baby"
 FASTEST_KMH = 130.0
 """Scale of speeds and limits."""
 Feature = Callable[[Gathered], float]
@@ -75,7 +82,15 @@ def _over(known: Gathered, limit_kmh: float | None) -> float:
 
 
 def _reduced(known: Gathered) -> float | None:
-    return min((line.kmh for line in known.reduced if line.kmh is not None), default=None)
+    """The lowest limit that the law states for weather, without those for a shorter sight."""
+    lines = (line for line in known.reduced if known.visibility_m < _under_m(line.text))
+    return min((line.kmh for line in lines if line.kmh is not None), default=None)
+
+
+def _under_m(rule: str) -> float:
+    """The sight below which a rule holds; infinite for a rule without one."""
+    found = re.search(r"visibility under (\d+) m", rule)
+    return inf if found is None else float(found[1])
 
 
 def _ahead(name: str) -> Feature:
@@ -98,24 +113,50 @@ def _share(name: str, full: float, pattern: str = r"(\d+\.?\d*)") -> Feature:
     return share
 
 
+def _limit_ahead_kmh(known: Gathered) -> float | None:
+    found = re.match(r"(\d+) km/h", known.words("limit ahead"))
+    return None if found is None else float(found[1])
+
+
+def _slowing(known: Gathered) -> float:
+    """The slowing down that a lower limit ahead asks for, of 2 m/s2."""
+    limit_kmh, away_m = _limit_ahead_kmh(known), known.away_m("limit ahead")
+    if limit_kmh is None or away_m is None or known.speed_kmh <= limit_kmh:
+        return 0.0
+    return (known.mps**2 - (limit_kmh / 3.6) ** 2) / (2 * max(away_m, 1.0)) / 2
+
+
 def _gap_s(known: Gathered) -> float:
-    """Nearness of the vehicle ahead: 1 at no gap, 0 from four seconds on."""
+    """The time gap to the vehicle ahead, four seconds from there on and without one."""
     gap_m = known.vehicle.leader_gap_m
-    return 0.0 if gap_m is None else 1 - min(gap_m / max(known.mps, 1.0), 4.0) / 4
+    return 4.0 if gap_m is None else min(gap_m / max(known.mps, 1.0), 4.0)
+
+
+def _lawful_gap_s(known: Gathered) -> float:
+    """The time gap that the law states, one second without such a rule."""
+    found = re.match(r"(\d+) s or more", known.law.get("Following distance", NO_LINE).text)
+    return 1.0 if found is None else float(found[1])
+
+
+def _closing_mps(known: Gathered) -> float:
+    """How fast the vehicle ahead comes nearer; 0 if it does not."""
+    gap_m, ttc_s = known.vehicle.leader_gap_m, known.vehicle.leader_time_to_collision_s
+    return 0.0 if gap_m is None or ttc_s is None or ttc_s <= 0 else gap_m / ttc_s
 
 
 def _braking(known: Gathered) -> float:
     """The braking that the vehicle ahead asks for, of 5 m/s2."""
-    gap_m, ttc_s = known.vehicle.leader_gap_m, known.vehicle.leader_time_to_collision_s
-    if gap_m is None or ttc_s is None or ttc_s <= 0:
-        return 0.0
-    return (gap_m / ttc_s) ** 2 / (2 * max(gap_m, 0.1)) / 5
+    return _closing_mps(known) ** 2 / (2 * max(known.vehicle.leader_gap_m or 0.0, 0.1)) / 5
 
 
 def _blind(known: Gathered) -> float:
     """The distance to stop as a share of what can be seen, half of it."""
     stopping_m = known.mps + known.mps**2 / (2 * max(known.grip, 0.1) * 9.81)
     return stopping_m / max(known.visibility_m, 1.0) / 2
+
+
+def _aboard(known: Gathered, pattern: str) -> int:
+    return len(re.findall(pattern, known.vehicle.aboard))
 
 
 def _softest(known: Gathered) -> float:
@@ -132,17 +173,24 @@ FEATURES: Mapping[str, Feature] = {
     "above what is likely": lambda known: _over(known, known.likely_kmh),
     "above the hours' limit": lambda known: _over(known, known.hours_kmh),
     "above a reduced limit": lambda known: _over(known, _reduced(known)),
+    "just above the limit": lambda known: _over(known, known.limit_kmh) * 5,
     "limit ahead": _share("limit ahead", FASTEST_KMH),
+    "above a limit ahead": lambda known: _over(known, _limit_ahead_kmh(known)),
+    "slowing that it asks for": _slowing,
     "nearness of a limit ahead": _ahead("limit ahead"),
     **{f"nearness of a {name}": _ahead(name) for name in DUE_S},
-    "nearness of the vehicle ahead": _gap_s,
+    "nearness of the vehicle ahead": lambda known: 1 - _gap_s(known) / 4,
+    "shortness of the gap": lambda known: _lawful_gap_s(known) - _gap_s(known),
     "braking that it asks for": _braking,
+    "speed at which it comes nearer": lambda known: _closing_mps(known) / 20,
+    "its speed": lambda known: (known.speed_kmh - 3.6 * _closing_mps(known)) / FASTEST_KMH,
+    "nearness of a collision": lambda known: 1 - min(known.vehicle.leader_time_to_collision_s or 16.0, 16.0) / 16,
     "blue light behind": _share("behind", 300, r"blue light (\d+) m"),
     "sun": lambda known: 0.0 if known.sun_deg is None else known.sun_deg / 30,
     "sight": lambda known: log10(max(known.visibility_m, 1.0)) / 4.5,
     "speed for the sight": _blind,
     "rain": lambda known: known.rain_mm_h / 10,
-    "grip": lambda known: known.grip,
+    "slipperiness": lambda known: 1 - known.grip,
     "in a tunnel": lambda known: float(known.in_tunnel),
     "low beam": lambda known: float(known.vehicle.is_low_beam_on),
     "high beam": lambda known: float(known.vehicle.is_high_beam_on),
@@ -152,12 +200,142 @@ FEATURES: Mapping[str, Feature] = {
     "unwiped": _share("rain", 50),
     "softest tyre": _softest,
     "driving time": _share("driving time", 4),
-    "range beyond the route": lambda known: (
-        1.0 if known.left_km is None else (known.vehicle.range_km - known.left_km) / 20
+    "shortness of the range": lambda known: (
+        0.0 if known.left_km is None else 1 - (known.vehicle.range_km - known.left_km) / 10
     ),
-    "not belted": lambda known: float("not belted" in known.vehicle.aboard),
+    "people not belted": lambda known: _aboard(known, f"(?:{_PEOPLE}), [^;]*not belted") / 2,
+    "animals and things not belted": lambda known: _aboard(known, "(?:pet|object), [^;]*not belted") / 2,
+    "who needs care": lambda known: _aboard(known, "child|baby|pet") / 2,
+    "adults": lambda known: _aboard(known, "adult|elderly") / 4,
+    "driver has left": lambda known: float("has left" in known.words("parked")),
+    "phone in the hand": lambda known: float("hand" in known.words("phone")),
+    "open trunk or charging flap": lambda known: float(re.search("trunk|flap", known.words("open")) is not None),
 }
 """Numbers by what they tell, each clipped to [-1, 1]."""
+
+
+class Sign(NamedTuple):
+    """Something that a driver may have to be told of."""
+
+    alert: AlertKind
+    """The alert that tells of it."""
+    seen: Callable[[Gathered], Hashable]
+    """What there is to see, None without it; it is another one when it changes."""
+
+
+def _reading(alert: AlertKind, name: str, pattern: str = ".+") -> Sign:
+    """A reading whose words have a pattern."""
+
+    def seen(known: Gathered) -> Hashable:
+        found = re.search(pattern, known.words(name))
+        return None if found is None else found[0]
+
+    return Sign(alert, seen)
+
+
+def _number(alert: AlertKind, name: str, above: float, what: Callable[[Gathered], Hashable] = bool) -> Sign:
+    """A feature above a value, of one thing or another."""
+    return Sign(alert, lambda known: what(known) if FEATURES[name](known) > above else None)
+
+
+SIGNS: Mapping[str, Sign] = {
+    "above the limit": _number(AlertKind.SPEED, "above the limit", METER_KMH / 30, lambda known: known.limit_kmh),
+    "above a reduced limit": _number(AlertKind.SPEED, "above a reduced limit", METER_KMH / 30, _reduced),
+    "limit ahead": Sign(AlertKind.SPEED, _limit_ahead_kmh),
+    "short gap": _number(AlertKind.DISTANCE, "shortness of the gap", 0.0),
+    "braking": _number(AlertKind.COLLISION, "braking that it asks for", 0.2),
+    "slow vehicle": _number(AlertKind.TRAFFIC, "speed at which it comes nearer", 0.15),
+    "jam": _reading(AlertKind.TRAFFIC, "jam", "in"),
+    "roadworks": _reading(AlertKind.TRAFFIC, "roadworks", "in"),
+    "breakdown": _reading(AlertKind.MOVE_OVER, "breakdown", "in"),
+    "tunnel": _reading(AlertKind.TUNNEL, "tunnel", "in"),
+    "school zone": _number(AlertKind.SCHOOL, "above the hours' limit", METER_KMH / 30),
+    "blue light": _reading(AlertKind.YIELD, "behind", "blue light"),
+    "speed for the sight": _number(AlertKind.VISIBILITY, "speed for the sight", 0.5),
+    "fogged": _reading(AlertKind.VISIBILITY, "glass", "by"),
+    "unwiped": _reading(AlertKind.VISIBILITY, "rain", "by"),
+    "low beam off": Sign(AlertKind.VISIBILITY, lambda known: not known.vehicle.is_low_beam_on or None),
+    "high beam on": _number(AlertKind.VISIBILITY, "high beam", 0.5),
+    "front fog lamps on": _number(AlertKind.VISIBILITY, "front fog lamps", 0.5),
+    "rear fog lamp on": _number(AlertKind.VISIBILITY, "rear fog lamp", 0.5),
+    "slippery": _number(AlertKind.SLIPPERY, "slipperiness", 0.3),
+    "not belted": _reading(AlertKind.SEAT_BELT, "belt", "[^;]*(?:adult|elderly|child|baby)[^;]*?(?=, and the|$)"),
+    "phone in the hand": _number(AlertKind.DISTRACTION, "phone in the hand", 0.5),
+    "driving time": _number(AlertKind.FATIGUE, "driving time", 0.45),
+    "open": _reading(AlertKind.VEHICLE, "open", "trunk|charging flap"),
+    "soft tyre": _number(AlertKind.VEHICLE, "softest tyre", 0.1),
+    "short range": _number(AlertKind.VEHICLE, "shortness of the range", 0.5),
+    "left": _number(AlertKind.VEHICLE, "driver has left", 0.5),
+}
+"""What an agent keeps in mind: for how long each has been there, and whether it has told of it."""
+GONE_S = 30.0
+"""What was away for longer has to be told of anew."""
+
+
+class DriveNumbers:
+    """The numbers of a drive's observations, in chronological order; it remembers what there was and was shown."""
+
+    size = len(FEATURES) + sum(SLOTS) + len(READINGS) + 2 * len(SIGNS) + len(AlertKind)
+
+    def __init__(self) -> None:
+        self._reader = Reader()
+        self._shown_s: dict[AlertKind, float] = {}
+        self._since: dict[str, tuple[Hashable, float]] = {}
+        self._told: dict[str, tuple[Hashable, float]] = {}
+
+    def show(self, kind: AlertKind, now_s: float) -> None:
+        """Notes an alert: it tells of all its signs that are there."""
+        self._shown_s[kind] = now_s
+        for name, (what, _) in self._since.items():
+            if SIGNS[name].alert is kind:
+                self._told[name] = what, now_s
+
+    def read(self, seen: Observation) -> npt.NDArray[np.float32]:
+        """The numbers of the next observation."""
+        known = self._reader.read(seen)
+        assert known is not None  # the channels are always given
+        texts = (
+            (known.road, known.weather),
+            (f"{label} {line.said}" for label, line in known.law.items()),
+        )
+        for name, sign in SIGNS.items():
+            self._see(name, sign.seen(known), known.time_s)
+        ages_s = (known.time_s - self._since[name][1] if name in self._since else 0.0 for name in SIGNS)
+        parts = [
+            *(feature(known) for feature in FEATURES.values()),
+            *chain.from_iterable(map(_words, texts, SLOTS)),
+            *(float(name in known.changed) for name in READINGS),
+            *map(_age, ages_s),
+            *(float(name in self._since and name not in self._told) for name in SIGNS),
+            *(_age(known.time_s - self._shown_s.get(kind, -LONG_S)) for kind in AlertKind),
+        ]
+        return np.clip(np.array(parts, np.float32), -1.0, 1.0)
+
+    def _see(self, name: str, what: Hashable, now_s: float) -> None:
+        """Notes a sign: since when it has been as it is, and whether it is still the one that was told of."""
+        told, told_s = self._told.get(name, (None, now_s))
+        if now_s - told_s > GONE_S or (what is not None and what != told):
+            self._told.pop(name, None)
+        elif what is not None:
+            self._told[name] = told, now_s
+        if what is None:
+            self._since.pop(name, None)
+        elif self._since.get(name, (None,))[0] != what:
+            self._since[name] = what, now_s
+
+
+def _age(seconds: float) -> float:
+    return min(log1p(max(seconds, 0.0)) / log1p(LONG_S), 1.0)
+
+
+def _words(lines: Iterable[str], slots: int) -> list[float]:
+    """Slots of the words of some lines, without numbers: these are features."""
+    return hashed(map(_without_numbers, lines), slots)
+
+
+@lru_cache(maxsize=4096)
+def _without_numbers(line: str) -> str:
+    return re.sub(r"\d+(\.\d+)?", " ", line)
 
 
 class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
@@ -201,8 +379,7 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         self._lean = lean
         self._specs = [DriveSpec(family_named(name).id, scenario=scenario, settings=settings) for name in names]
         super().__init__(simulations, render_mode)
-        size = len(FEATURES) + sum(SLOTS) + len(READINGS) + len(AlertKind)
-        self.observation_space = gym.spaces.Box(-1.0, 1.0, (size,), np.float32)
+        self.observation_space = gym.spaces.Box(-1.0, 1.0, (DriveNumbers.size,), np.float32)
         self.action_space = gym.spaces.Discrete(len(ACTIONS))
 
     def reset(
@@ -218,10 +395,9 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         self._end()
         drawn = int(self.np_random.integers(SEED_LIMIT)) if seed is None else seed
         spec = replace(self._specs[int(self.np_random.integers(len(self._specs)))], seed=drawn)
-        self._episode = spec.begin(self._simulations, READS - SCREEN if self._lean else READS, lean=self._lean)
-        self._reader, self._utility = Reader(), 0.0
-        self._shown_s: dict[AlertKind, float] = {}
-        return self._numbers(), {}
+        self._episode = spec.begin(self._simulations, CHANNELS, lean=self._lean)
+        self._numbers, self._utility = DriveNumbers(), 0.0
+        return self._numbers.read(self._episode.observation), {}
 
     def number(self, action: Action) -> int | None:
         """The number of an action; the nearest of the two for a wait, None if this view has none for it."""
@@ -242,42 +418,11 @@ class FlatDriveEnv(SessionEnv[npt.NDArray[np.float32], np.int64, DriveSession]):
         session = self._running()
         chosen = ACTIONS[number_of(action, len(ACTIONS))]
         if chosen.kind is not None:
-            self._shown_s[chosen.kind] = session.observation.time_s
+            self._numbers.show(chosen.kind, session.observation.time_s)
         session.step(chosen)
         found = score(session.judged_so_far(), session.seconds)
         before, self._utility = self._utility, found.utility / (2 * LEAST_WORTH)
         info: dict[str, Any] = {}
         if session.end is not None:
             info = {"score": found.value} | ({} if self._lean else {"trace_sha256": session.trace_sha256})
-        return self._numbers(), self._utility - before, *ended(session), info
-
-    def _numbers(self) -> npt.NDArray[np.float32]:
-        seen = self.episode.observation
-        known = self._reader.read(seen)
-        assert known is not None  # the channels are always given
-        texts = (
-            (f"{name} {words}" for name, words in known.noticed.items()),
-            (known.road, known.weather),
-            (f"{label} {line.said}" for label, line in known.law.items()),
-        )
-        parts = [
-            *(feature(known) for feature in FEATURES.values()),
-            *chain.from_iterable(map(_words, texts, SLOTS)),
-            *(float(name in known.changed) for name in READINGS),
-            *(self._lately(kind, seen.time_s) for kind in AlertKind),
-        ]
-        return np.clip(np.array(parts, np.float32), -1.0, 1.0)
-
-    def _lately(self, kind: AlertKind, now_s: float) -> float:
-        at_s = self._shown_s.get(kind)
-        return 0.0 if at_s is None else exp((at_s - now_s) / LATELY_S)
-
-
-def _words(lines: Iterable[str], slots: int) -> list[float]:
-    """Slots of the words of some lines, without numbers: these are features."""
-    return hashed(map(_without_numbers, lines), slots)
-
-
-@lru_cache(maxsize=4096)
-def _without_numbers(line: str) -> str:
-    return re.sub(r"\d+(\.\d+)?", " ", line)
+        return self._numbers.read(session.observation), self._utility - before, *ended(session), info

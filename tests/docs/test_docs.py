@@ -333,7 +333,7 @@ def test_pages_count_the_episodes_as_they_are(cli, line, words):
 
 
 def test_the_reference_of_observations_has_every_field_reading_action_and_number():
-    from automotive_cosim.contracts import AlertKind, Observation, VehicleState
+    from automotive_cosim.contracts import Observation, VehicleState
     from automotive_cosim.drives.wakes import WAKES
     from automotive_cosim.envs import flat, flat_drive
 
@@ -344,12 +344,15 @@ def test_the_reference_of_observations_has_every_field_reading_action_and_number
     assert [re.findall(r"^\| `(\w+)`", part, re.MULTILINE) for part in (seen, car)] == fields_of
     named = re.findall(r"`([^`]+)`", noticed.rpartition("does:")[2])
     assert named == [wake.name for wake in WAKES]
-    alerts = re.findall(r"(\d+)\s`(\w+)`", drives.partition("There are 256")[0])
+    alerts = re.findall(r"(\d+)\s`(\w+)`", drives.partition(" numbers: ")[0])
     acts = [(str(number), str(act.kind)) for number, act in enumerate(flat_drive.ACTIONS) if act.kind]
     assert alerts == acts
     assert re.findall(r"^\| ([^|`]+) \|", drives, re.MULTILINE)[1:] == list(flat_drive.FEATURES)
-    size = len(flat_drive.FEATURES) + sum(flat_drive.SLOTS) + len(WAKES) + len(AlertKind)
-    assert f"There are {size} numbers: the {len(flat_drive.FEATURES)} of" in drives
+    assert f"There are {flat_drive.DriveNumbers.size} numbers: the {len(flat_drive.FEATURES)} of" in drives
+    signs = re.findall(r"([a-z ]+) \(`(\w+)`\)", " ".join(drives.partition("The signs, ")[2].split()))
+    told = [(name, sign.alert.value) for name, sign in flat_drive.SIGNS.items()]
+    assert [(name.strip(), alert) for name, alert in signs] == told
+    assert f"for each of the {len(told)} signs" in " ".join(drives.split())
     assert f"There are {len(flat_drive.ACTIONS)} actions" in drives
     counts = [flat.GOAL_SLOTS, 3 * len(flat.CONTROLS), len(flat.NUMBERS), 1]
     assert re.findall(r"^\| (\d+) \|", tasks, re.MULTILINE) == list(map(str, counts))

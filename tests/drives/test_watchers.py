@@ -163,3 +163,12 @@ def test_it_warns_again_of_a_breakdown_if_the_car_stood_before_it_was_due() -> N
 def test_it_warns_once_of_a_breakdown_that_was_due_or_that_the_car_only_paused_before() -> None:
     assert warnings_of_breakdown([40.0] * 2 + [0.0] * 20 + [40.0] * 5) == [0]
     assert warnings_of_breakdown([32.0] * 2 + [0.0] * 5 + [32.0] * 5) == [0]
+
+
+@pytest.mark.parametrize(("kind", "again"), [(AlertKind.MOVE_OVER, False), (AlertKind.TRAFFIC, True), (None, True)])
+def test_it_does_not_tell_again_what_another_has_told(kind: AlertKind | None, again: bool) -> None:
+    watcher, now = RulePerfect(), seen(moment(0.0, kmh=50), ["breakdown: in 120 m"])
+    given = Action(ActionType.WAIT) if kind is None else Action(ActionType.SHOW_ALERT, kind=kind)
+    watcher.look_on(now, given)
+    act = watcher.act(seen(moment(2.0, kmh=50), ["breakdown: in 92 m"]))
+    assert (act.kind is AlertKind.MOVE_OVER) is again

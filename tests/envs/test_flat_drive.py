@@ -2,6 +2,7 @@
 
 import warnings
 from contextlib import closing
+from types import SimpleNamespace
 
 import gymnasium as gym
 import numpy as np
@@ -10,15 +11,33 @@ from gymnasium.utils.env_checker import check_env
 
 from automotive_cosim.contracts import Action, ActionType, AlertKind
 from automotive_cosim.drives.score import LEAST_WORTH, score
-from automotive_cosim.drives.watchers import READS, RulePerfect
+from automotive_cosim.drives.watchers import RulePerfect
 from automotive_cosim.envs.drive import DriveEnv
-from automotive_cosim.envs.flat_drive import ACTIONS, FEATURES, READINGS, SOON, FlatDriveEnv
+from automotive_cosim.envs.flat_drive import (
+    ACTIONS,
+    CHANNELS,
+    FEATURES,
+    READINGS,
+    SIGNS,
+    SOON,
+    DriveNumbers,
+    FlatDriveEnv,
+)
 from automotive_cosim.episode.specification import SessionSetup
 from automotive_cosim.errors import ActionError, UnknownNameError, UserError
 from automotive_cosim.interface.observe import Channel
 
 SEED, MINUTES = 0, 3
 """A drive of which three minutes hold an event."""
+CAR = {
+    "leader_gap_m": None,
+    "leader_time_to_collision_s": None,
+    "is_low_beam_on": True,
+    "is_high_beam_on": False,
+    "is_front_fog_on": False,
+    "is_rear_fog_on": False,
+    "aboard": "driver: adult, 75 kg, awake, belted",
+}
 
 
 @pytest.fixture
@@ -78,8 +97,8 @@ def test_the_rules_score_high_and_the_rewards_sum_to_the_judges_utility(flat):
     alerts = [number for number in actions if ACTIONS[number].kind is not None]
     assert alerts
     shown = len(AlertKind)
-    assert not views[0][-shown:].any()
-    assert views[-1][-shown:].any()
+    assert (views[0][-shown:] == 1).all()
+    assert not (views[-1][-shown:] == 1).all()
     assert len({view.tobytes() for view in views}) > len(views) / 2
 
 
@@ -87,7 +106,7 @@ def test_the_same_acts_give_the_trace_of_the_drive(flat, simulations):
     actions, _, _, info = played(flat, rules(flat))
     again = played(flat, iter(actions).__next__)
     assert again[3] == info
-    env = DriveEnv("grid_june", minutes=MINUTES, channels=READS, simulations=simulations)
+    env = DriveEnv("grid_june", minutes=MINUTES, channels=CHANNELS, simulations=simulations)
     env.reset(seed=SEED)
     told = {}
     for number in actions:
@@ -147,10 +166,37 @@ def test_an_alert_and_the_speed_are_seen(flat):
     tunnel = ACTIONS.index(Action(ActionType.SHOW_ALERT, kind=AlertKind.TUNNEL))
     seen, *_ = flat.step(np.int64(tunnel))
     lately = list(AlertKind).index(AlertKind.TUNNEL) - len(AlertKind)
-    assert 0.9 < seen[lately] <= 1
+    assert 0 <= seen[lately] < 0.3
     assert [flat.step(np.int64(SOON))[0][speed] for _ in range(3)] != [slower] * 3
-    marks = slice(-len(AlertKind) - len(READINGS), -len(AlertKind))
-    assert set(seen[marks]) <= {0.0, 1.0}
+    memory = len(AlertKind) + 2 * len(SIGNS)
+    assert set(seen[-memory - len(READINGS) : -memory]) <= {0.0, 1.0}
+
+
+def test_it_remembers_since_when_a_sign_is_there_and_whether_it_was_told_of():
+    numbers, at = DriveNumbers(), list(SIGNS).index("above the limit")
+
+    def read(time_s, kmh, limit):
+        context = f"Speed limit here: {limit} km/h (posted on a sign)"
+        car = SimpleNamespace(speed_kmh=kmh, noticed="", **CAR)
+        seen = numbers.read(SimpleNamespace(time_s=time_s, vehicle=car, context=context))
+        memory = seen[-len(AlertKind) - 2 * len(SIGNS) :]
+        return float(memory[at]), float(memory[len(SIGNS) + at])
+
+    assert read(0, 52, 50) == (0, 0)
+    assert read(2, 60, 50) == (0, 1)
+    age, untold = read(6, 60, 50)
+    assert age == pytest.approx(np.log1p(4) / np.log(601))
+    assert untold == 1
+    numbers.show(AlertKind.DISTANCE, 6)
+    assert read(7, 60, 50)[1] == 1
+    numbers.show(AlertKind.SPEED, 7)
+    assert read(8, 60, 50)[1] == 0
+    assert read(10, 49, 50) == (0, 0)
+    assert read(20, 60, 50) == (0, 0)
+    assert read(22, 60, 40)[1] == 1
+    numbers.show(AlertKind.SPEED, 22)
+    assert read(24, 30, 40) == (0, 0)
+    assert read(60, 60, 40) == (0, 1)
 
 
 def test_waits_have_the_nearest_number_and_others_none(flat):
