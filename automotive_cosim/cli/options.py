@@ -139,6 +139,8 @@ class DriveChanges:
     """End drives after this many simulated minutes."""
     errands: bool = False
     """On drives, people aboard also ask for things, near what safety asks for."""
+    coarse: bool = False
+    """On drives, SUMO runs in steps of a second: quicker, and the traffic is another."""
 
 
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.")]
