@@ -330,7 +330,8 @@ def between(scores: Sequence[Score], others: Sequence[Score] = ()) -> list[float
 
     def values(found: Sequence[Score]) -> np.ndarray:
         utility, worth = (np.array([getattr(each, name) for each in found]) for name in ("utility", "worth"))
-        return 50 * utility[drawn].sum(1) / np.maximum(worth[drawn].sum(1), 1e-9)
+        total = worth[drawn].sum(1)
+        return 50 * utility[drawn].sum(1) / np.where(total > 0, total, LEAST_WORTH * len(found))
 
     found = values(scores) - (values(others) if others else 0.0)
     return [float(value) for value in np.percentile(found, (2.5, 97.5))]
@@ -516,11 +517,11 @@ def plot(found: dict, path: Path) -> None:
     """Scores over steps, on known networks and on the unseen one, each with the interval of its drives."""
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(8, 3.8), layout="constrained")
+    figure = Figure(figsize=(8, 4), layout="constrained")
     for axes, key, title in zip(
         figure.subplots(1, 2, sharey=True),
         ("score", "unseen_network"),
-        ("unseen seeds", f"unseen network, {found['settings']['unseen']}"),
+        ("unseen seeds", f"unseen network ({found['settings']['unseen']})"),
         strict=True,
     ):
         for colour, (start, curve) in zip(("#1f6fb4", "#c2571a"), found["curves"].items(), strict=False):
@@ -528,18 +529,20 @@ def plot(found: dict, path: Path) -> None:
             low, high = zip(*(point[f"{key}_between"] for point in curve), strict=True)
             axes.fill_between(steps, low, high, color=colour, alpha=0.15, linewidth=0)
             axes.plot(steps, [point[key] for point in curve], "o-", color=colour, ms=4, label=f"PPO from {start}")
-        for name, grey in (("rules", "#222222"), ("table", "#777777"), ("silent", "#777777")):
-            value = found["baselines"][name][key]
-            axes.axhline(value, color=grey, linestyle="--", linewidth=1)
-            axes.annotate(f"{name}, {value:.0f}", (1, value), xycoords=("axes fraction", "data"), ha="right",
-                          va="bottom", fontsize=8, color=grey)  # fmt: skip
+        for name, colour, style in (
+            ("rules", "#222222", "-"),
+            ("table", "#2e7d32", "--"),
+            ("a row per alert", "#2e7d32", ":"),
+            ("silent", "#777777", "--"),
+        ):
+            axes.axhline(found["baselines"][name][key], color=colour, linestyle=style, linewidth=1.2, label=name)
         lowest = min((point[key] for curve in found["curves"].values() for point in curve), default=0.0)
-        axes.set(
-            xlabel="steps of PPO", title=title, ylim=(max(-110.0, min(-8.0, lowest - 10)), 110), xlim=(0, None)
-        )
+        least = max(-110.0, min(-8.0, lowest - 10))
+        axes.set(xlabel="steps of PPO", title=title, ylim=(least, 110), xlim=(0, None))
         axes.spines[["top", "right"]].set_visible(False)
     figure.axes[0].set_ylabel("score")
-    figure.axes[0].legend(fontsize=8, frameon=False, loc="lower left", bbox_to_anchor=(0, 0.1))
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, fontsize=8, frameon=False, loc="outside lower center", ncols=len(labels))
     figure.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None)
 
 
@@ -593,18 +596,18 @@ def main() -> None:
     parser.add_argument("--families", nargs="+", default=list(FAMILIES), help="families of drives to train on")
     parser.add_argument("--unseen", default=UNSEEN, help="a family on a network that is not trained on")
     parser.add_argument(
-        "--starts", nargs="+", choices=list(CHEAP), default=list(CHEAP), help="what PPO starts from"
+        "--starts", nargs="+", choices=list(CHEAP), default=["imitation"], help="what PPO starts from"
     )
-    parser.add_argument("--steps", type=int, default=20_480, help="of PPO, for each start")
+    parser.add_argument("--steps", type=int, default=12_288, help="of PPO, for each start")
     parser.add_argument("--rounds", type=int, default=2, help="measurements during PPO")
     parser.add_argument("--minutes", type=float, default=10.0, help="length of a drive")
-    parser.add_argument("--drives", type=int, default=8, help="drives of each family in a measurement")
+    parser.add_argument("--drives", type=int, default=5, help="drives of each family in a measurement")
     parser.add_argument(
-        "--few", type=int, default=2, help="the same for watchers whose scores are far from all others"
+        "--few", type=int, default=1, help="the same for watchers whose scores are far from all others"
     )
-    parser.add_argument("--demonstrations", type=int, default=40, help="drives of the watcher, of each family")
+    parser.add_argument("--demonstrations", type=int, default=33, help="drives of the watcher, of each family")
     parser.add_argument("--corrections", type=int, default=1, help="rounds of drives of the policy, corrected")
-    parser.add_argument("--corrected", type=int, default=10, help="drives of each family in such a round")
+    parser.add_argument("--corrected", type=int, default=5, help="drives of each family in such a round")
     parser.add_argument("--lessons", type=Path, help="keep the watcher's drives in this .npz, and read them again")
     parser.add_argument("--epochs", type=int, default=40, help="passes over the lessons")
     parser.add_argument("--workers", type=int, default=2, help="processes")
@@ -617,6 +620,8 @@ def main() -> None:
         help="film an unseen drive of --unseen: with this policy, as --out writes them, or with the last one",
     )
     chosen = parser.parse_args()
+    if chosen.film == "" and not chosen.out:
+        parser.error("--film of the last policy requires --out")
     if not chosen.film:
         learn(chosen)
     if chosen.film is not None:
