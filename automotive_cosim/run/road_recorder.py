@@ -142,6 +142,8 @@ class RoadWriter:
         self._raw = path.open("wb")
         mark_as_written(self._raw)
         self._file = gzip.GzipFile(fileobj=self._raw, mode="wb", compresslevel=6, filename="", mtime=0)
+        self._is_whole = True
+        """Whether no line was broken off."""
         self._begin_s = begin_s
         self._index = _ShapeIndex(traffic.shapes())
         self._roads = {road.edge_id: road.shape_m for road in traffic.network.roads}
@@ -236,8 +238,9 @@ class RoadWriter:
         self._line({"baseline": rows})
 
     def close(self) -> None:
-        """Completes the file."""
-        self._file.close()
+        """Completes the file; one with a line that was broken off ends before that line."""
+        if self._is_whole:
+            self._file.close()
         self._raw.close()
 
     def _seek(self, x_m: float, y_m: float) -> None:
@@ -265,7 +268,12 @@ class RoadWriter:
             )
 
     def _line(self, entry: Json) -> None:
-        self._file.write(json.dumps(entry, ensure_ascii=False, separators=(",", ":")).encode() + b"\n")
+        """Writes a line, unless one was broken off before, as by Ctrl-C: after it, nothing could be read."""
+        line = json.dumps(entry, ensure_ascii=False, separators=(",", ":")).encode() + b"\n"
+        if self._is_whole:
+            self._is_whole = False
+            self._file.write(line)
+            self._is_whole = True
 
 
 class _ShapeIndex:

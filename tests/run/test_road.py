@@ -88,6 +88,26 @@ def test_the_ground_is_told_once_as_it_comes_into_sight_and_read_in_its_drawing_
     assert read_record(tmp_path / ROAD).shapes.ground == (around, near, far)
 
 
+def test_a_line_that_was_broken_off_ends_the_record(tmp_path, monkeypatch):
+    network = RoadNetwork((), (0.0, 0.0, 1.0, 1.0), None, (0.0, 0.0), False)
+    traffic = SimpleNamespace(shapes=lambda: RoadShapes((), (), ()), network=network)
+    writer = RoadWriter(tmp_path / ROAD, traffic, {}, 0.0)
+    writer.baseline(())
+    writer._file.flush()
+    compressed = writer._file.compress
+
+    def broken_off(data):
+        compressed.compress(data)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(writer._file, "compress", SimpleNamespace(compress=broken_off))
+    with pytest.raises(KeyboardInterrupt):
+        writer.baseline(())
+    writer.baseline(())
+    writer.close()
+    assert [sorted(line) for line in read_road(tmp_path / ROAD)][1:] == [["baseline"]]
+
+
 def test_of_several_departures_only_the_last_is_kept(tmp_path):
     recorder = RoadRecorder(tmp_path, EpisodeSetup().about)
     drives = [[(1.0, "first"), (2.0, "first"), (3.0, "first")], [(2.0, "second"), (3.0, "second")]]
