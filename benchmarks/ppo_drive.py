@@ -7,9 +7,10 @@
 Without a GPU, install torch first, in its CPU build. The policy is a network of two small layers over the numbers
 of ``FlatDriveEnv``: two waits and one action per kind of alert. "imitation" first learns what the rule-perfect
 watcher would do, on the watcher's drives and on those of the policy as it is by then (DAgger: Ross et al. 2011),
-then PPO goes on; "scratch" is PPO alone, to which a nuisance at first costs a share of what the judge takes. Scores
-are the judge's in all figures: 0 for silence, 100 for the rule-perfect watcher. Training drives have seeds below
-1000, those of measurement 1000 and up; the network of ``--unseen`` is never trained on.
+then PPO goes on; "few drives" does so after a fifth of the watcher's drives; "scratch" is PPO alone, to which a
+nuisance at first costs a share of what the judge takes. Scores are the judge's in all figures: 0 for silence, 100
+for the rule-perfect watcher. Training drives have seeds below 1000, those of measurement 1000 and up; the network
+of ``--unseen`` is never trained on.
 """
 
 from __future__ import annotations
@@ -40,6 +41,8 @@ FAMILIES = ("grid_june", "beauce_june", "alpine_july")
 UNSEEN = "nordic_july"
 FIRST_UNSEEN = 1000
 LAYERS = (256, 128)
+FEWER = 5
+"""Of the watcher's drives, one in so many is imitated from few drives."""
 GIVEN = 0.3
 """The share of its alerts that a watcher gives which shows what to do; so it also shows what to do when late."""
 FORGOTTEN = 0.5
@@ -52,7 +55,7 @@ SHY = 4.0
 """An untrained policy prefers waits to alerts by this logit: otherwise nine of ten acts are alerts, nearly all of
 them cost, and it learns silence before it learns anything else."""
 GAMMA = 0.97
-CHEAP = {"scratch": 0.05, "imitation": 1.0}
+CHEAP = {"scratch": 0.05, "few drives": 1.0, "imitation": 1.0}
 """The share of a nuisance's cost at the beginning of training, by what it starts from. It rises to the whole cost
 by two thirds of the steps: whoever knows nothing yet and pays in full learns silence."""
 BEFORE, AFTER, FRAME_MS = 2, 3, 700
@@ -396,7 +399,7 @@ def learner(chosen: argparse.Namespace, start: str):
         partial(made_env, chosen.families, chosen.minutes), n_envs=chosen.workers, seed=chosen.seed,
         vec_env_cls=SubprocVecEnv, vec_env_kwargs={"start_method": "forkserver"},
     )  # fmt: skip
-    warm = start == "imitation"
+    warm = start != "scratch"
     model = PPO(
         "MlpPolicy", envs, n_steps=min(1024, chosen.steps // chosen.rounds) // chosen.workers, batch_size=128,
         n_epochs=6, gamma=GAMMA,
@@ -488,6 +491,8 @@ def schooled(chosen: argparse.Namespace, model, bench: Bench) -> None:
 def train(chosen: argparse.Namespace, start: str, bench: Bench) -> Iterator[tuple[dict, Network]]:
     """The learning curve: steps, scores and seconds, each with the policy."""
     model = learner(chosen, start)
+    if start == "few drives":
+        imitate(model, bench.lessons(None, 0, max(1, chosen.demonstrations // FEWER)), None, 2 * chosen.epochs)
     if start == "imitation":
         schooled(chosen, model, bench)
     charging = charges(CHEAP[start], chosen.steps * 2 / 3)
@@ -596,7 +601,7 @@ def main() -> None:
     parser.add_argument("--families", nargs="+", default=list(FAMILIES), help="families of drives to train on")
     parser.add_argument("--unseen", default=UNSEEN, help="a family on a network that is not trained on")
     parser.add_argument(
-        "--starts", nargs="+", choices=list(CHEAP), default=["imitation"], help="what PPO starts from"
+        "--starts", nargs="+", choices=list(CHEAP), default=["few drives", "imitation"], help="what PPO starts from"
     )
     parser.add_argument("--steps", type=int, default=12_288, help="of PPO, for each start")
     parser.add_argument("--rounds", type=int, default=2, help="measurements during PPO")
@@ -625,9 +630,14 @@ def main() -> None:
     if not chosen.film:
         learn(chosen)
     if chosen.film is not None:
-        policy = Path(chosen.film) if chosen.film else chosen.out / f"ppo_drive_{chosen.starts[-1]}.npz"
-        path = policy.with_suffix(".webp")
+        policy = Path(chosen.film) if chosen.film else chosen.out / f"{named(chosen.starts[-1])}.npz"
+        path = policy.with_suffix(".webp") if chosen.film else chosen.out / "ppo_drive.webp"
         film(Network.read(policy), chosen.unseen, FIRST_UNSEEN, chosen.minutes, path)
+
+
+def named(start: str) -> str:
+    """The file of a policy, by what it started from."""
+    return f"ppo_drive_{start.replace(' ', '_')}"
 
 
 def learn(chosen: argparse.Namespace) -> None:
@@ -646,7 +656,7 @@ def learn(chosen: argparse.Namespace) -> None:
             for point, policy in train(chosen, start, bench):
                 curve.append(point)
                 if chosen.out:
-                    policy.write(chosen.out / f"ppo_drive_{start}.npz")
+                    policy.write(chosen.out / f"{named(start)}.npz")
                     text = json.dumps(found, indent=1)
                     (chosen.out / "ppo_drive.json").write_text(text + "\n", encoding="utf-8")
                     plot(found, chosen.out / "ppo_drive.svg")

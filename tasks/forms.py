@@ -236,6 +236,7 @@ def unclear(
     scenarios: tuple[str, ...] = (),
     dimension: Dimension = Dimension.EXPLICIT_CONTROL,
     tags: frozenset[str] = frozenset(),
+    may_write: frozenset[str] = frozenset(),
 ) -> Task:
     """A wish that does not say enough: nobody but the driver knows the rest, or it can be found out.
 
@@ -261,6 +262,7 @@ def unclear(
         scenarios: where else it can run.
         dimension: explicit, or implicit if the words do not say what to do.
         tags: what else is true of it.
+        may_write: what may change besides what the goal writes.
     """
     asking = Half(
         untold,
@@ -269,7 +271,7 @@ def unclear(
         (*find, Consult(question), *moves),
         deadline,
         Basis.WISH,
-        may_write=LOOKS,
+        may_write=LOOKS | may_write,
         topics=(topic,),
     )
     seeing = replace(asking, start=told, goal=AllOf((NotAsked(), goal)), moves=(*look, *moves))

@@ -55,6 +55,7 @@ TASKS = (
         difference="content: the host leaves the choice among three lists to the driver, or names one",
         parameters={"which": LISTS, "who": FRIENDS},
         tags=frozenset({"preference"}),
+        may_write=frozenset({MEDIA.SELECTED.path}),  # a list may begin with any of its tracks
     ),
     unclear(
         "media_ask_what_to_turn_down",

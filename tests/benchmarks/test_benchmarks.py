@@ -74,7 +74,7 @@ CASES = {
     "ppo_drive": Smallest(
         (
             *("--families", "grid_june", "--unseen", "grid_january", "--minutes", "0.3", "--drives", "1"),
-            *("--starts", "imitation", "--demonstrations", "1", "--corrected", "1", "--epochs", "1", "--few", "1"),
+            *("--demonstrations", "1", "--corrected", "1", "--epochs", "1", "--few", "1"),
             *("--steps", "64", "--rounds", "1", "--workers", "1"),
         ),
         needs=("torch", "stable_baselines3"),
