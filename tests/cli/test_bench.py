@@ -1,8 +1,11 @@
 import json
+import subprocess
+import sys
 
 import pytest
 
 from automotive_cosim.errors import SetupError
+from automotive_cosim.run.peers import NAMES, WAYS, PeerFigures
 from automotive_cosim.traffic import sumo_programs
 
 KEYS = {
@@ -36,6 +39,27 @@ def test_without_the_sumo_program_the_reason_stands_in_its_place(monkeypatch):
 
     monkeypatch.setattr(sumo_programs, "program", missing)
     assert measure._bare(load("grid"), 100) == (None, "sumo is not installed")
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+@pytest.mark.parametrize("way", sorted(WAYS.keys() - {"sumo_rl"}))
+def test_each_way_to_run_the_traffic_is_timed(way):
+    command = [sys.executable, "-m", "automotive_cosim.run.peers", way, "grid", "20"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    told = PeerFigures(NAMES[way], **json.loads(done.stdout.splitlines()[-1]))
+    assert told.s_per_second > 0
+    assert (told.reset_s is not None) == (told.s_per_second_of_episodes is not None) == (way == "states_forked")
+
+
+def test_without_sumo_rl_it_says_what_is_missing(cli, monkeypatch):
+    from automotive_cosim.run import measure
+
+    monkeypatch.setattr(measure, "find_spec", lambda name: None)
+    ran = cli("bench", "--scenario", "grid", "--peers")
+    assert ran.code != 0
+    assert "pip install sumo-rl" in ran.err
+    assert "Traceback" not in ran.err
 
 
 @pytest.mark.parametrize("arguments", [["--scenario", "gird"], ["--steps", "1"]])
