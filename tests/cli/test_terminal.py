@@ -149,7 +149,6 @@ def test_a_reader_that_has_had_enough_is_no_failed_check() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(os.name != "posix", reason="names of files are text on Windows")
 @pytest.mark.parametrize("name", ["gr\u00f6\u00dfe", "gr\udcf6"])
 def test_a_name_of_any_letters_ends_without_a_traceback(tmp_path: Path, name: str) -> None:
     surroundings = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
