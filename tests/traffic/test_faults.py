@@ -20,8 +20,8 @@ from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import CAN_FORK, Forked, Simulations
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.options import Setup
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 
