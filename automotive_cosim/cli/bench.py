@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
-import typer
-
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson
+from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.run.settings import BenchSettings
 
 if TYPE_CHECKING:
@@ -31,7 +28,7 @@ def bench(as_json: AsJson = False, **settings: Any) -> None:
 
     figures = measure(told.scenario, told.steps, say, peers=told.peers)
     if as_json:
-        typer.echo(json.dumps(figures.as_json()))
+        print_json(figures.as_json())
     else:
         Console(highlight=False).print(_table(figures))
 
