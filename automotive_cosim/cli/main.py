@@ -10,6 +10,7 @@ import io
 import os
 import signal
 import sys
+from contextlib import nullcontext
 from typing import Annotated
 
 import typer
@@ -36,7 +37,7 @@ from automotive_cosim.cli import (
     study,
     tasks,
 )
-from automotive_cosim.cli.terminal import discard_output, open_streams, plain_streams
+from automotive_cosim.cli.terminal import discard_output, json_alone, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.plain import plain
 
@@ -110,7 +111,9 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run under an ASCII locale
             stream.reconfigure(errors="replace")
-    with plain_streams():
+    words = set(sys.argv)
+    asks_json = "--json" in words and not {"-h", "--help"} & words
+    with json_alone() if asks_json else nullcontext(), plain_streams():
         code = _run()
         if code == INTERRUPTED:
             print("error: interrupted", file=sys.stderr)
