@@ -125,7 +125,6 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
     (r"study (congestion|days|compare)", HELP, "takes minutes; tests/studies run them"),
-    (r"study suite", HELP, "needs a network of the reader's; tests/studies run one"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
     (r"run .*--model '?replay/", ("--force", "--out", "runs/last"), ""),
     (r"run .*--model", HELP, "asks a language model"),
