@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.rows import DriveRow
 
 
-@takes(RerouteSettings, but=("scenario", "warm_up_s"))
+@takes(RerouteSettings, but=("scenario", "warm_up_s", "limit_s", "agent_steps"))
 @takes(ExecutorSettings)
 def reroute(
     scenario: Annotated[
@@ -51,9 +51,6 @@ def reroute(
             show_default="scenario's",
         ),
     ] = None,
-    measure_gap: Annotated[
-        bool, typer.Option(help="Measure how far the demand's routes are from an equilibrium.")
-    ] = True,
     out: StudyFolder = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="Show the plan and exit.")] = False,
     as_json: AsJson = False,
@@ -91,14 +88,14 @@ def reroute(
         return
     with where:
         for plan, folder in zip(plans, folders, strict=True):
-            _run(console, plan, folder, where, measure_gap=measure_gap)
+            _run(console, plan, folder, where)
     if len(plans) == 1:
         _tell(console, read_study(folders[0]), as_json=as_json)
     else:
         _tell_all(console, [read_study(folder) for folder in folders], as_json=as_json)
 
 
-def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, measure_gap: bool) -> None:
+def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor) -> None:
     """Runs what is left of a study, and writes its report."""
     from automotive_cosim.run.store import read_rows
     from automotive_cosim.studies.batch import run_study
@@ -113,9 +110,8 @@ def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, me
 
     with driven(console, "drives", folder, said) as tell:
         run_study(plan, folder, executor=where, tell=tell)
-    if measure_gap:
-        for each in measure_demand(plan, folder):
-            console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
+    for each in measure_demand(plan, folder):
+        console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
     write_study(folder)
 
 
