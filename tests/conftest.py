@@ -35,6 +35,9 @@ from automotive_cosim.contracts import (
     VehicleState,
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
+from automotive_cosim.tasking.own_files import VARIABLE
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.tasks.folder import add_folder
 from automotive_cosim.traffic.fork import Simulations
 from tests import farm, preloaded
 from tests.farm import NO_LIBSUMO
@@ -322,6 +325,19 @@ def cli(
 
     yield run
     signal.signal(signal.SIGTERM, terminated)
+
+
+@pytest.fixture
+def own_tasks(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
+    """Adds a folder of tasks to the catalogue of this process; workers add that which ``--tasks-from`` names."""
+    shipped = dict(CATALOGUE._tasks)
+    monkeypatch.setenv(VARIABLE, "")
+
+    def add(folder: Path) -> None:
+        monkeypatch.setattr(CATALOGUE, "_tasks", {**shipped})
+        add_folder(CATALOGUE, folder)
+
+    return add
 
 
 @pytest.fixture

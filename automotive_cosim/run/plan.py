@@ -187,7 +187,7 @@ class Plan(EvaluationSettings):
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
         every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives(), *self._single())
-        jobs = {job.id: job for job in every if self.split in (BOTH, job.split)}
+        jobs = {job.id: job for job in every if self.split == BOTH or self.split == job.split}
         return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
 
     def episodes(self) -> tuple[EpisodeJob, ...]:
