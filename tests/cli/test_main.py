@@ -73,7 +73,7 @@ def test_a_task_is_shown_with_its_words_and_halves(task, cli):
 
 
 @pytest.mark.sumo
-@pytest.mark.parametrize("task", ["hvac_fan_max", "road_over_the_line"])
+@pytest.mark.parametrize("task", ["hvac_fan_max", "system_local_units"])
 def test_a_picture_shows_the_reference_solution(cli, tmp_path, task):
     path = tmp_path / "task.png"
     assert f"{path} shows the reference solution" in cli("tasks", "show", task, "--picture", str(path)).out

@@ -83,6 +83,12 @@ def folder(plan: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
+@pytest.fixture(scope="module")
+def page(folder: Path) -> str:
+    """The report of the study, with its tables and data."""
+    return write_study(folder).read_text(encoding="utf-8")
+
+
 def test_order_and_number_of_workers_do_not_show(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
     run_study(plan, tmp_path / "two", executor=Processes(2))
     assert steady(tmp_path / "two") == steady(folder)
@@ -199,8 +205,7 @@ def test_every_future_of_a_decision_says_its_way(folder: Path) -> None:
         assert len({(way[0], way[-1]) for way in decision.ways}) == 1, "from one place to the same destination"
 
 
-def test_the_report_is_whole(folder: Path) -> None:
-    page = write_study(folder).read_text(encoding="utf-8")
+def test_the_report_is_whole(folder: Path, page: str) -> None:
     assert "2 seeds have a decision" in page
     assert "no alternative" in page
     assert "one-shot" in page
@@ -227,8 +232,8 @@ def test_the_report_is_whole(folder: Path) -> None:
         assert (folder / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
 
 
+@pytest.mark.usefixtures("page")
 def test_every_future_is_a_row_and_the_package_describes_it(folder: Path) -> None:
-    write_study(folder)
     study = read_study(folder)
     decisions = [decision for row in study.rows for decision in row.decisions]
     with (folder / "futures.csv").open(encoding="utf-8", newline="") as file:
@@ -255,10 +260,10 @@ def test_every_future_is_a_row_and_the_package_describes_it(folder: Path) -> Non
             ]
 
 
+@pytest.mark.usefixtures("page")
 def test_parquet_holds_the_same(folder: Path) -> None:
     pd = pytest.importorskip("pandas")
     pytest.importorskip("pyarrow")
-    write_study(folder)
     for name in ("choices", "futures"):
         read = pd.read_parquet(folder / f"{name}.parquet")
         assert list(read.columns) == list(pd.read_csv(folder / f"{name}.csv").columns)
