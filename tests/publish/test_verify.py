@@ -8,13 +8,14 @@ import shutil
 from collections.abc import Iterator
 from copy import deepcopy
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.publish import archive
+from automotive_cosim.publish import archive, episodes
 from automotive_cosim.publish.contents import NAME, file_sha256, read_contents
 from automotive_cosim.publish.episodes import BY_REPLAY, ON_TRUST, check_trial
 from automotive_cosim.publish.problems import ROWS
@@ -47,10 +48,11 @@ def leaves(value: Any, steps: tuple = ()) -> Iterator[tuple]:
 
 
 def kinds(value: Any) -> list[tuple]:
-    """One path of each kind: entries of one list are alike, but the first and the last."""
+    """One path of each kind: entries of one list are alike, but the first and the last, and signals of one part of
+    the car."""
     found: dict[tuple, tuple] = {}
     for steps in leaves(value):
-        found[tuple("*" if isinstance(step, int) else step for step in steps)] = steps
+        found[tuple("*" if isinstance(step, int) else ".".join(step.split(".")[:3]) for step in steps)] = steps
     return list(found.values())
 
 
@@ -121,7 +123,7 @@ def test_every_field_of_every_file_is_covered_by_its_hash(unpacked):
             assert [problem.file for problem in hash_problems(unpacked, contents)] == [name], steps
             count += 1
         path.write_bytes(whole)
-    assert count > 400
+    assert count > 200
 
 
 def test_a_bundle_and_its_folder_are_found_in_order_by_several_workers_too(ran, packed):
@@ -143,7 +145,9 @@ def problems_of_row(folder, job, values):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("agent", ["asurada", "no-op"])
-def test_every_field_of_a_row_is_found_by_its_trace_plan_and_verdict_whatever_the_hashes_say(ran, agent):
+def test_every_field_of_a_row_is_found_by_trace_plan_and_verdict_whatever_the_hashes_say(ran, agent, monkeypatch):
+    for name in ("read_judged", "read_trace"):
+        monkeypatch.setattr(episodes, name, cache(getattr(episodes, name)))
     row = judged(ran, agent)
     job = job_of(ran, row)
     line = next(text for text in (ran / ROWS).read_text().splitlines() if json.loads(text)["id"] == row.id)
