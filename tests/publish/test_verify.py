@@ -111,9 +111,11 @@ def test_every_field_of_every_file_is_covered_by_its_hash(unpacked):
     assert not hash_problems(unpacked, contents)
     assert set(contents.files) == set(archive.members(unpacked)) - {NAME}
     count, row = 0, judged(unpacked)
+    for name in [name for name in contents.files if name.startswith("traces/") and row.id not in name]:
+        (unpacked / name).unlink()  # alike
+        del contents.files[name]
+    (unpacked / NAME).write_text(contents.text())
     for name in contents.files:
-        if name.startswith("traces/") and row.id not in name:
-            continue  # alike
         path = unpacked / name
         whole, (values, write) = path.read_bytes(), documents(path)
         for steps in kinds(values):
