@@ -37,7 +37,6 @@ from automotive_cosim.cli import (
     study,
     tasks,
 )
-from automotive_cosim.cli.former import refuse_former
 from automotive_cosim.cli.terminal import discard_output, json_alone, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.plain import plain
@@ -125,7 +124,6 @@ def main() -> None:
 def _run() -> int:
     """Runs a command; returns the exit code."""
     try:
-        refuse_former(sys.argv[1:])
         return app(standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):
