@@ -282,7 +282,6 @@ def test_the_pool_keeps_the_latest(grid: Scenario, hurried: EgoPlan) -> None:
     pool.close()
 
 
-@pytest.mark.skipif(not CAN_FORK, reason="elsewhere each place is warmed up")
 def test_of_one_traffic_at_two_places_the_pool_gives_up_one_first(grid: Scenario) -> None:
     elsewhere = open_scenario("grid", origin=(-3.7, 40.4))
     assert Setup(elsewhere).traffic != Setup(grid).traffic, "its weather is drawn"
