@@ -55,7 +55,7 @@ for _name in (
 typer.main.get_command = cache(typer.main.get_command)
 
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
-ABOUT_PROCESSES = {"test_faults", "test_confinement"}
+ABOUT_PROCESSES = {"test_faults", "test_confinement", "test_vetting"}
 """Modules whose simulations start as programs start them."""
 _forbidden = False
 
@@ -72,8 +72,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     for item in items:
-        if "sumo" in getattr(item, "fixturenames", ()):
-            item.add_marker("sumo")
+        for name in {"sumo", "proof"}.intersection(getattr(item, "fixturenames", ())):
+            item.add_marker(name)
     part, parts = map(int, (config.option.prove or "0/1").split("/"))
     if not 0 <= part <= parts:
         raise pytest.UsageError(
@@ -157,6 +157,11 @@ sys.addaudithook(_refuse_sumo)
 @pytest.fixture(scope="session")
 def sumo() -> None:
     """Asked for by every fixture that starts SUMO, or returns what does."""
+
+
+@pytest.fixture(scope="session")
+def proof() -> None:
+    """Asked for by every fixture that serves proofs, whose tests it marks."""
 
 
 PARIS = "Place: Paris, France\nSpeed limit here: 50 km/h (posted on Avenue Foch)"

@@ -90,7 +90,6 @@ def test_a_terminal_that_knows_ascii_alone_gets_the_whole_record(cli, tmp_path, 
     assert (tmp_path / "out" / "summary.html").is_file()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(program, tmp_path):
     (tmp_path / "gymnasium.py").write_text(
         "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n"
@@ -128,7 +127,6 @@ def long_run(program, tmp_path, until):
     return process
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 @pytest.mark.parametrize(
     ("send", "what", "code"),
     [(os.killpg, signal.SIGINT, 130), (os.kill, signal.SIGTERM, 143)],

@@ -8,6 +8,7 @@ import re
 import shlex
 import shutil
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import fields
@@ -24,6 +25,7 @@ from automotive_cosim.interface.functions import functions
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
+from docs import tables
 from tests.laws import over
 
 TOP = Path(__file__).parents[2]
@@ -33,6 +35,11 @@ LOOKED_UP = {"glossary", "api", "CONTRIBUTING"}
 """Pages beside docs/reference that nobody reads from beginning to end."""
 MOST_WORDS = 1_000
 PROGRAM = re.compile(r"^(?:\S*/)?automotive-cosim\b")
+
+
+LINKED = [*TOP.glob("*.md"), *PAGES, *TOP.glob("[!.]*/README.md"), *TOP.glob("sumo_scenarios/*/*.md")]
+"""Every page that a reader of a checkout opens."""
+LINK = re.compile(r"\]\(([^)\s]+)\)|(?:href|src)=\"([^\"]+)\"")
 
 
 def blocks(page: Path) -> Iterator[tuple[str, str]]:
@@ -104,6 +111,43 @@ def test_a_guide_can_be_read_in_five_minutes(page):
     assert len(prose.split()) <= MOST_WORDS, "move what is looked up to docs/reference"
 
 
+def without_code(page):
+    return re.sub(r"^( *)```.*?^\1```|^    [^\n]*$", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)
+
+
+def anchors(page):
+    """The anchors of a page's headings, as code hosts and the site name them."""
+    named: Counter[str] = Counter()
+    for title in re.findall(r"^#+ (.+)$", without_code(page), re.MULTILINE):
+        words = re.sub(r"\]\(.*?\)|[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
+        named[words] += 1
+        yield words if named[words] == 1 else f"{words}-{named[words] - 1}"
+
+
+@over(dict.fromkeys(LINKED))
+def test_every_link_leads_to_a_page_and_a_heading_of_the_checkout(page):
+    assert set(re.findall(r"^```\{(.+)\}", page.read_text("utf-8"), re.MULTILINE)) <= {"eval-rst"}
+    text = re.sub(r"`[^`\n]*`", "", without_code(page))
+    links = {link for found in LINK.findall(text) for link in found if link and "://" not in link}
+    for link in links:
+        path, _, anchor = link.partition("#")
+        target = page.parent / path if path else page
+        assert target.exists(), link
+        assert not {"_made", "_site"} & set(target.parts), f"{link} exists only after `make docs`"
+        assert not anchor or anchor in anchors(target), link
+
+
+@pytest.mark.slow
+@over(tables.pages())
+def test_the_tables_of_a_page_are_what_the_code_says(page):
+    assert not tables.stale(page), "`python -m docs.tables` makes them anew"
+
+
+def test_every_table_stands_on_a_page():
+    placed = [mark[2] for page in tables.pages() for mark in tables.MARKED.finditer(page.read_text("utf-8"))]
+    assert sorted(placed) == sorted(tables.MADE)
+
+
 # --- run -------------------------------------------------------------------------------------------------
 
 GRID = ("--scenario", "grid", "--task", "hvac_fan_max")
@@ -120,30 +164,15 @@ TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
     (r"eval .*--executor ray", NOT_RUN, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", NOT_RUN, "needs the scenario of others"),
-    (r"study (congestion|days|compare|suite)", NOT_RUN, "takes minutes; tests/studies run them"),
+    (r"study (congestion|days|compare)", NOT_RUN, "takes minutes; tests/studies run them"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
     (r"run .*(--model '?replay/|--agent (my_agent:|caller --interface functions --see))", LAST, ""),
     (r"run --agent my_agents:", (*GRID, *LAST), "takes ten seconds in its own scenario"),
     (r"run .*--task my_seat_warmer", LAST, ""),
     (r"run", NOT_RUN, "needs what only the reader has, or takes ten seconds in its own scenario; tests/cli run it"),
     (r"tasks validate", ("--gates", "start", "--seeds", "0"), "all gates take minutes; tests/proof tries them"),
-    (r"drive [a-z]", NOT_RUN, "takes a minute; tests/drives drives"),
-    (
-        r"report runs/(hunt|drives)",
-        NOT_RUN,
-        "tests/safety and tests/run/test_drives.py report on such",
-    ),
-    (r"publish .*(runs/board|NAME)", NOT_RUN, "needs the leaderboard's evaluation; `make docs` checks its bundles"),
-    (r"(serve|mcp|a2a)", NOT_RUN, "serves until it is stopped; tests/serve and tests/doors ask it"),
-    (r"bench", NOT_RUN, "measures for a minute; tests/cli/test_bench.py runs it"),
-    (r"scenarios (check|download)", NOT_RUN, "takes minutes or the network; tests/osm has them"),
-    (
-        r"scenarios (calibrate|equilibrate)",
-        NOT_RUN,
-        "take minutes; tests/calibration and tests/scenarios try them",
-    ),
-    (r"scenarios import (pass|city|paris)", NOT_RUN, "needs a map of the reader's; test_examples.py imports one"),
-    (r"scenarios import", NOT_RUN, "test_examples.py imports the hamlet"),
+    (r"study reroute --scenario resco", NOT_RUN, "needs the scenario of others"),
+    (r"study (congestion|days|compare)", NOT_RUN, "takes minutes; tests/studies run them"),
     (r"replay", AS_IT_IS, ""),
     (r"", AS_IT_IS, ""),
 ]
@@ -153,6 +182,7 @@ ELSEWHERE = {"from inspect_ai": "inspect_ai"}
 FOLDERS = r"\b(runs/(mine|first|before|after|jam))\b"
 EXCERPTS = {
     "Skill(": "an excerpt of models/skills.py",
+    '"""pip install openai-agents': "needs a package of others; test_frameworks.py runs the same file",
     "import minari": "needs Minari, and a table of demonstrations",
     "from android_world": "needs a checkout of AndroidWorld; tests/agents/test_androidworld.py has one",
 }

@@ -38,7 +38,6 @@ echo "$PWD" "$@" >> "$CALLS"
 case $1 in eval) exit $EVAL;; compare) exit $COMPARE;; esac
 """
 """Notes what it is asked for, in the place of the program."""
-bash = pytest.mark.skipif(os.name == "nt", reason="a script for bash")
 
 
 @pytest.fixture
@@ -75,7 +74,6 @@ def script(tmp_path):
     return run
 
 
-@bash
 def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(script, cli, tmp_path, monkeypatch):
     def performed(out, *words):
         """The exit codes of what the script asks for, which it is told, and its own; and the reports."""
@@ -110,7 +108,6 @@ def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(sc
     assert "ValueError: no config" in error.get("message")
 
 
-@bash
 def test_a_refused_second_start_names_the_scripts_argument_and_keeps_the_reports(script, tmp_path):
     (tmp_path / "out").mkdir()
     kept = [tmp_path / "out" / name for name in ("compare.xml", "compare.md")]
@@ -130,7 +127,6 @@ def test_the_examples_seeds_say_each_word_that_its_agent_knows():
     assert all(any([each for each in known if each in goal] == [word] for goal in said) for word in known)
 
 
-@bash
 @pytest.mark.parametrize(("code", "ends", "is_kept"), [(0, 0, True), (1, 0, True), (2, 0, False), (3, 3, True)])
 def test_the_action_takes_a_base_that_cannot_be_evaluated_for_no_baseline(tmp_path, code, ends, is_kept):
     steps = yaml.safe_load(SCRIPT.with_name("action.yml").read_text(encoding="utf-8"))["runs"]["steps"]
@@ -152,7 +148,6 @@ def test_the_action_takes_a_base_that_cannot_be_evaluated_for_no_baseline(tmp_pa
     assert (tmp_path / "base").is_dir() == is_kept
 
 
-@bash
 def test_the_script_says_how_it_is_called(script):
     ran, calls = script("checkout")
     assert (ran.returncode, calls) == (2, [])

@@ -20,7 +20,7 @@ from automotive_cosim.models import ModelReply
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.outside import LONGEST_REFUSAL, OutsideAgent, check_agent
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")]
+pytestmark = pytest.mark.slow
 
 AGENTS = '''
 import gc, json, os, pathlib, signal, subprocess, sys, time
@@ -236,18 +236,6 @@ def test_an_agent_that_counts_what_it_heard_has_nothing_to_count(outside):
     assert said == ["[1, 'x', 'x']"] * 3
 
 
-@pytest.mark.slow
-def test_where_nothing_is_forked_each_episode_has_a_new_process_too(outside, fork_server, monkeypatch):
-    fork_server.close()
-    monkeypatch.setattr("automotive_cosim.run.fork_server.CAN_FORK", False)
-    for _ in range(2):
-        agent = outside("Counts", "Watch my speed")
-        assert agent.act(None).text == "[1, 'x', 'x']"
-        agent.close()
-    with pytest.raises(AgentError, match="closed its connection"):
-        outside("Ends", "exit").act(None)
-
-
 def test_an_agent_that_looks_everywhere_finds_nothing_of_the_job(outside, mine, observation, monkeypatch):
     secret = "hvac_fan_max-first-s17"  # what names a job, in every place where a worker may have it
     monkeypatch.setenv("AUTOMOTIVE_COSIM_JOB", secret)
@@ -451,7 +439,6 @@ def test_what_an_agent_leaves_in_its_folder_is_removed_however_deep(outside, unt
     assert Path("/etc").is_dir()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
 def test_a_link_in_the_place_of_the_folder_leads_nowhere(tmp_path):
     (tmp_path / "kept").mkdir()
     (tmp_path / "kept" / "file").touch()
