@@ -20,7 +20,7 @@ from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.traffic import remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 
@@ -78,17 +78,12 @@ def test_a_killed_drive_is_named_and_the_next_departs(forked: Forked, hurried: E
 
 
 @linux
-@pytest.mark.parametrize("by_replay", [False, True])
-def test_a_warm_process_that_died_between_drives_costs_a_reload(
-    grid: Scenario, hurried: EgoPlan, by_replay: bool
-) -> None:
+def test_a_warm_process_that_died_between_drives_costs_a_reload(grid: Scenario, hurried: EgoPlan) -> None:
     short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
-    with closing(Forked(short, seed=1, by_replay=by_replay)) as simulation:
+    with closing(Forked(short, seed=1)) as simulation:
         with closing(simulation.depart(hurried)) as traffic:
             expected = traffic.advance(5.0)
         for _ in range(2):
-            if simulation._source._warm is None:  # by replay, a drive takes it
-                simulation._source._warm = simulation._source._ready()
             os.kill(simulation._source._warm.pid, signal.SIGKILL)
             assert gone([simulation._source._warm.pid])
             assert simulation.memory_bytes == 0
@@ -253,6 +248,12 @@ def test_no_process_outlives_the_program(
     assert gone(pids)
 
 
+def test_where_nothing_can_be_forked_it_says_what_to_use(grid: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "darwin")
+    with pytest.raises(SetupError, match="on Windows use WSL, on macOS a container"):
+        Forked(grid)
+
+
 def test_a_process_holds_one_simulation_of_its_own(grid: Scenario, hurried: EgoPlan) -> None:
     simulation = InProcess(grid, seed=1)
     with pytest.raises(TrafficError, match=r"fork\.Forked"):
@@ -290,12 +291,19 @@ def test_a_function_that_sumo_lost_is_named(monkeypatch: pytest.MonkeyPatch) -> 
         sumo.load_library()
 
 
-def test_missing_system_libraries_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "libsumo.py").write_text("raise ImportError('libGL.so.1: cannot open shared object file')")
+def test_missing_system_libraries_are_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """And what the library prints when it is imported is not shown."""
+    library = (
+        "print('Warning! pyarrow is installed')\nraise ImportError('libGL.so.1: cannot open shared object file')"
+    )
+    (tmp_path / "libsumo.py").write_text(library)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "libsumo", raising=False)
     with pytest.raises(SetupError, match=r"libGL\.so\.1.*apt-get install libgl1 libx11-6"):
         sumo.load_library()
+    assert capfd.readouterr() == ("", "")
 
 
 def test_the_callers_environment_stays(grid: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -30,8 +30,8 @@ from automotive_cosim.scenarios import Scenario, Trip, load
 from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic
 from automotive_cosim.traffic.congestion import SAMPLE_PERIOD_S
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.sumo import load_library
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 
