@@ -1,0 +1,173 @@
+"""What a run makes of a ``.sumocfg``, beside what ``sumo -c`` makes of it with the same seed.
+
+``python -m tests.scenarios.beside_sumo`` writes the table of ``docs/studies/beside-sumo.md``.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import tempfile
+from collections.abc import Iterator
+from contextlib import closing
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from automotive_cosim import scenarios
+from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.studies.congestion.outputs import read_flows
+from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.options import FLOW_ATTRIBUTES, Configuration, read_configuration
+from automotive_cosim.traffic.sumo_programs import environment, program, run
+
+PAGE = Path(__file__).parents[2] / "docs" / "studies" / "beside-sumo.md"
+OTHERS = {
+    "ingolstadt1": "ingolstadt/ingolstadt1/ingolstadt1.sumocfg",
+    "ingolstadt7": "ingolstadt/ingolstadt7/ingolstadt7.sumocfg",
+    "bologna": "bologna/acosta/run.sumocfg",
+}
+CLASSES = ["passenger", "private", "hov", "evehicle", "taxi", "delivery", "truck", "trailer", "bus", "coach"]
+CLASSES += ["motorcycle", "moped", "bicycle", "emergency", "authority", "army", "vip", "custom1"]
+"""Classes of vehicle that drive on roads."""
+
+INTERVAL_S = 60.0
+FIGURES = ("vehicle-km", "vehicle-h", "h lost", "h standing")
+
+
+@dataclass(frozen=True, slots=True)
+class Beside:
+    """The same minutes in a run without an ego, and in SUMO."""
+
+    trips: tuple[dict[str, str], dict[str, str]]
+    """What tripinfo says of each vehicle that has arrived: ours, SUMO's."""
+    edges: tuple[list[str], list[str]]
+    """What edgeData says, line by line."""
+    figures: tuple[tuple[float, ...], tuple[float, ...]]
+    """``FIGURES`` over all edges, by the program that reads our outputs."""
+
+    @property
+    def differing(self) -> list[str]:
+        """Vehicles that did not drive alike."""
+        ours, sumos = self.trips
+        return sorted(each for each in ours.keys() | sumos.keys() if ours.get(each) != sumos.get(each))
+
+
+def beside(
+    config: Path, warm_s: float = 120.0, drive_s: float = 240.0, *, seed: int = 1, with_trips: bool = True
+) -> Beside:
+    """Runs both, from the configuration's begin; the edges count after ``warm_s``."""
+    scenario = open_scenario(config)
+    scenario = replace(scenario, sumo=replace(scenario.sumo, warm_up_s=warm_s))
+    given = read_configuration(scenario.config)
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = Path(scratch)
+        edges, trips = folder / "edges", folder / "trips"
+        edges.mkdir()
+        trips.mkdir()
+        ours = [_ours(scenario, seed, drive_s, to) for to in (edges, trips)[: 1 + with_trips]]
+        _sumos(given, edges, warm_s, drive_s, seed, "--precision=4")
+        if with_trips:
+            _sumos(given, trips, warm_s, drive_s, seed, "--precision=6", "--tripinfo-output=tripinfo.xml")
+        return Beside(
+            (_trips(ours[1]), _trips(trips)) if with_trips else ({}, {}),
+            (_lines(ours[0]), _lines(edges)),
+            (_figures(ours[0], given.begin_s), _figures(edges, given.begin_s)),
+        )
+
+
+def _ours(scenario: scenarios.Scenario, seed: int, drive_s: float, folder: Path) -> Path:
+    """A copy of the warm traffic to which nothing is done, as a congestion study drives it; returns its outputs."""
+    flow_s = INTERVAL_S if folder.name == "edges" else None
+    with closing(Forked(scenario, seed, allow_unprojected=True, outputs=folder, flow_s=flow_s)) as warm:
+        warm.keep_ledger()
+        with closing(warm.copy()) as copy:
+            copy.begin(drive_s, INTERVAL_S)
+            copy.ended()
+        assert copy.outputs is not None
+        return copy.outputs
+
+
+def _sumos(given: Configuration, folder: Path, warm_s: float, drive_s: float, seed: int, *options: str) -> None:
+    """SUMO's run of the configuration itself."""
+    from_s = given.begin_s + warm_s
+    (folder / "flow.add.xml").write_text(
+        f'<additional><edgeData id="flow" file="edges.xml" begin="{from_s:g}" period="{INTERVAL_S:g}" '
+        f'excludeEmpty="true" withInternal="true" writeAttributes="{FLOW_ATTRIBUTES}"/></additional>'
+    )
+    added = ",".join(map(str, (*given.files.get("additional-files", ()), "flow.add.xml")))
+    command = [program("sumo"), "-c", given.path.absolute(), "-a", added, "--seed", seed, "--log", os.devnull]
+    command += ["--no-step-log", "--no-warnings", *options]
+    if from_s + drive_s < given.number("end", 1e9):
+        command += ["--end", from_s + drive_s]
+    subprocess.run(list(map(str, command)), check=True, cwd=folder, env=environment(), stdout=subprocess.DEVNULL)
+
+
+def _trips(folder: Path) -> dict[str, str]:
+    """Each vehicle's line, without the devices, which make the outputs."""
+    text = (folder / "tripinfo.xml").read_text(encoding="utf-8")
+    found = re.finditer(r'<tripinfo id="([^"]*)"[^>]*', text)
+    return {each[1]: re.sub(' devices="[^"]*"', "", each[0]).rstrip("/ ") for each in found}
+
+
+def _lines(folder: Path) -> list[str]:
+    return re.findall("<(?:interval|edge) .*", (folder / "edges.xml").read_text(encoding="utf-8"))
+
+
+def _figures(folder: Path, begin_s: float) -> tuple[float, ...]:
+    flows = [each.flow for each in read_flows(folder, begin_s)]
+    km = sum(each.distance_m for each in flows) / 1000
+    return km, *(sum(getattr(each, of) for each in flows) / 3600 for of in ("time_s", "lost_s", "standing_s"))
+
+
+def made(folder: Path) -> Path:
+    """A network with every class of vehicle, sublanes, people on foot, and a flow that only ``end`` spaces out."""
+    grid = "--grid --grid.number 4 --grid.length 180 -L 2 --sidewalks.guess --crossings.guess --bikelanes.guess"
+    assert run("netgenerate", [*grid.split(), "--no-turnarounds", "--tls.guess", "-o", "made.net.xml"], folder)[0]
+    types = "".join(f'<vType id="{each}" vClass="{each}"/>' for each in CLASSES)
+    ways = ("A0A1", "D3D2"), ("D0C0", "A3B3"), ("A2B2", "D1D0"), ("C3C2", "B0A0")
+    flows = "".join(
+        f'<flow id="f{number}" type="{each}" begin="0" end="360" probability="0.03" departSpeed="max" '
+        f'from="{ways[number % 4][0]}" to="{ways[number % 4][1]}"/>'
+        for number, each in enumerate(CLASSES)
+    )
+    (folder / "made.rou.xml").write_text(
+        f'<routes>{types}<vTypeDistribution id="mix" vTypes="truck moped passenger"/>{flows}'
+        '<flow id="mixed" type="mix" begin="0" number="60" from="B3B2" to="C0C1" departLane="random"/>'
+        '<personFlow id="p" begin="0" end="360" period="9"><walk from="A0A1" to="C2C3"/></personFlow></routes>'
+    )
+    (folder / "made.sumocfg").write_text(
+        '<configuration><net-file value="made.net.xml"/><route-files value="made.rou.xml"/><end value="360"/>'
+        '<step-length value="0.5"/><lateral-resolution value="0.8"/>'
+        '<device.rerouting.probability value="0.4"/><device.rerouting.period value="30"/></configuration>'
+    )
+    return folder / "made.sumocfg"
+
+
+def networks(folder: Path) -> Iterator[tuple[str, Path]]:
+    """The shipped networks, those of others that are there, and a generated one."""
+    for name in scenarios.shipped():
+        yield name, scenarios.load(name).config
+    data = os.environ.get("AUTOMOTIVE_COSIM_TEST_DATA")
+    yield from ((name, Path(data) / path) for name, path in OTHERS.items() if data and (Path(data) / path).exists())
+    yield "all classes of vehicle", made(folder)
+
+
+def table(folder: Path) -> str:
+    """The table of the page, in Markdown."""
+    lines = ["| network | vehicles arrived | of these otherwise | " + " | ".join(FIGURES) + " | difference |"]
+    lines.append("|---|" + "---:|" * (3 + len(FIGURES)))
+    for name, config in networks(folder):
+        found = beside(config)
+        ours, sumos = found.figures
+        most = max(abs(one - two) for one, two in zip(ours, sumos, strict=True))
+        cells = [name, len(found.trips[1]), len(found.differing), *(f"{each:.3f}" for each in ours), f"{most:.9g}"]
+        lines.append(f"| {' | '.join(map(str, cells))} |")
+        print(lines[-1], flush=True)
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as there:
+        head, _ = PAGE.read_text(encoding="utf-8").split("| network |")
+        PAGE.write_text(f"{head}{table(Path(there))}\n", encoding="utf-8")
