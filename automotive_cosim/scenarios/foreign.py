@@ -133,10 +133,16 @@ def _kept_and_not(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
         ]
         but = f", but for {', '.join(other)}, so figures differ from SUMO's" if other else ""
         yield f"{name} runs as `sumo -c` runs it with the run's seed{but}; a drive's weather slows everybody"
-    if configuration.parallel:
-        yield f"{name}'s {', '.join(configuration.parallel)} set aside: what is copied works with one thread"
+    yield from set_aside(configuration)
     if ignored := [option for option in configuration.ignored if option not in QUIET]:
         yield f"{name} runs without its {', '.join(ignored)}"
+
+
+def set_aside(configuration: Configuration) -> Iterator[str]:
+    """What would make SUMO work in parallel."""
+    if configuration.parallel:
+        named = ", ".join(configuration.parallel)
+        yield f"{configuration.path.name}'s {named} set aside: what is copied works with one thread"
 
 
 def _start(configuration: Configuration, sumo: Sumo, place: Place) -> datetime:

@@ -118,6 +118,10 @@ def test_what_works_in_parallel_and_other_settings_that_are_not_kept_are_told(
     options = run_options(copied(read_configuration(foreign), tmp_path / "scratch"), Setup(scenario))
     assert not [name for name in options if "threads" in name or "action" in name]
     assert (options["step-length"], options["end"]) == ("1", "39600")
+    shutil.copytree(GRID, tmp_path / "grid")
+    described = tmp_path / "grid" / "grid.sumocfg"
+    described.write_text(described.read_text().replace("<time>", '<time><threads value="4"/>'))
+    assert any("threads set aside" in note for note in open_scenario(described.parent).notes)
 
 
 @pytest.mark.sumo
