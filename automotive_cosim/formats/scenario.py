@@ -26,9 +26,9 @@ class Sumo:
     """The ``.sumocfg``, relative to the folder."""
     step_length_s: Annotated[float, Ge(0.01), Le(10)] = 0.1
     """0.1 for safety (the ego acts each step), 1 for studies."""
+    # None, which a scenario.toml cannot say, leaves it to the .sumocfg
     action_step_length_s: Annotated[float, Ge(0.01), Le(10)] | None = 1.0
-    """How often the other drivers act; a multiple of the step length. None leaves it to the ``.sumocfg``: SUMO
-    integrates ballistically wherever it is told one."""
+    """How often the other drivers act; a multiple of the step length. With it, SUMO integrates ballistically."""
     warm_up_s: Annotated[float, Ge(0), Le(86_400)] = 900.0
     """Traffic runs this long before the ego departs."""
     scale: Annotated[float, Ge(0), Le(100)] = 1.0
