@@ -40,7 +40,7 @@ from automotive_cosim.run.settings import (
 from automotive_cosim.safety.settings import SearchOrder, SearchSettings
 from automotive_cosim.scenarios.settings import EquilibriumSettings, OptimumSettings
 from automotive_cosim.serve.settings import ServeSettings
-from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings, SuiteSettings
+from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
 from tests.laws import over
 
 COMMANDS = (
@@ -63,8 +63,7 @@ COMMANDS = (
     ("scenarios equilibrate", EquilibriumSettings, set()),
     ("scenarios equilibrate", OptimumSettings, set()),
     ("scenarios calibrate", CalibrationOptions, set()),
-    ("study reroute", RerouteSettings, set()),
-    ("study suite", SuiteSettings, {"scenario", "warm_up_s"}),
+    ("study reroute", RerouteSettings, {"scenario", "warm_up_s"}),
     ("study congestion", CongestionSettings, set()),
     ("study days", DaysSettings, set()),
     ("tasks validate", ProofSettings, set()),

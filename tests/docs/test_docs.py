@@ -9,6 +9,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import fields
@@ -25,6 +26,7 @@ from automotive_cosim.interface.functions import functions
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
+from docs import tables
 from tests.laws import over
 
 TOP = Path(__file__).parents[2]
@@ -34,6 +36,11 @@ LOOKED_UP = {"glossary", "api", "CONTRIBUTING"}
 """Pages beside docs/reference that nobody reads from beginning to end."""
 MOST_WORDS = 1_000
 PROGRAM = re.compile(r"^(?:\S*/)?automotive-cosim\b")
+
+
+LINKED = [*TOP.glob("*.md"), *PAGES, *TOP.glob("[!.]*/README.md"), *TOP.glob("sumo_scenarios/*/*.md")]
+"""Every page that a reader of a checkout opens."""
+LINK = re.compile(r"\]\(([^)\s]+)\)|(?:href|src)=\"([^\"]+)\"")
 
 
 def blocks(page: Path) -> Iterator[tuple[str, str]]:
@@ -105,6 +112,43 @@ def test_a_guide_can_be_read_in_five_minutes(page):
     assert len(prose.split()) <= MOST_WORDS, "move what is looked up to docs/reference"
 
 
+def without_code(page):
+    return re.sub(r"^( *)```.*?^\1```|^    [^\n]*$", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)
+
+
+def anchors(page):
+    """The anchors of a page's headings, as code hosts and the site name them."""
+    named: Counter[str] = Counter()
+    for title in re.findall(r"^#+ (.+)$", without_code(page), re.MULTILINE):
+        words = re.sub(r"\]\(.*?\)|[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
+        named[words] += 1
+        yield words if named[words] == 1 else f"{words}-{named[words] - 1}"
+
+
+@over(dict.fromkeys(LINKED))
+def test_every_link_leads_to_a_page_and_a_heading_of_the_checkout(page):
+    assert set(re.findall(r"^```\{(.+)\}", page.read_text("utf-8"), re.MULTILINE)) <= {"eval-rst"}
+    text = re.sub(r"`[^`\n]*`", "", without_code(page))
+    links = {link for found in LINK.findall(text) for link in found if link and "://" not in link}
+    for link in links:
+        path, _, anchor = link.partition("#")
+        target = page.parent / path if path else page
+        assert target.exists(), link
+        assert not {"_made", "_site"} & set(target.parts), f"{link} exists only after `make docs`"
+        assert not anchor or anchor in anchors(target), link
+
+
+@pytest.mark.slow
+@over(tables.pages())
+def test_the_tables_of_a_page_are_what_the_code_says(page):
+    assert not tables.stale(page), "`python -m docs.tables` makes them anew"
+
+
+def test_every_table_stands_on_a_page():
+    placed = [mark[2] for page in tables.pages() for mark in tables.MARKED.finditer(page.read_text("utf-8"))]
+    assert sorted(placed) == sorted(tables.MADE)
+
+
 # --- run -------------------------------------------------------------------------------------------------
 
 SMALL = ("--scenario", "grid", "--task", "hvac_fan_max", "--half", "first", "--agent", "oracle", "--force")
@@ -125,7 +169,6 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
     (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
     (r"study (congestion|days|compare)", HELP, "takes minutes; tests/studies run them"),
-    (r"study suite", HELP, "needs a network of the reader's; tests/studies run one"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
     (r"run .*--model '?replay/", ("--force", "--out", "runs/last"), ""),
     (r"run .*--model", HELP, "asks a language model"),
@@ -145,7 +188,7 @@ TREATED: list[tuple[str, tuple[str, ...], str]] = [
     (r"drive [a-z]", HELP, "takes a minute; tests/drives drives"),
     (r"report runs/hunt", HELP, "needs a search; tests/safety/test_trying.py has one"),
     (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_drives.py reports on some"),
-    (r"publish .*(runs/board|NAME)", HELP, "needs the leaderboard's evaluation; `make docs` checks its bundles"),
+    (r"publish .*(runs/board|NAME)", HELP, "needs the leaderboard's evaluation; its table here checks its bundles"),
     (r"(serve|mcp|a2a)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
     (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
     (r"scenarios (check|download)", HELP, "takes minutes or the network; tests/osm has them"),
@@ -163,6 +206,7 @@ ELSEWHERE = {"from inspect_ai": "inspect_ai"}
 FOLDERS = r"\b(runs/(mine|first|before|after|jam))\b"
 EXCERPTS = {
     "Skill(": "an excerpt of models/skills.py",
+    '"""pip install openai-agents': "needs a package of others; test_frameworks.py runs the same file",
     "import minari": "needs Minari, and a table of demonstrations",
     "from android_world": "needs a checkout of AndroidWorld; tests/agents/test_androidworld.py has one",
 }
