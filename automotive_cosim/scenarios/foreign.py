@@ -86,7 +86,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         count = vehicles_per_hour(network, random_per_km_h)
         notes.append(f"{path.name} has no traffic of its own: {count:.0f} vehicles per hour are drawn")
     sumo = _sumo(configuration, random_per_km_h)
-    notes += _kept_and_not(configuration, sumo)
+    notes += _kept_and_not(configuration, sumo, network)
     name = re.sub(r"\.(net\.xml|sumocfg|xml)$", "", path.name.removesuffix(".gz"))
     return Scenario(
         name=name if name != "run" else path.absolute().parent.name,
@@ -122,7 +122,7 @@ def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
     )
 
 
-def _kept_and_not(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
+def _kept_and_not(configuration: Configuration, sumo: Sumo, network: Network) -> Iterator[str]:
     """What a run sets or leaves out whatever the configuration says."""
     name = configuration.path.name
     if not sumo.random_traffic_per_km_h:
@@ -131,8 +131,15 @@ def _kept_and_not(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
             for option, (stated, value) in stated_and_set(configuration, sumo).items()
             if stated != value
         ]
+        hours = sum(
+            bool(each.timed_limits or each.timed_access or each.timed_turns) for each in network.edges.values()
+        )
+        other += [f"the hours of limits and closures on {hours} edges"] * bool(hours)
         but = f", but for {', '.join(other)}, so figures differ from SUMO's" if other else ""
-        yield f"{name} runs as `sumo -c` runs it with the run's seed{but}; a drive's weather slows everybody"
+        yield (
+            f"{name} runs as `sumo -c` runs it with the run's seed{but}; an ego is one car more from its departure "
+            "on, and a drive's weather slows everybody"
+        )
     yield from set_aside(configuration)
     if ignored := [option for option in configuration.ignored if option not in QUIET]:
         yield f"{name} runs without its {', '.join(ignored)}"
