@@ -326,6 +326,14 @@ class _Distributions:
         """Takes its end."""
 
 
+def edge_data(file: str, begin_s: float, period_s: float) -> str:
+    """An additional file by which SUMO writes the flow on every edge, also within junctions."""
+    return (
+        f'<additional><edgeData id="flow" file={quoteattr(file)} begin="{begin_s:g}" period="{period_s:g}" '
+        f'excludeEmpty="true" withInternal="true" writeAttributes="{FLOW_ATTRIBUTES}"/></additional>'
+    )
+
+
 def takes_any_route(configuration: Configuration, network: Network) -> bool:
     """Whether vehicles may set out on routes that their class cannot drive: the configuration says so, or roads of
     the network are closed at certain hours."""
@@ -386,12 +394,8 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
     if setup.outputs is not None and setup.flow_s is not None:
         wanted = "flow.add.xml"
         begin_s = configuration.begin_s + sumo.warm_up_s
-        path = quoteattr(str(setup.outputs / EDGE_FLOWS))
-        (configuration.folder / wanted).write_text(
-            f'<additional><edgeData id="flow" file={path} begin="{begin_s:g}" period="{setup.flow_s:g}" '
-            f'excludeEmpty="true" withInternal="true" writeAttributes="{FLOW_ATTRIBUTES}"/></additional>',
-            encoding="utf-8",
-        )
+        flows = edge_data(str(setup.outputs / EDGE_FLOWS), begin_s, setup.flow_s)
+        (configuration.folder / wanted).write_text(flows, encoding="utf-8")
         inputs.setdefault("additional-files", []).append(wanted)
     options |= {name: ",".join(names) for name, names in inputs.items() if names}
     options["seed"] = str(setup.seed)

@@ -18,7 +18,7 @@ from automotive_cosim import scenarios
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.studies.congestion.outputs import read_flows
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.options import FLOW_ATTRIBUTES, Configuration, read_configuration
+from automotive_cosim.traffic.options import Configuration, edge_data, read_configuration
 from automotive_cosim.traffic.sumo_programs import environment, program, run
 
 PAGE = Path(__file__).parents[2] / "docs" / "studies" / "beside-sumo.md"
@@ -29,57 +29,41 @@ OTHERS = {
 }
 CLASSES = ["passenger", "private", "hov", "evehicle", "taxi", "delivery", "truck", "trailer", "bus", "coach"]
 CLASSES += ["motorcycle", "moped", "bicycle", "emergency", "authority", "army", "vip", "custom1"]
-"""Classes of vehicle that drive on roads."""
-
+SEED = 1
 INTERVAL_S = 60.0
 FIGURES = ("vehicle-km", "vehicle-h", "h lost", "h standing")
 
 
 @dataclass(frozen=True, slots=True)
-class Beside:
-    """The same minutes in a run without an ego, and in SUMO."""
+class Side:
+    """Some minutes without an ego, in a run or in SUMO: lines of edgeData, ``FIGURES`` over all edges by the
+    program that reads our outputs, and the tripinfo of each vehicle that has arrived, if wanted."""
 
-    trips: tuple[dict[str, str], dict[str, str]]
-    """What tripinfo says of each vehicle that has arrived: ours, SUMO's."""
-    edges: tuple[list[str], list[str]]
-    """What edgeData says, line by line."""
-    figures: tuple[tuple[float, ...], tuple[float, ...]]
-    """``FIGURES`` over all edges, by the program that reads our outputs."""
-
-    @property
-    def differing(self) -> list[str]:
-        """Vehicles that did not drive alike."""
-        ours, sumos = self.trips
-        return sorted(each for each in ours.keys() | sumos.keys() if ours.get(each) != sumos.get(each))
+    edges: list[str]
+    figures: tuple[float, ...]
+    trips: dict[str, str]
 
 
-def beside(
-    config: Path, warm_s: float = 120.0, drive_s: float = 240.0, *, seed: int = 1, with_trips: bool = True
-) -> Beside:
-    """Runs both, from the configuration's begin; the edges count after ``warm_s``."""
+def beside(config: Path, warm_s: float = 120.0, drive_s: float = 240.0, *, trips: bool = True) -> tuple[Side, Side]:
+    """Ours and SUMO's, from the configuration's begin; the edges count after ``warm_s``."""
     scenario = open_scenario(config)
     scenario = replace(scenario, sumo=replace(scenario.sumo, warm_up_s=warm_s))
     given = read_configuration(scenario.config)
     with tempfile.TemporaryDirectory() as scratch:
-        folder = Path(scratch)
-        edges, trips = folder / "edges", folder / "trips"
-        edges.mkdir()
-        trips.mkdir()
-        ours = [_ours(scenario, seed, drive_s, to) for to in (edges, trips)[: 1 + with_trips]]
-        _sumos(given, edges, warm_s, drive_s, seed, "--precision=4")
-        if with_trips:
-            _sumos(given, trips, warm_s, drive_s, seed, "--precision=6", "--tripinfo-output=tripinfo.xml")
-        return Beside(
-            (_trips(ours[1]), _trips(trips)) if with_trips else ({}, {}),
-            (_lines(ours[0]), _lines(edges)),
-            (_figures(ours[0], given.begin_s), _figures(edges, given.begin_s)),
-        )
+        ours, sumos = Path(scratch) / "ours", Path(scratch) / "sumos"
+        for name, flow_s in (("edges.xml", INTERVAL_S), ("tripinfo.xml", None))[: 1 + trips]:
+            _ours(scenario, drive_s, ours, flow_s).joinpath(name).rename(ours / name)
+        _sumos(given, sumos, warm_s, drive_s, "--precision=4")
+        if trips:
+            _sumos(given, sumos / "trips", warm_s, drive_s, "--precision=6", "--tripinfo-output=../tripinfo.xml")
+        return _side(ours, given), _side(sumos, given)
 
 
-def _ours(scenario: scenarios.Scenario, seed: int, drive_s: float, folder: Path) -> Path:
+def _ours(scenario: scenarios.Scenario, drive_s: float, folder: Path, flow_s: float | None) -> Path:
     """A copy of the warm traffic to which nothing is done, as a congestion study drives it; returns its outputs."""
-    flow_s = INTERVAL_S if folder.name == "edges" else None
-    with closing(Forked(scenario, seed, allow_unprojected=True, outputs=folder, flow_s=flow_s)) as warm:
+    outputs = folder / f"flow{flow_s}"
+    outputs.mkdir(parents=True)
+    with closing(Forked(scenario, SEED, allow_unprojected=True, outputs=outputs, flow_s=flow_s)) as warm:
         warm.keep_ledger()
         with closing(warm.copy()) as copy:
             copy.begin(drive_s, INTERVAL_S)
@@ -88,36 +72,30 @@ def _ours(scenario: scenarios.Scenario, seed: int, drive_s: float, folder: Path)
         return copy.outputs
 
 
-def _sumos(given: Configuration, folder: Path, warm_s: float, drive_s: float, seed: int, *options: str) -> None:
+def _sumos(given: Configuration, folder: Path, warm_s: float, drive_s: float, *options: str) -> None:
     """SUMO's run of the configuration itself."""
     from_s = given.begin_s + warm_s
-    (folder / "flow.add.xml").write_text(
-        f'<additional><edgeData id="flow" file="edges.xml" begin="{from_s:g}" period="{INTERVAL_S:g}" '
-        f'excludeEmpty="true" withInternal="true" writeAttributes="{FLOW_ATTRIBUTES}"/></additional>'
-    )
+    folder.mkdir(exist_ok=True)
+    (folder / "flow.add.xml").write_text(edge_data("edges.xml", from_s, INTERVAL_S))
     added = ",".join(map(str, (*given.files.get("additional-files", ()), "flow.add.xml")))
-    command = [program("sumo"), "-c", given.path.absolute(), "-a", added, "--seed", seed, "--log", os.devnull]
-    command += ["--no-step-log", "--no-warnings", *options]
-    if from_s + drive_s < given.number("end", 1e9):
-        command += ["--end", from_s + drive_s]
+    end = [] if from_s + drive_s >= given.number("end", 1e9) else ["--end", from_s + drive_s]
+    command = [program("sumo"), "-c", given.path.absolute(), "-a", added, "--seed", SEED, *end, *options]
+    command += ["--no-step-log", "--no-warnings", "--log", os.devnull]
     subprocess.run(list(map(str, command)), check=True, cwd=folder, env=environment(), stdout=subprocess.DEVNULL)
 
 
-def _trips(folder: Path) -> dict[str, str]:
-    """Each vehicle's line, without the devices, which make the outputs."""
-    text = (folder / "tripinfo.xml").read_text(encoding="utf-8")
-    found = re.finditer(r'<tripinfo id="([^"]*)"[^>]*', text)
-    return {each[1]: re.sub(' devices="[^"]*"', "", each[0]).rstrip("/ ") for each in found}
-
-
-def _lines(folder: Path) -> list[str]:
-    return re.findall("<(?:interval|edge) .*", (folder / "edges.xml").read_text(encoding="utf-8"))
-
-
-def _figures(folder: Path, begin_s: float) -> tuple[float, ...]:
-    flows = [each.flow for each in read_flows(folder, begin_s)]
+def _side(folder: Path, given: Configuration) -> Side:
+    edges, trips = folder / "edges.xml", folder / "tripinfo.xml"
+    flows = [each.flow for each in read_flows(folder, given.begin_s)]
     km = sum(each.distance_m for each in flows) / 1000
-    return km, *(sum(getattr(each, of) for each in flows) / 3600 for of in ("time_s", "lost_s", "standing_s"))
+    hours = (sum(getattr(each, of) for each in flows) / 3600 for of in ("time_s", "lost_s", "standing_s"))
+    found = re.finditer(r'<tripinfo id="([^"]*)"[^>]*', trips.read_text(encoding="utf-8") if trips.exists() else "")
+    return Side(
+        re.findall("<(?:interval|edge) .*", edges.read_text(encoding="utf-8")),
+        (km, *hours),
+        # without the devices, which make the outputs
+        {each[1]: re.sub(' devices="[^"]*"', "", each[0]).rstrip("/ ") for each in found},
+    )
 
 
 def made(folder: Path) -> Path:
@@ -153,21 +131,19 @@ def networks(folder: Path) -> Iterator[tuple[str, Path]]:
     yield "all classes of vehicle", made(folder)
 
 
-def table(folder: Path) -> str:
-    """The table of the page, in Markdown."""
-    lines = ["| network | vehicles arrived | of these otherwise | " + " | ".join(FIGURES) + " | difference |"]
-    lines.append("|---|" + "---:|" * (3 + len(FIGURES)))
+def table(folder: Path) -> Iterator[str]:
+    """The lines of the page's table."""
+    yield f"| network | vehicles arrived | of these otherwise | {' | '.join(FIGURES)} | difference |"
+    yield "|---|" + "---:|" * (3 + len(FIGURES))
     for name, config in networks(folder):
-        found = beside(config)
-        ours, sumos = found.figures
-        most = max(abs(one - two) for one, two in zip(ours, sumos, strict=True))
-        cells = [name, len(found.trips[1]), len(found.differing), *(f"{each:.3f}" for each in ours), f"{most:.9g}"]
-        lines.append(f"| {' | '.join(map(str, cells))} |")
-        print(lines[-1], flush=True)
-    return "\n".join(lines)
+        ours, sumos = beside(config)
+        most = max(abs(one - two) for one, two in zip(ours.figures, sumos.figures, strict=True))
+        other = {vehicle for vehicle, _ in ours.trips.items() ^ sumos.trips.items()}
+        cells = [name, len(sumos.trips), len(other), *(f"{each:.3f}" for each in ours.figures)]
+        yield f"| {' | '.join(map(str, cells))} | {most:.9g} |"
 
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as there:
         head, _ = PAGE.read_text(encoding="utf-8").split("| network |")
-        PAGE.write_text(f"{head}{table(Path(there))}\n", encoding="utf-8")
+        PAGE.write_text(head + "\n".join(table(Path(there))) + "\n", encoding="utf-8")
