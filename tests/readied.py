@@ -9,17 +9,21 @@ import os
 import signal
 import socket
 import sys
+from collections.abc import Mapping
 from contextlib import suppress
+from pathlib import Path
 from typing import Any
 
 import automotive_cosim.drives.families
 import automotive_cosim.proof.prover
 import automotive_cosim.publish.verify
-import automotive_cosim.studies.batch
-import automotive_cosim.tasks  # noqa: F401, like the others for the workers
+import automotive_cosim.studies.batch  # noqa: F401, like the others for the workers
 from automotive_cosim.agents import process
 from automotive_cosim.agents.wire import Wire
-from automotive_cosim.run import fork_server, worker
+from automotive_cosim.run import fork_server, processes, worker
+from automotive_cosim.tasking.own_files import VARIABLE
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.tasks.folder import add_folder
 from tests import farm, preloaded
 
 _spare: list[Any] = []
@@ -64,6 +68,16 @@ def _serve_agents(connection: socket.socket) -> None:
     process.main()
 
 
+_work = processes._work
+
+
+def _work_with_own_tasks(jobs: Any, opener: Any, folder: Path, environment: Mapping[str, str]) -> None:
+    if environment.get(VARIABLE):
+        add_folder(CATALOGUE, Path(environment[VARIABLE]))
+    _work(jobs, opener, folder, environment)
+
+
 farm.use()
+processes._work = _work_with_own_tasks
 fork_server._started = lambda: _spare.pop() if _spare else _started()
 worker.ForkServer = _ForkServer  # type: ignore[misc]

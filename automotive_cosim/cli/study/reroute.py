@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from automotive_cosim.studies.rows import DriveRow
 
 
-@takes(RerouteSettings, but=("scenario", "warm_up_s"))
+@takes(RerouteSettings, but=("scenario", "warm_up_s", "limit_s", "agent_steps"))
 @takes(ExecutorSettings)
 def reroute(
     scenario: Annotated[
@@ -113,9 +113,8 @@ def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, me
 
     with driven(console, "drives", folder, said) as tell:
         run_study(plan, folder, executor=where, tell=tell)
-    if measure_gap:
-        for each in measure_demand(plan, folder):
-            console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
+    for each in measure_demand(plan, folder) if measure_gap else ():
+        console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
     write_study(folder)
 
 
