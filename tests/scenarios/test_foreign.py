@@ -350,7 +350,7 @@ def test_a_copy_with_another_demand_has_the_configurations_files_and_no_others(t
     (here / "scenario.toml").unlink()
     (here / "diary.txt").touch()
     config = here / "grid.sumocfg"
-    options = '<scale value="2"/><device.rerouting.probability value="0.5"/>'
+    options = '<scale value="2"/><device.rerouting.probability value="0.5"/><end value="99"/>'
     config.write_text(config.read_text().replace("</configuration>", f"{options}</configuration>"))
     given = open_scenario(config)
     assert (given.sumo.scale, given.sumo.background_rerouting) == (2.0, 0.5)
@@ -358,6 +358,7 @@ def test_a_copy_with_another_demand_has_the_configurations_files_and_no_others(t
     write_variant(there, given, read_configuration(config), routes, ("record.json", {}))
     made = open_scenario(there)
     assert (made.sumo.scale, made.sumo.background_rerouting) == (1.0, 0.0)
+    assert "end" not in read_configuration(made.config).options
     files = read_configuration(made.config).files
     assert [path.name for path in files["route-files"]] == ["mine.rou.xml"]
     named = {path.name for paths in files.values() for path in paths}
