@@ -461,9 +461,9 @@ class _EgoRoad:
             text = f"{collision.collider} hits {collision.victim}"
             events.append(Event(sumo.time(), "collision", text))
             if EGO in (collision.collider, collision.victim):
-                end = EgoEnd.COLLIDED
-                if EGO not in self._world.arrived:
+                if end is None and EGO not in self._world.arrived:
                     sumo.vehicle.remove(EGO)  # where a collision takes nobody off the road for good
+                end = EgoEnd.COLLIDED
         for vehicle in sumo.teleporting():
             events.append(Event(sumo.time(), "teleport", f"{vehicle} stood too long and is teleported"))
             if vehicle == EGO and end is None:
