@@ -74,7 +74,8 @@ def _lies(crs: CRS, location: Mapping[str, str], east_m: float, north_m: float) 
     made_from = _made_from(location)
     if not (made_from and _in_degrees(made_from)):
         made_from = (-180.0, -90.0, 180.0, 90.0) if crs.area_of_use is None else crs.area_of_use.bounds
-    return _within(*Proj(crs)(east_m, north_m, inverse=True), made_from, MARGIN_DEG)
+    lon_deg, lat_deg = Proj(crs)(east_m, north_m, inverse=True)
+    return _within(lon_deg, lat_deg, made_from, MARGIN_DEG)
 
 
 def _made_from(location: Mapping[str, str]) -> tuple[float, ...]:
