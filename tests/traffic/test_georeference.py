@@ -133,7 +133,7 @@ def test_a_code_is_written_out_so_that_sumo_has_the_same_place_and_its_library_l
     (tmp_path / "scratch").mkdir()
     world, library = World(Setup(scenario), tmp_path / "scratch"), load_library()
     try:
-        world.bare_step()
+        world.step()
         at_m = library.position("v")
         ours = GeoReference(world.network.map).lon_lat(*at_m), library.to_lon_lat(*at_m)
     finally:
