@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.osm import access, barriers, lanes, limits, oneway
+from automotive_cosim.osm import access, arrows, barriers, lanes, limits, oneway, signs
 from automotive_cosim.osm.extract import Extract, OsmWay
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
+from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import clauses, timed_limits
 
 SHOWN = 10
@@ -32,6 +33,11 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         yield f"direction that is doubtful: {tag}: {in_words('way', ways)}"
     yield from _of_barriers(built.cut)
     yield from _of_turns(built)
+    kinds = {ref: node.tags.get("highway", "") for ref, node in extract.nodes.items()}
+    for why, kind, nodes in signs.doubts(built.signs, kinds):
+        yield f"{kind.replace('_', '-')} signs {why}, left out: {in_words('node', nodes)}"
+    for tag, ways in _by_tag(_of_arrows(extract, roads, built)):
+        yield f"turn arrows that the lanes built do not follow, by angle: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag(
         (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, oneway.directions(way.tags))
     ):
@@ -80,6 +86,42 @@ def _of_turns(built: Built) -> Iterator[str]:
     ):
         if relations:
             yield f"{about}: {in_words('relation', relations)}"
+
+
+def _of_arrows(extract: Extract, roads: Mapping[int, MappedRoad], built: Built) -> Iterator[tuple[OsmWay, str]]:
+    """Ways whose lanes lead elsewhere at their end than the arrows there say."""
+    of_end: dict[tuple[int, bool], dict[str, Edge]] = {}
+    for edge in built.edges:
+        there = way_of(edge.edge_id), edge.edge_id.startswith("-")
+        of_end.setdefault(there, {})[edge.from_node] = edge
+    for way in extract.ways:
+        road = roads[way.way_id]
+        may, counts = road.directions, lanes.built_of(way.tags, road.directions, left_hand=road.left_hand)
+        for number, end in enumerate(access.ENDS):
+            wanted = arrows.arrows_of(way.tags, end, may) if may.open(end) else ()
+            if not wanted or len(wanted) != counts[number]:
+                continue  # the latter is told by its number of lanes
+            along = of_end.get((way.way_id, end == "backward"), {})
+            last = [edge for edge in along.values() if edge.to_node not in along]
+            if not all(_leads_there(edge, wanted, built, roads) for edge in last):
+                key = arrows.key_of(way.tags, end)
+                yield way, f"{key}={way.tags[key]}"
+
+
+def _leads_there(edge: Edge, wanted: arrows.Lanes, built: Built, roads: Mapping[int, MappedRoad]) -> bool:
+    """Whether an edge at the end of a way leads where its arrows say; one without a choice does if it goes on into
+    a road with arrows of its own."""
+    links = built.links.of.get(edge.edge_id, ())
+    onward = {link.to_edge for link in links if link.direction != "t"}
+    if len(onward) == 1:
+        beyond = onward.pop()
+        road = roads[way_of(beyond)]
+        if arrows.arrows_of(road.tags, access.ENDS[beyond.startswith("-")], road.directions):
+            return True
+    count = max(link.lane for link in links) + 1 if links else 0
+    by_lane = [[(link.direction, link.to_edge) for link in links if link.lane == lane] for lane in range(count)]
+    left_hand = roads[way_of(edge.edge_id)].left_hand
+    return arrows.leads_there(wanted, by_lane if left_hand else by_lane[::-1])
 
 
 def unconnected(extract: Extract, built: Built) -> Iterator[str]:

@@ -17,11 +17,13 @@ from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.barriers import Cut, Piece, cut
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, Position
+from automotive_cosim.osm.links import Links, read_links, with_stops
 from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
+from automotive_cosim.osm.signs import STOP, Followed, Joints, compare, patches, read_signs
 from automotive_cosim.osm.turns import BannedTurns, read_turns
 from automotive_cosim.traffic.georeference import GeoReference
-from automotive_cosim.traffic.network import TIMED_TURN, Edge, Network, read_network
+from automotive_cosim.traffic.network import SIGN, TIMED_TURN, Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
 
 GEOMETRY = (
@@ -65,6 +67,10 @@ class Built:
     """The roads, and the barriers at which they were cut."""
     turns: BannedTurns
     """The turn restrictions, as read for cars."""
+    signs: Followed
+    """Its stop and give-way signs."""
+    links: Links
+    """The connections of all edges."""
     opened: tuple[str, ...] = ()
     """Edges with a lane that was opened to cars, so that none is trapped beside it."""
 
@@ -124,25 +130,37 @@ def convert(
             tell(f"building the network, {stage}", None)
 
     barred = cut(extract)
-    turns = read_turns(
-        extract.restrictions, barred.pieces, [roads[piece.way.way_id].directions for piece in barred.pieces]
-    )
+    may = [roads[piece.way.way_id].directions for piece in barred.pieces]
+    turns = read_turns(extract.restrictions, barred.pieces, may)
+    joints = Joints(barred.pieces, may, extract.nodes)
+    signs = read_signs(joints)
     write_osm(extract, barred, turns, roads, scratch / "roads.osm")
-    ok, printed = run(
-        "netconvert",
-        (
-            "--osm-files=roads.osm",
-            f"--type-files={home() / 'data' / 'typemap' / 'osmNetconvert.typ.xml'}",
-            "--osm.lane-access",
-            "--verbose",
-            *GEOMETRY,
-            *SIGNALS,
-            *(["--lefthand"] if country in LEFT_HAND else []),
-            f"--output-file={raw.name}",
-        ),
-        folder=scratch,
-        heard=heard,
-    )
+
+    def converted(more: Mapping[str, str]) -> tuple[bool, str]:
+        for option, patch in more.items():
+            (scratch / f"signs{option}.xml").write_text(patch, encoding="utf-8")
+        return run(
+            "netconvert",
+            (
+                "--osm-files=roads.osm",
+                f"--type-files={home() / 'data' / 'typemap' / 'osmNetconvert.typ.xml'}",
+                "--osm.lane-access",
+                "--osm.turn-lanes",
+                "--verbose",
+                *GEOMETRY,
+                *SIGNALS,
+                *(["--lefthand"] if country in LEFT_HAND else []),
+                *(f"{option}=signs{option}.xml" for option in more),
+                f"--output-file={raw.name}",
+            ),
+            folder=scratch,
+            heard=heard,
+        )
+
+    patched = patches(signs, FIRST_NUMBER)
+    ok, printed = converted(patched)
+    if not ok and patched and _PATCH_FAILED.search(printed):
+        ok, printed = converted({})
     if not ok and "No nodes loaded" not in printed:
         raise ImportMapError(f"netconvert cannot build a network from this map: {first_error(printed)}")
     text = raw.read_text(encoding="utf-8") if ok else ""
@@ -165,10 +183,23 @@ def convert(
     more = {edge_id: _cameras(places_m) for edge_id, places_m in _beside_cameras(network, extract.cameras).items()}
     for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
         more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
+    links = read_links(text, network.edges)
+    followed = compare(signs, joints, links, {edge_id: edge.to_node for edge_id, edge in network.edges.items()})
+    for edge_id, kind in followed.edges.items():
+        more.setdefault(edge_id, {})[SIGN] = kind
+    stops = {edge_id for edge_id, kind in followed.edges.items() if kind == STOP}
+    if stops:
+        text = with_stops(text, stops, {network.edges[edge_id].to_node for edge_id in stops})
+        links = read_links(text, network.edges)
     if more:
         _write(_with_parameters(text, lambda edge_id: more.get(edge_id, {})), target)
         network = read_network(target)
-    return Built(network, tuple(network.edges.values()), signals, roundabouts, barred, turns, opened)
+    edges = tuple(network.edges.values())
+    return Built(network, edges, signals, roundabouts, barred, turns, followed, links, opened)
+
+
+_PATCH_FAILED = re.compile(r"Missing position|(?:from|to)-node is not given")
+"""What netconvert says of a sign at an edge or a junction that it has not: without the signs, it builds the map."""
 
 
 def _stage(line: str) -> str:

@@ -45,7 +45,7 @@ KEPT_TAGS = (
 )
 """OSM tags that become parameters of the edges."""
 
-TOLD = re.compile(r"highway|junction|layer|bridge|tunnel|bus|psv|foot|(?:bicycle:lanes|turn|change|width)(?::.*)?")
+TOLD = re.compile(r"highway|junction|layer|bridge|tunnel|bus|psv|foot|(?:bicycle:lanes|change|width)(?::.*)?")
 """The tags that netconvert is told as they are. All others that it knows are about speed, access, direction and the
 number of lanes, which are read here first, or make it give a road a compound type instead of its class."""
 

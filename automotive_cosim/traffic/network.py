@@ -17,6 +17,7 @@ SUMO knows lanes, speeds and shapes. Everything else from the map is in the edge
 | ``restriction:conditional:EDGE`` | the same of the turn into an edge |
 | ``hazard`` | ``school_zone``: beside a school |
 | ``bicycle_road``, ``cyclestreet`` | ``yes``: a cycle street |
+| ``traffic_sign`` | ``stop`` or ``give_way``: the sign at the end of the edge |
 | ``speed_camera`` | positions of cameras, in metres from the start of the edge |
 
 The file is read element by element, several times as fast as by sumolib's reader and without its object per
@@ -56,6 +57,7 @@ CYCLE_STREET_KEYS = ("bicycle_road", "cyclestreet")
 FORM = "a complete SUMO network (build it again with netconvert)"
 """What the file should be, for errors."""
 
+SIGN = "traffic_sign"
 TIMED_ACCESS = "access:conditional"
 TIMED_TURN = "restriction:conditional:"
 """Before the id of the edge that the turn leads into."""
@@ -114,6 +116,8 @@ class Edge:
     """Whether another of its lanes is for buses and not for cars."""
     cameras_m: tuple[float, ...] = ()
     """Positions of speed cameras, from its start."""
+    sign: str = ""
+    """The sign at its end, ``"stop"`` or ``"give_way"``; empty without one."""
     school_zone: bool = False
     timed_limits: tuple[TimedLimit, ...] = ()
     """Limits that are posted for certain hours."""
@@ -390,6 +394,7 @@ def _edge(edge: Attributes, lanes: list[Attributes], all_lanes: list[Attributes]
         shape_m=_shape(edge.get("shape") or middle["shape"]),
         bus_lane=any(map(_for_buses, all_lanes)),
         cameras_m=tuple(quantity(place_m) for place_m in params.get("speed_camera", "").split()),
+        sign=intern(params.get(SIGN, "")),
         school_zone=params.get("hazard") == "school_zone",
         timed_limits=timed_limits(params.get("maxspeed:conditional", ""))[0],
         timed_access=timed_access(params.get(TIMED_ACCESS, "")),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import NamedTuple
 import pytest
 
 from automotive_cosim.geo.place import shipped
-from automotive_cosim.osm import extract, network
+from automotive_cosim.osm import arrows, extract, network
 from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.doubts import doubts
 from automotive_cosim.osm.extract import Extract
@@ -353,3 +354,125 @@ def test_lanes_for_leaving_and_joining_are_told_and_are_no_difference(build: Bui
     wider = replace(world.roads[101], tags=world.roads[101].tags | {"lanes": "1"})
     wrong = differences(world.map, world.built, world.roads | {101: wider}, world.country)
     assert [str(each)[:24] for each in wrong] == ["way 101: lanes: 1 in the"]
+
+
+def told(world: World) -> str:
+    """What the import lists."""
+    return "\n".join(doubts(world.map, world.roads, world.built, world.country))
+
+
+def row_of_crossings(
+    arms: Sequence[dict[str, str]], signs: Sequence[dict[str, dict[str, str]]] = ()
+) -> tuple[Map, list[int]]:
+    """A street, way 100, with a crossing for each set of tags of its southern arm, which leads north; ``signs`` has
+    tags of nodes on each crossing: ``"s"`` on the southern arm, ``"n"`` on the northern, ``"x"`` in its middle.
+
+    Returns:
+        The map, and the ways of the southern arms.
+    """
+    made, ways = Map((8.70, 48.59)), []
+    for index in range(len(arms) + 2):
+        for row, y in (("a", -150.0), ("s", -8.0), ("x", 0.0), ("n", 8.0), ("b", 150.0)):
+            made.nodes[f"{row}{index}"] = (index * 150.0, y)
+    for row in "xab":
+        made.way(" ".join(f"{row}{index}" for index in range(len(arms) + 2)), highway="tertiary", name=row)
+    for index in (0, len(arms) + 1):
+        made.way(f"a{index} x{index} b{index}", highway="tertiary", name=f"end {index}")
+    for index, tags in enumerate(arms, start=1):
+        made.node_tags |= {f"{row}{index}": each for row, each in (signs[index - 1] if signs else {}).items()}
+        ways.append(100 + len(made.ways))
+        made.ways.append(([f"{row}{index}" for row in "asx"], {"highway": "tertiary"} | tags))
+        made.ways.append(([f"{row}{index}" for row in "xnb"], {"highway": "tertiary"}))
+    return made, ways
+
+
+ONE = {"oneway": "yes"}
+ARROWS = (
+    *({"turn:lanes": f"{value}|"} for value in sorted(arrows.KNOWN - {""})),
+    *({"turn:lanes": f"|{value}"} for value in sorted(arrows.KNOWN - {""})),
+    {"turn:lanes": "left|through;right"},
+    {"turn:lanes": "left;through|right"},
+    {"turn:lanes:forward": "left|through;right"},
+    {"turn:lanes": "left|through|right", "lanes": "3"},
+    {"turn:lanes": "left|through|right"},
+    {"turn:lanes": "left|left|right", "lanes": "3"},
+    {"turn:lanes": "left|sideways"},
+    {"turn:lanes": "through"},
+    {"turn": "left"},
+    {"turn": "right", "lanes": "1"},
+)
+
+
+POINTS = {"left": "lL", "sharp_left": "lL", "slight_left": "lLs", "through": "LsR", "slight_right": "sRr",
+          "right": "Rr", "sharp_right": "Rr"}  # fmt: skip
+"""SUMO's letters that an arrow may mean."""
+
+
+@pytest.mark.parametrize("country", ["DE", "GB"])
+def test_lanes_lead_where_arrows_point_or_the_list_names_the_way(build: Build, country: str) -> None:
+    made, ways = row_of_crossings([ONE | {"lanes": "2"} | tags for tags in ARROWS])
+    world = build(made, country)  # type: ignore[call-arg]
+    listed = {
+        int(number) for line in told(world).splitlines() if "turn" in line for number in NUMBERS.findall(line)
+    }
+    followed = 0
+    for way, tags in zip(ways, ARROWS, strict=True):
+        links = world.built.links.of[str(way)]
+        count = 1 + max(link.lane for link in links)
+        by_lane = [{link.direction for link in links if link.lane == lane} for lane in range(count)]
+        lanes = by_lane if country == "GB" else by_lane[::-1]
+        wanted = [set(lane.split(";")) for lane in next(iter(tags.values())).split("|")]
+        fits = len(wanted) == count and all(
+            words <= {"", "none"} or (words <= POINTS.keys() and lane and all(
+                any(letter in POINTS[word] for word in words) for letter in lane
+            ) and all(lane & set(POINTS[word]) for word in words))
+            for words, lane in zip(wanted, lanes, strict=True)
+        )  # fmt: skip
+        merges = any("merge" in word for words in wanted for word in words)
+        assert (way in listed) is not fits or (merges and way not in listed), (tags, links)
+        followed += fits
+    assert followed >= 8, "most that are possible"
+
+
+NUMBERS = re.compile(r"\b1\d\d\b")
+
+STATES = (
+    ({"s": {"highway": "stop"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "forward"}}, "s", ""),
+    ({"s": {"highway": "stop", "stop:direction": "forward"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "both"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "180"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "S"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "backward"}}, "", "stop signs with no junction"),
+    ({"s": {"highway": "stop", "direction": "90"}}, "", "stop signs that face across the road"),
+    ({"s": {"highway": "stop", "direction": "up"}}, "", "stop signs with direction=up"),
+    ({"s": {"highway": "give_way"}}, "m", ""),
+    ({"s": {"highway": "give_way", "direction": "forward"}}, "m", ""),
+    ({"s": {"highway": "give_way"}, "n": {"highway": "stop"}}, "m", ""),
+    ({"s": {"highway": "stop", "stop": "minor"}}, "s", ""),
+    ({"s": {"highway": "stop", "stop": "all"}}, "w", ""),
+    ({"x": {"highway": "stop", "stop": "all"}}, "w", ""),
+    ({"x": {"highway": "stop"}}, "", "stop signs on a junction"),
+    ({"x": {"highway": "give_way"}}, "", "give-way signs on a junction"),
+    ({"x": {"highway": "mini_roundabout"}}, "=", ""),
+    ({"a": {"highway": "mini_roundabout"}}, "", ""),
+    ({}, "", ""),
+)
+"""Signs, SUMO's letter of the right of way from the south, and how those that are not followed are listed."""
+
+
+def test_right_of_way_is_as_signed_or_the_list_names_the_sign(build: Build) -> None:
+    made, ways = row_of_crossings([{} for _ in STATES], [signs for signs, _, _ in STATES])
+    world = build(made)
+    list_of = told(world)
+    numbers = {name: number for number, name in enumerate(made.nodes, start=1)}
+    for index, (way, (signs, state, listed)) in enumerate(zip(ways, STATES, strict=True), start=1):
+        links = [link for link in world.built.links.of[str(way)] if link.direction != "t"]
+        if state:
+            assert {link.state for link in links} == {state}, (signs, links)
+        if state in "sm" and state:
+            assert world.built.network.edges[str(way)].sign == {"s": "stop", "m": "give_way"}[state]
+        for row in signs:
+            named = re.search(rf"signs .*\b{numbers[f'{row}{index}']}\b", list_of)
+            assert bool(named) is bool(listed), (signs, list_of)
+            assert listed in list_of

@@ -1,0 +1,64 @@
+"""The connections of a built network, as text: which lane leads where, and with what right of way."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Container, Mapping, Set
+from typing import NamedTuple
+
+_CONNECTION = re.compile(
+    r'<connection from="([^":][^"]*)" to="([^"]*)" fromLane="(\d+)"[^>]*? dir="(.)" state="(.)"'
+)
+_JUNCTION = re.compile(r'<junction id="([^":][^"]*)" type="([^"]*)"')
+
+
+class Link(NamedTuple):
+    """A connection from a lane onto an edge."""
+
+    lane: int
+    """From the kerb."""
+    to_edge: str
+    direction: str
+    """SUMO's letter: ``s`` straight, ``l`` left, ``L`` slightly left, ``t`` back, ..."""
+    state: str
+    """SUMO's letter for its right of way: ``M`` has it, ``m`` yields, ``s`` stops, ``w`` at an all-way stop."""
+
+
+class Links(NamedTuple):
+    """Those of some edges, and the types of all junctions."""
+
+    of: Mapping[str, tuple[Link, ...]]
+    types: Mapping[str, str]
+
+
+def read_links(text: str, wanted: Container[str]) -> Links:
+    """Reads a network's text.
+
+    Args:
+        text: the network.
+        wanted: the edges whose connections to read.
+    """
+    found: dict[str, list[Link]] = {}
+    for each in _CONNECTION.finditer(text):
+        if each[1] in wanted:
+            found.setdefault(each[1], []).append(Link(int(each[3]), each[2], each[4], each[5]))
+    return Links({edge: tuple(links) for edge, links in found.items()}, dict(_JUNCTION.findall(text)))
+
+
+def with_stops(text: str, edges: Set[str], junctions: Set[str]) -> str:
+    """The text with cars that stop before they yield.
+
+    Args:
+        text: a network's.
+        edges: those at whose end cars stop.
+        junctions: the junctions there.
+    """
+
+    def stopping(link: re.Match[str]) -> str:
+        return f'{link[0][:-2]}s"' if link[1] in edges and link[5] == "m" else link[0]
+
+    def typed(junction: re.Match[str]) -> str:
+        is_priority = junction[1] in junctions and junction[2] == "priority"
+        return f'<junction id="{junction[1]}" type="priority_stop"' if is_priority else junction[0]
+
+    return _JUNCTION.sub(typed, _CONNECTION.sub(stopping, text))
