@@ -471,8 +471,8 @@ def _into_log() -> Tell:
 def _agreement(report: ImportReport) -> str:
     if not report.differences:
         return (
-            "access, direction, limit, name, class, tunnel and lanes of every edge; barriers and turns; what was not"
-            " followed is below, as guessed"
+            "access, direction, limit, name, class, tunnel and lanes of every edge; barriers and turns;"
+            " what was not followed is below, as guessed"
         )
     return f"all but {counted(len(report.differences), 'property', 'properties')}:"
 

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.osm import access, arrows, barriers, lanes, limits, oneway, signs
 from automotive_cosim.osm.extract import Extract, OsmWay
+from automotive_cosim.osm.facing import facing
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge
@@ -36,6 +37,10 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
     kinds = {ref: node.tags.get("highway", "") for ref, node in extract.nodes.items()}
     for why, kind, nodes in signs.doubts(built.signs, kinds):
         yield f"{kind.replace('_', '-')} signs {why}, left out: {in_words('node', nodes)}"
+    for tag, nodes in sorted(_not_built(extract, built).items()):
+        yield f"{tag}: {in_words('node', nodes)}"
+    for what, nodes in sorted(built.cameras.told.items()):
+        yield f"speed cameras {what}: {in_words('node', nodes)}"
     for tag, ways in _by_tag(_of_arrows(extract, roads, built)):
         yield f"turn arrows that the lanes built do not follow, by angle: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag(
@@ -122,6 +127,20 @@ def _leads_there(edge: Edge, wanted: arrows.Lanes, built: Built, roads: Mapping[
     by_lane = [[(link.direction, link.to_edge) for link in links if link.lane == lane] for lane in range(count)]
     left_hand = roads[way_of(edge.edge_id)].left_hand
     return arrows.leads_there(wanted, by_lane if left_hand else by_lane[::-1])
+
+
+def _not_built(extract: Extract, built: Built) -> dict[str, list[int]]:
+    """What stands at the road and SUMO does not have: calming, and signals at no junction."""
+    found: dict[str, list[int]] = {"signals at no junction with signals, left out": sorted(built.dark)}
+    for ref, node in extract.nodes.items():
+        calming = node.tags.get("traffic_calming", "no")
+        if calming != "no":
+            found.setdefault(f"traffic calming that SUMO does not have: traffic_calming={calming}", []).append(ref)
+        if node.tags.get("highway") == "traffic_signals":
+            told = facing(node.tags, "traffic_signals")
+            if told.unread:
+                found.setdefault(f"signals with {told.unread}, for every direction", []).append(ref)
+    return {tag: nodes for tag, nodes in found.items() if nodes}
 
 
 def unconnected(extract: Extract, built: Built) -> Iterator[str]:

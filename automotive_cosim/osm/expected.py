@@ -79,8 +79,13 @@ def expect_stop(tags: Mapping[str, str]) -> bool:
     kind = tags.get("barrier", "no").lower()
     if kind == "no":
         return False
-    said = [tags[group] for group in GROUPS if tags.get(group)]
-    return not _for_cars(said[-1]) if said else kind not in OPENING + NO_HINDRANCE
+    passes = kind in OPENING + NO_HINDRANCE
+    way = ONE_WAY.get(tags.get("oneway", ""), 0)
+    for side, sign in (("forward", -1), ("backward", 1)):
+        said = sorted(_ranked(tags, side, _ACCESS))
+        if way != sign and (_for_cars(said[-1][1]) if said else passes):
+            return False
+    return True
 
 
 def expect_turn(tags: Mapping[str, str], members: tuple[tuple[str, int, str], ...]) -> ExpectedTurn | None:
@@ -162,7 +167,7 @@ def _for_cars(value: str) -> bool:
 def _one_way(tags: Mapping[str, str]) -> int:
     """1 with the nodes, -1 against them, 0 both."""
     found = 0
-    if tags.get("junction") in ("roundabout", "circular") or tags.get("highway") in ("motorway", "motorway_link"):
+    if tags.get("junction") in ("roundabout", "circular") or tags.get("highway") == "motorway":
         found = 1
     for key in ("oneway", *(f"oneway:{group}" for group in GROUPS[1:])):
         word = tags.get(key, "").strip().lower()

@@ -12,6 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass
 from functools import partial
 from importlib import import_module
+from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -72,12 +73,27 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class TurnRestriction:
-    """A turn restriction; members are (``"n"`` or ``"w"``, id, role)."""
+class Relation:
+    """A relation; members are (``"n"`` or ``"w"``, id, role)."""
 
     relation_id: int
     tags: Mapping[str, str]
     members: tuple[tuple[str, int, str], ...]
+
+
+Course = tuple[Position, Position]
+"""Where watched traffic comes from and goes to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A speed camera, on a road or beside it."""
+
+    node: int
+    position: Position
+    tags: Mapping[str, str]
+    courses: tuple[Course, ...] = ()
+    """The traffic that it watches, by the enforcement relations of which it is the device."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,9 +103,8 @@ class Extract:
     ways: tuple[OsmWay, ...]
     """Those that cars may drive, in the order of their ids."""
     nodes: Mapping[int, Node]
-    restrictions: tuple[TurnRestriction, ...]
-    cameras: tuple[Position, ...] = ()
-    """Positions of speed cameras, on a road or beside it."""
+    restrictions: tuple[Relation, ...]
+    cameras: tuple[Camera, ...] = ()
     ground: tuple[MappedArea, ...] = ()
     """Water, green and buildings, wherever in the extract."""
     closed: tuple[OsmWay, ...] = ()
@@ -117,7 +132,7 @@ class Extract:
             ways,
             {ref: node for ref, node in nodes.items() if ref in used},
             turns,
-            tuple(camera for camera in self.cameras if area.holds(*camera)),
+            tuple(camera for camera in self.cameras if area.holds(*camera.position)),
             self.ground,
             tuple(way for way in self.closed if nodes.keys() & set(way.nodes)),
         )
@@ -145,7 +160,7 @@ def read(source: Path) -> Extract:
         ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
-    ways, restrictions, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
+    ways, relations, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
     ways.sort(key=lambda way: way.way_id)
     complete = [piece for way in ways for piece in _known_pieces(way, nodes)]
     opened = tuple(way for way in complete if any(directions(way.tags)))
@@ -158,17 +173,46 @@ def read(source: Path) -> Extract:
     return Extract(
         opened,
         {ref: node for ref, node in sorted(nodes.items()) if ref in used},
-        tuple(sorted(restrictions, key=lambda turn: turn.relation_id)),
-        cameras,
+        tuple(sorted(filter(_is_restriction, relations), key=lambda turn: turn.relation_id)),
+        tuple(_watching(cameras, relations, nodes, {way.way_id: way for way in ways})),
         ground.in_order(areas),
         tuple(way for way in complete if not any(directions(way.tags))),
     )
 
 
-_Read = tuple[
-    list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[Position, ...], tuple[MappedArea, ...]
-]
-"""Ways open to cars, turn restrictions, the nodes of those ways, speed cameras, and the ground."""
+def _watching(
+    tagged: Mapping[int, Node], relations: Iterable[Relation], nodes: Mapping[int, Node], ways: Mapping[int, OsmWay]
+) -> Iterator[Camera]:
+    """The nodes tagged as speed cameras, and the devices of relations that enforce a limit, with what these say."""
+    cameras, courses = dict(tagged), dict[int, list[Course]]()
+
+    def place(kind: str, ref: int) -> Position | None:
+        if kind == "w" and ref in ways:
+            ref = ways[ref].nodes[len(ways[ref].nodes) // 2]
+        return nodes[ref].position if ref in nodes else None
+
+    for relation in filter(_is_enforcement, relations):
+        roles: dict[str, list[Position]] = {}
+        for kind, ref, role in relation.members:
+            if there := place(kind, ref):
+                roles.setdefault(role, []).append(there)
+        for kind, ref, role in relation.members:
+            if kind != "n" or role != "device" or ref not in nodes:
+                continue
+            if relation.tags.get("enforcement") in LIMITS_ENFORCED:
+                cameras.setdefault(ref, nodes[ref])
+            here = [nodes[ref].position]
+            course = product(roles.get("from", here), roles.get("to", here))
+            courses.setdefault(ref, []).extend((start, goal) for start, goal in course if start != goal)
+    for ref, node in sorted(cameras.items()):
+        yield Camera(ref, node.position, node.tags, tuple(courses.get(ref, ())))
+
+
+LIMITS_ENFORCED = frozenset(("maxspeed", "average_speed"))
+"""Values of ``enforcement`` that are about speed (OSM wiki, "Relation:enforcement")."""
+
+_Read = tuple[list[OsmWay], tuple[Relation, ...], dict[int, Node], dict[int, Node], tuple[MappedArea, ...]]
+"""Ways open to cars, relations, the nodes of both, speed cameras, and the ground."""
 
 
 def _read_osm(source: Path) -> _Read:
@@ -215,34 +259,40 @@ def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch
 
 
 def _read_file(file: Any) -> _Read:
-    ways, restrictions = _read_ways(file)
-    nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
+    ways, relations = _read_ways(file)
+    nodes = _read_nodes(file, _wanted(ways, relations))
     lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
     areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
-    return ways, restrictions, nodes, _read_cameras(file), areas
+    return ways, relations, nodes, _read_cameras(file), areas
+
+
+def _wanted(ways: Iterable[OsmWay], relations: Iterable[Relation]) -> set[int]:
+    """The nodes of roads, and of what enforces a limit."""
+    members = (member for relation in relations if _is_enforcement(relation) for member in relation.members)
+    return {ref for way in ways for ref in way.nodes} | {ref for kind, ref, _ in members if kind == "n"}
 
 
 def _read_json(source: Path) -> _Read:
     read = OverpassJson(source)
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
-    turns = tuple(TurnRestriction(*relation) for relation in read.relations() if _is_restriction(relation[1]))
-    wanted = {ref for way in ways for ref in way.nodes}
+    relations = tuple(filter(_is_kept, (Relation(*relation) for relation in read.relations())))
+    wanted = _wanted(ways, relations)
     outlines = [(kind, refs) for _, tags, refs in read.ways() if (kind := _ground_of(tags, refs)) is not None]
     corners = {ref for _, refs in outlines for ref in refs}
     places: dict[int, Position] = {}
     nodes: dict[int, Node] = {}
-    cameras: list[Position] = []
+    cameras: dict[int, Node] = {}
     for node_id, tags, place in read.nodes():
         if node_id in corners:
             places[node_id] = Position(*place)
         if node_id in wanted:
             nodes[node_id] = Node(Position(*place), tags)
         if tags.get("highway") == "speed_camera":
-            cameras.append(Position(*place))
+            cameras[node_id] = Node(Position(*place), tags)
     areas = (
         MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
     )
-    return ways, turns, dict(sorted(nodes.items())), tuple(cameras), tuple(areas)
+    return ways, relations, dict(sorted(nodes.items())), cameras, tuple(areas)
 
 
 def _ground_of(tags: Mapping[str, str], refs: tuple[int, ...]) -> GroundKind | None:
@@ -330,24 +380,32 @@ def _explain(source: Path, error: str) -> str:
     return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
 
 
-def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[TurnRestriction, ...]]:
+def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[Relation, ...]]:
     osmium = _osmium()
     ways: list[OsmWay] = []
-    restrictions: list[TurnRestriction] = []
+    relations: list[Relation] = []
     wanted = osmium.filter.KeyFilter("highway", "type")
     for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(wanted):
         tags = {tag.k: tag.v for tag in item.tags}
         if item.is_way():
             if _is_road(tags):
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
-        elif _is_restriction(tags):
+        else:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
-            restrictions.append(TurnRestriction(item.id, tags, members))
-    return ways, tuple(restrictions)
+            relations.append(Relation(item.id, tags, members))
+    return ways, tuple(filter(_is_kept, relations))
 
 
-def _is_restriction(tags: Mapping[str, str]) -> bool:
-    return tags.get("type", "").partition(":")[0] == "restriction"
+def _is_kept(relation: Relation) -> bool:
+    return _is_restriction(relation) or _is_enforcement(relation)
+
+
+def _is_restriction(relation: Relation) -> bool:
+    return relation.tags.get("type", "").partition(":")[0] == "restriction"
+
+
+def _is_enforcement(relation: Relation) -> bool:
+    return relation.tags.get("type") == "enforcement"
 
 
 def _is_road(tags: Mapping[str, str]) -> bool:
@@ -365,11 +423,15 @@ def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:
     return nodes
 
 
-def _read_cameras(file: Any) -> tuple[Position, ...]:
+def _read_cameras(file: Any) -> dict[int, Node]:
     osmium = _osmium()
     tagged = osmium.filter.TagFilter(("highway", "speed_camera"))
     found = osmium.FileProcessor(file, osmium.osm.NODE).with_filter(tagged)
-    return tuple(Position(node.location.lon, node.location.lat) for node in found if node.location.valid())
+    return {
+        node.id: Node(Position(node.location.lon, node.location.lat), {tag.k: tag.v for tag in node.tags})
+        for node in found
+        if node.location.valid()
+    }
 
 
 def _read_ground(file: Any, roads: list[list[Position]]) -> Iterator[MappedArea]:

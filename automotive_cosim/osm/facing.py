@@ -66,10 +66,15 @@ def ends_facing(front_deg: float, along_deg: float) -> tuple[str, ...]:
         front_deg: where its front faces.
         along_deg: where the way leads, with its nodes.
     """
-    against = abs((front_deg - along_deg + 180) % 360 - 180)
+    against = turned_deg(front_deg, along_deg)
     if against > 180 - ALONG_DEG:
         return ENDS[:1]
     return ENDS[1:] if against < ALONG_DEG else ENDS
+
+
+def turned_deg(one_deg: float, other_deg: float) -> float:
+    """The angle between two directions, up to 180."""
+    return abs((one_deg - other_deg + 180) % 360 - 180)
 
 
 def bearing_deg(start: Sequence[float], goal: Sequence[float]) -> float:

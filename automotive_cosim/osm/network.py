@@ -10,19 +10,17 @@ from importlib import import_module
 from pathlib import Path
 from xml.sax.saxutils import quoteattr, unescape
 
-import shapely
-
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.barriers import Cut, Piece, cut
+from automotive_cosim.osm.cameras import Cameras, cameras_of
 from automotive_cosim.osm.country import LEFT_HAND
-from automotive_cosim.osm.extract import Extract, Position
+from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.links import Links, read_links, with_stops
 from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
-from automotive_cosim.osm.signs import STOP, Followed, Joints, compare, patches, read_signs
-from automotive_cosim.osm.turns import BannedTurns, read_turns
-from automotive_cosim.traffic.georeference import GeoReference
+from automotive_cosim.osm.signs import STOP, Followed, Joints, compare, dark, patches, read_signs
+from automotive_cosim.osm.turns import Ban, BannedTurns, read_turns
 from automotive_cosim.traffic.network import SIGN, TIMED_TURN, Edge, Network, read_network
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
 
@@ -50,10 +48,6 @@ SIGNALS = (
 """OSM has signals at the stop lines: SUMO guesses which junction they belong to, and their phases."""
 
 
-CAMERA_WITHIN_M = 30.0
-"""A camera farther from every road is at one that was not imported."""
-
-
 @dataclass(frozen=True, slots=True)
 class Built:
     """The network built from a map."""
@@ -69,10 +63,14 @@ class Built:
     """The turn restrictions, as read for cars."""
     signs: Followed
     """Its stop and give-way signs."""
+    cameras: Cameras
+    """Its speed cameras."""
     links: Links
     """The connections of all edges."""
     opened: tuple[str, ...] = ()
     """Edges with a lane that was opened to cars, so that none is trapped beside it."""
+    dark: tuple[int, ...] = ()
+    """Nodes with signals that light no junction."""
 
 
 def entries(edges: Sequence[Edge]) -> frozenset[str]:
@@ -132,6 +130,7 @@ def convert(
     barred = cut(extract)
     may = [roads[piece.way.way_id].directions for piece in barred.pieces]
     turns = read_turns(extract.restrictions, barred.pieces, may)
+    turns.bans |= {Ban(*passing): 0 for passing in barred.one_way}
     joints = Joints(barred.pieces, may, extract.nodes)
     signs = read_signs(joints)
     write_osm(extract, barred, turns, roads, scratch / "roads.osm")
@@ -180,11 +179,13 @@ def convert(
     _write(text, target)
     tell("reading the network", None)
     network = read_network(target)
-    more = {edge_id: _cameras(places_m) for edge_id, places_m in _beside_cameras(network, extract.cameras).items()}
+    cameras = cameras_of(network, extract)
+    more = {edge_id: {"speed_camera": places} for edge_id, places in cameras.beside.items()}
     for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
         more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
     links = read_links(text, network.edges)
-    followed = compare(signs, joints, links, {edge_id: edge.to_node for edge_id, edge in network.edges.items()})
+    goals = {edge_id: edge.to_node for edge_id, edge in network.edges.items()}
+    followed = compare(signs, joints, links, goals)
     for edge_id, kind in followed.edges.items():
         more.setdefault(edge_id, {})[SIGN] = kind
     stops = {edge_id for edge_id, kind in followed.edges.items() if kind == STOP}
@@ -195,7 +196,19 @@ def convert(
         _write(_with_parameters(text, lambda edge_id: more.get(edge_id, {})), target)
         network = read_network(target)
     edges = tuple(network.edges.values())
-    return Built(network, edges, signals, roundabouts, barred, turns, followed, links, opened)
+    return Built(
+        network,
+        edges,
+        signals,
+        roundabouts,
+        barred,
+        turns,
+        followed,
+        cameras,
+        links,
+        opened,
+        tuple(dark(joints, links, goals)),
+    )
 
 
 _PATCH_FAILED = re.compile(r"Missing position|(?:from|to)-node is not given")
@@ -250,31 +263,6 @@ def write_osm(
 
 def _write(text: str, target: Path) -> None:
     target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
-
-
-def _beside_cameras(network: Network, cameras: Sequence[Position]) -> dict[str, list[float]]:
-    """Edges with their cameras, in metres from the start. The map does not say which way a camera faces, so it
-    counts for both directions."""
-    if not cameras or network.map.projection is None:
-        return {}
-    edges = list(network.edges.values())
-    lines = [shapely.LineString(edge.shape_m) for edge in edges]
-    tree, to_metres = shapely.STRtree(lines), GeoReference(network.map)
-    found: dict[str, list[float]] = {}
-    for camera in cameras:
-        point = shapely.Point(to_metres.x_y(*camera))
-        index = tree.nearest(point)
-        if lines[index].distance(point) > CAMERA_WITHIN_M:
-            continue
-        for edge_id in {edges[index].edge_id, network.opposite.get(edges[index].edge_id, "")} - {""}:
-            edge = network.edges[edge_id]
-            share = shapely.LineString(edge.shape_m).project(point, normalized=True)
-            found.setdefault(edge_id, []).append(round(share * edge.length_m, 1))
-    return found
-
-
-def _cameras(places_m: Sequence[float]) -> dict[str, str]:
-    return {"speed_camera": " ".join(f"{place_m:g}" for place_m in sorted(places_m))}
 
 
 def _timed_turns(network: Network, pieces: Sequence[Piece], turns: BannedTurns) -> dict[tuple[str, str], str]:

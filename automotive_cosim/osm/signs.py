@@ -182,6 +182,11 @@ class Joints:
             end = "forward" if place == 0 else "backward"
         return None
 
+    def edge_id(self, approach: Approach) -> str:
+        """The edge of an approach in the network."""
+        piece = self.pieces[approach.piece]
+        return f"{'-' * (approach.end == 'backward')}{id_of(piece.way.way_id, piece.part)}{approach.edge}"
+
     def arriving(self, ref: int) -> Iterator[Approach]:
         """The approaches of a junction."""
         for piece in dict.fromkeys(piece for piece, _ in self.at.get(ref, ())):
@@ -326,12 +331,8 @@ def compare(signs: Signs, joints: Joints, links: Links, goals: Mapping[str, str]
     edges: dict[str, str] = {}
     left_out = {why: list(nodes) for why, nodes in signs.unplaced.items()}
 
-    def edge_of(approach: Approach) -> str:
-        piece = joints.pieces[approach.piece]
-        return f"{'-' * (approach.end == 'backward')}{id_of(piece.way.way_id, piece.part)}{approach.edge}"
-
     for approach, (kind, ref) in signs.approaches.items():
-        edge = edge_of(approach)
+        edge = joints.edge_id(approach)
         alone = approach.node not in signs.ruled and approach.node not in signs.types
         why = _why_not(kind, links.of.get(edge, ()), links.types.get(goals.get(edge, ""), ""), alone=alone)
         if why:
@@ -339,7 +340,8 @@ def compare(signs: Signs, joints: Joints, links: Links, goals: Mapping[str, str]
         else:
             edges[edge] = kind
     for ref, approaches in signs.by_class.items():
-        minor = [edge for edge in map(edge_of, approaches) if {x.state for x in links.of.get(edge, ())} == {"m"}]
+        arriving = [joints.edge_id(approach) for approach in approaches]
+        minor = [edge for edge in arriving if {link.state for link in links.of.get(edge, ())} == {"m"}]
         edges |= dict.fromkeys(minor, STOP)
         if not minor:
             left_out.setdefault(AT_JOINED, []).append(ref)
@@ -374,3 +376,24 @@ def doubts(found: Followed, kinds: Mapping[int, str]) -> Iterator[tuple[str, str
             of_kind = sorted({ref for ref in nodes if kinds[ref] == kind})
             if of_kind:
                 yield why, kind, of_kind
+
+
+def dark(joints: Joints, links: Links, goals: Mapping[str, str]) -> list[int]:
+    """The nodes with signals that light no junction of the network, in the direction that they are for: those
+    between junctions, as at crossings on foot, which netconvert discards. Those within a junction are part of it.
+
+    Args:
+        joints: the roads.
+        links: the network's connections.
+        goals: the junction at the end of each of its edges.
+    """
+    found: list[int] = []
+    for ref in filter(joints.has_signal, joints.at):
+        ends = facing(joints.nodes[ref].tags, "traffic_signals").ends or ENDS
+        ways = [joints.onward(*place, end) for place in joints.at[ref] for end in ends]
+        approaches = [*joints.arriving(ref)] if joints.arms[ref] > 2 else [way[0] for way in ways if way]
+        there = {goals[edge] for edge in map(joints.edge_id, approaches) if edge in goals}
+        inside = approaches and not there
+        if not inside and not any(links.types.get(goal, "").startswith("traffic_light") for goal in there):
+            found.append(ref)
+    return found

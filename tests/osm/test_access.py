@@ -15,6 +15,14 @@ from automotive_cosim.osm.expected import expect
 from automotive_cosim.osm.oneway import directions
 from tests.laws import over
 
+NO_DIRECTION = (
+    *({"highway": f"{road}_link"} for road in ("motorway", "trunk", "primary", "secondary", "tertiary")),
+    *({"junction": value} for value in ("jughandle", "filter", "intersection", "yes")),
+    {"motorroad": "yes"},
+    {"dual_carriageway": "yes"},
+)
+"""What the wiki does not let imply one direction."""
+
 BOTH, WITH, AGAINST, NEITHER = (True, True), (True, False), (False, True), (False, False)
 
 
@@ -95,7 +103,7 @@ def test_a_list_lets_in_whom_any_of_its_values_lets_in(left: str, right: str) ->
         ({"junction": "circular"}, WITH),
         ({"junction": "roundabout", "oneway": "-1"}, AGAINST),
         ({"highway": "motorway"}, WITH),
-        ({"highway": "motorway_link"}, WITH),
+        *((tags, BOTH) for tags in NO_DIRECTION),
         ({"highway": "motorway_link", "oneway": "no"}, BOTH),
         ({"highway": "trunk"}, BOTH),
     ],

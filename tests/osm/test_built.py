@@ -476,3 +476,87 @@ def test_right_of_way_is_as_signed_or_the_list_names_the_sign(build: Build) -> N
             named = re.search(rf"signs .*\b{numbers[f'{row}{index}']}\b", list_of)
             assert bool(named) is bool(listed), (signs, list_of)
             assert listed in list_of
+
+
+CAMERA = {"highway": "speed_camera"}
+BOTH_TAKEN, NOBODY, UNSAID = "both directions taken", "nobody drives", ""
+CAMERAS: tuple[tuple[dict[str, str], dict[str, str], str, str], ...] = (
+    ({}, {}, "+-", BOTH_TAKEN),
+    ({"direction": "forward"}, {}, "+", UNSAID),
+    ({"direction": "backward"}, {}, "-", UNSAID),
+    ({"direction": "both"}, {}, "+-", UNSAID),
+    ({"direction": "180"}, {}, "+", UNSAID),
+    ({"direction": "0"}, {}, "-", UNSAID),
+    ({"direction": "350°"}, {}, "-", UNSAID),
+    ({"direction": "N"}, {}, "-", UNSAID),
+    ({"direction": "SSE"}, {}, "+", UNSAID),
+    ({"direction": "90"}, {}, "+-", BOTH_TAKEN),
+    ({"direction": "W"}, {}, "+-", BOTH_TAKEN),
+    ({"direction": "up"}, {}, "+-", BOTH_TAKEN),
+    ({"direction": "0"}, ONE, "+", UNSAID),
+    ({}, ONE, "+", UNSAID),
+    ({"direction": "backward"}, ONE, "", NOBODY),
+)
+"""Tags of a camera and of its road, which leads north; the directions that it watches, and what is listed."""
+
+
+def test_a_camera_watches_whom_the_map_says(build: Build) -> None:
+    made = ladder([road for _, road, _, _ in CAMERAS], [CAMERA | tags for tags, _, _, _ in CAMERAS])
+    watched = {1: ("s1", "n1", "+"), 2: ("n2", "s2", "-")}
+    for index, (start, goal, _) in watched.items():
+        made.nodes[f"cam{index}"] = (index * 150.0 + 6, 60.0)
+        made.node_tags[f"cam{index}"] = {"man_made": "surveillance"}
+        members = (("device", f"cam{index}"), ("from", start), ("to", goal))
+        made.relations.append((members, {"type": "enforcement", "enforcement": "maxspeed"}))
+    world = build(made)
+    listed = told(world)
+    for index, (tags, road, ends, line) in enumerate(CAMERAS, start=1):
+        way = FIRST + index - 1
+        found = sorted(
+            ("-" if edge.edge_id.startswith("-") else "+")
+            for edge in world.built.edges
+            if way_of(edge.edge_id) == way
+            for _ in edge.cameras_m
+        )
+        assert found == sorted(ends + watched.get(index, ("", "", ""))[2]), (tags, road)
+        node = list(made.nodes).index(f"m{index}") + 1
+        lines = [text for text in listed.splitlines() if "camera" in text and re.search(rf"\b{node}\b", text)]
+        assert len(lines) == bool(line), (tags, lines)
+        assert all(line in text for text in lines)
+
+
+ONE_SIDED: tuple[tuple[dict[str, str], str], ...] = (
+    ({"barrier": "gate", "motor_vehicle:forward": "no"}, "-"),
+    ({"barrier": "gate", "motor_vehicle:backward": "no"}, "+"),
+    ({"barrier": "lift_gate", "access": "yes", "motorcar:backward": "private"}, "+"),
+    ({"barrier": "bollard", "motor_vehicle:forward": "yes"}, "+"),
+    ({"barrier": "entrance", "oneway": "yes"}, "+"),
+    ({"barrier": "entrance", "oneway": "-1"}, "-"),
+    ({"barrier": "entrance", "vehicle:forward": "no", "vehicle:backward": "no"}, ""),
+    ({"barrier": "entrance", "oneway": "no"}, "+-"),
+)
+"""Barriers in the middle of a road, and the directions in which cars pass."""
+
+
+def test_a_barrier_for_one_direction_closes_that_alone(build: Build) -> None:
+    world = build(ladder([{} for _ in ONE_SIDED], [tags for tags, _ in ONE_SIDED]))
+    for index, (tags, ends) in enumerate(ONE_SIDED):
+        way = FIRST + index
+        pieces = [edge.edge_id for edge in world.built.edges if way_of(edge.edge_id) == way]
+        north = max((edge for edge in pieces if edge.startswith("-")), key=len)
+        passed = "+" * world.reaches(str(way), 101) + "-" * world.reaches(north, 100)
+        assert passed == ends, tags
+    assert not list(differences(world.map, world.built, world.roads, world.country))
+
+
+def test_what_sumo_does_not_have_is_listed_by_its_value(build: Build) -> None:
+    calming = ("bump", "hump", "table", "cushion", "chicane", "choker", "island", "rumble_strip", "dip", "yes")
+    middle = [{"traffic_calming": value} for value in calming]
+    middle += [
+        {"highway": "traffic_signals", "traffic_signals:direction": end} for end in ("forward", "both", "up")
+    ]
+    world = build(ladder([{} for _ in middle], middle))
+    listed = told(world)
+    assert all(f"traffic_calming={value}: node" in listed for value in calming)
+    assert re.search("signals at no junction with signals, left out: nodes (\\d+, ){2}\\d+", listed)
+    assert "signals with traffic_signals:direction=up, for every direction: node" in listed
