@@ -11,7 +11,7 @@ from automotive_cosim.osm.facing import facing
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
 from automotive_cosim.traffic.network import Edge
-from automotive_cosim.traffic.posted import clauses, timed_limits
+from automotive_cosim.traffic.posted import clauses, names_holidays, timed_limits
 
 SHOWN = 10
 """How many OSM numbers a line names."""
@@ -51,8 +51,17 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
     for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, country)):
         about = tag if tag == limits.NO_UNIT else f"{tag}, left out"
         yield f"{about}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, tag) for way in everywhere for tag in _of_holidays(way.tags)):
+        yield f"holidays, of which there is no calendar, taken for other days: {tag}: {in_words('way', ways)}"
     for part, ways in _by_tag((way, part) for way in extract.ways for part in _unread(way.tags)):
         yield f"limits under conditions that are not understood, left out: {part}: {in_words('way', ways)}"
+
+
+def _of_holidays(tags: Mapping[str, str]) -> Iterator[str]:
+    for key, value in tags.items():
+        is_ours = key.startswith(("maxspeed", *access.KEYS, "oneway", "hov"))
+        if is_ours and key.endswith(":conditional") and any(names_holidays(when) for _, when, _ in clauses(value)):
+            yield f"{key}={value}"
 
 
 def _unread(tags: Mapping[str, str]) -> Iterator[str]:

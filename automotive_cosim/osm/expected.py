@@ -154,8 +154,8 @@ def _at_times(tags: Mapping[str, str], side: str) -> bool:
 
 _CLAUSE = re.compile(r"(-?[\w][\w;,/]*?) *@ *(\([^()]*\)|[^;()]+)")
 _CLOCK = re.compile(
-    r"\(?(?:24/7|\d\d?:\d\d|(?:Mo|Tu|We|Th|Fr|Sa|Su)\[-?[1-5]\]|(?:Mo|Tu|We|Th|Fr|Sa|Su|PH|SH|off|wet|snow|AND)\b"
-    r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-–,;: ])+\)?"
+    r"\(?(?:24/7|\d\d?:\d\d|(?:Mo|Tu|We|Th|Fr|Sa|Su)\[-?[1-5]\]|(?:Mo|Tu|We|Th|Fr|Sa|Su|PH|SH|off|week|wet|snow|AND)\b"
+    r"|/\d\d?|\d\d?\b(?=[-/ ])|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-–,;: ])+\)?"
 )
 
 
