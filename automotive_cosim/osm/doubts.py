@@ -51,10 +51,20 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
     for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, country)):
         about = tag if tag == limits.NO_UNIT else f"{tag}, left out"
         yield f"{about}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in _of_lane_limits(way, roads)):
+        yield f"limits of lanes of another number, not by lane but the highest if each has one: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag((way, tag) for way in everywhere for tag in _of_holidays(way.tags)):
         yield f"holidays, of which there is no calendar, taken for other days: {tag}: {in_words('way', ways)}"
     for part, ways in _by_tag((way, part) for way in extract.ways for part in _unread(way.tags)):
         yield f"limits under conditions that are not understood, left out: {part}: {in_words('way', ways)}"
+
+
+def _of_lane_limits(way: OsmWay, roads: Mapping[int, MappedRoad]) -> Iterator[str]:
+    road = roads[way.way_id]
+    for end, edge_id in zip(access.ENDS, ("", "-"), strict=True):
+        if road.directions.open(end) and road.stated.lanes(edge_id) and not road.lane_signs(edge_id):
+            key = next(key for key in (f"maxspeed:lanes:{end}", "maxspeed:lanes") if way.tags.get(key))
+            yield f"{key}={way.tags[key]}"
 
 
 def _of_holidays(tags: Mapping[str, str]) -> Iterator[str]:

@@ -196,17 +196,25 @@ def _limit(
     zones = [value for key, value in tags.items() if _ZONE_KEY.fullmatch(key) for value in _zones(value)]
     in_town = _in_town(tags)
     free = fast and in_town is not True and not any(_zone_kmh(value, miles=miles, metric=metric) for value in zones)
+    whole = _whole_limit(tags, side, free=free, miles=miles, metric=metric)
+    text = tags.get(f"maxspeed:lanes:{side}") or tags.get("maxspeed:lanes") or ""
+    each = [_kmh(part.strip()) for part in text.split("|")]
+    each = [None if kmh is not None and kmh > 1e9 and not free else kmh for kmh in each]
+    if not any(each):
+        return whole
+    every = [whole if kmh is None else kmh for kmh in each]
+    return None if None in every else max(kmh for kmh in every if kmh is not None)
+
+
+def _whole_limit(
+    tags: Mapping[str, str], side: str, *, free: bool, miles: Container[str], metric: Container[str]
+) -> float | None:
+    """The limit of a direction, whatever those of its lanes are."""
     ranked = sorted(_ranked(tags, side, _MAXSPEED), reverse=True)
     for _, value in ranked:
         kmh = _kmh(value)
         if kmh is not None and (kmh != float("inf") or free):
             return kmh
-    for key in (f"maxspeed:lanes:{side}", "maxspeed:lanes"):
-        if tags.get(key):
-            each = [kmh for kmh in map(_kmh, tags[key].split("|")) if kmh is not None and (kmh < 1e9 or free)]
-            if each:
-                return max(each)
-            break
     for key in ("maxspeed", "zone:maxspeed", "maxspeed:type", "source:maxspeed"):
         for value in tags.get(key, "").split(";"):
             kmh = _zone_kmh(value.strip(), miles=miles, metric=metric)

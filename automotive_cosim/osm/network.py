@@ -21,7 +21,8 @@ from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
 from automotive_cosim.osm.signs import STOP, Followed, Joints, compare, dark, patches, read_signs
 from automotive_cosim.osm.turns import Ban, BannedTurns, read_turns
-from automotive_cosim.traffic.network import SIGN, TIMED_TURN, Edge, Network, read_network
+from automotive_cosim.traffic.network import DERESTRICTED_MPS, SIGN, TIMED_TURN, Edge, Network, read_network
+from automotive_cosim.traffic.posted import sign_mps
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
 
 GEOMETRY = (
@@ -175,6 +176,8 @@ def convert(
     text, opened = open_traps(text)
     tell("building the network, its parameters", None)
     text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
+    if any(road.stated.lanes_forward or road.stated.lanes_backward for road in roads.values()):
+        text = _with_lane_signs(text, roads)
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
     _write(text, target)
     tell("reading the network", None)
@@ -286,6 +289,33 @@ _DIGITS = re.compile(r"\d+")
 
 _EDGE = re.compile(r'(<edge id=("[^":][^"]*")(?: [^>]*)?[^/]>.*?)(\s*</edge>)', re.DOTALL)
 """An edge that is not inside a junction: all before its end, its quoted id, its end."""
+
+
+_LANE = re.compile(r'<lane ([^>]*?)speed="[^"]*"([^>]*?)/>')
+"""A lane without parameters."""
+
+
+def _with_lane_signs(text: str, roads: Mapping[int, MappedRoad]) -> str:
+    """The network's text with the limits of lanes that have signs of their own."""
+
+    def signed(edge: re.Match[str]) -> str:
+        road, edge_id = roads[way_of(unescape(edge[2][1:-1]))], unescape(edge[2][1:-1])
+        signs = road.lane_signs(edge_id)
+        if not signs:
+            return edge[0]
+        lanes = _LANE.findall(edge[0])
+        left_first = signs if road.left_hand else [None] * (len(lanes) - len(signs)) + list(signs[::-1])
+        from_kerb = iter([*left_first, *[None] * len(lanes)])
+
+        def speed(lane: re.Match[str]) -> str:
+            sign = next(from_kerb)
+            mps = sign_mps(sign or road.assumed) or DERESTRICTED_MPS
+            told = f'><param key="maxspeed" value="{sign}"/></lane>' if sign else "/>"
+            return f'<lane {lane[1]}speed="{mps:.2f}"{lane[2]}{told}'
+
+        return _LANE.sub(speed, edge[0])
+
+    return _EDGE.sub(signed, text)
 
 
 def _with_parameters(text: str, of: Callable[[str], Mapping[str, str]]) -> str:

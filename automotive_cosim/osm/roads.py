@@ -17,7 +17,7 @@ from automotive_cosim.osm.access import ENDS
 from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, OsmWay
-from automotive_cosim.osm.limits import Stated, built_up_of, conditional_of, stated_limits
+from automotive_cosim.osm.limits import Stated, built_up_of, conditional_of, kmh_of, stated_limits
 from automotive_cosim.osm.oneway import Directions, at_hours, directions
 from automotive_cosim.osm.towns import is_dense, town_cells
 from automotive_cosim.traffic.network import TIMED_ACCESS
@@ -111,8 +111,16 @@ class MappedRoad:
         return self.directions.is_two_way
 
     def limit(self, edge_id: str) -> str:
-        """The limit of one of its edges, as netconvert reads it."""
-        return self.stated.of(edge_id) or self.assumed
+        """The limit of one of its edges, as netconvert reads it: the highest of its lanes'."""
+        signs = [self.stated.of(edge_id) or self.assumed, *self.lane_signs(edge_id)]
+        return self.stated.of(edge_id) or max(filter(None, signs), key=kmh_of)
+
+    def lane_signs(self, edge_id: str) -> tuple[str | None, ...]:
+        """The limits on the signs of each lane of an edge from the left, None where the lane has none; empty if the
+        lanes have none of their own, or others in number."""
+        signs = self.stated.lanes(edge_id)
+        counts = lanes.built_of(self.tags, self.directions, left_hand=self.left_hand) if signs else (0, 0)
+        return signs if len(signs) == counts[edge_id.startswith("-")] else ()
 
     def lanes(self, edge_id: str) -> int | None:
         """The lanes of one of its edges, those for buses included; None if its tags do not determine the number."""
@@ -143,7 +151,7 @@ class MappedRoad:
         posted = self.stated.of(edge_id)
         if posted is not None:
             kept["maxspeed"] = posted
-        elif self.assumed == "none":
+        elif self.limit(edge_id) == "none":
             kept["maxspeed:assumed"] = "none"
         if self.built_up is None:
             kept["zone:traffic:assumed"] = f"{self.country}:{'urban' if self.is_dense else 'rural'}"

@@ -7,8 +7,9 @@ The words are OpenStreetMap's (wiki pages "Key:maxspeed" and "Conditional restri
     access:conditional    no @ (Mo-Fr 07:30-08:30)
 
 Conditions on weekdays, times of day, dates, months and weeks are understood, and ``wet`` and ``snow``, which the
-weather of the drive decides. Public and school holidays (``PH``, ``SH``) are left out of them: there is no calendar of
-holidays, so every Monday is a school day; an import lists them (``names_holidays``). What holds under any other condition (axle load, daylight, ...) is omitted and reported.
+weather of the drive decides. Public and school holidays (``PH``, ``SH``) are left out of them: there is no calendar
+of holidays, so every Monday is a school day; an import lists them (``names_holidays``). What holds under any other
+condition (axle load, daylight, ...) is omitted and reported.
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ _OF_MONTH = r"\d\d?(?!\d|:\d)"
 _DATES = rf"{_MONTH}(?: {_OF_MONTH})?(?:-(?:{_MONTH}(?: {_OF_MONTH})?|{_OF_MONTH}))?"
 _WEEKS = r"\d\d?(?:-\d\d?(?:/\d\d?)?)?"
 _RULE = re.compile(
-    rf"(?:week (?P<weeks>{_WEEKS}(?:\s*,\s*{_WEEKS})*)\s*)?(?P<dates>{_DATES})?:?\s*(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?"
+    rf"(?:week (?P<weeks>{_WEEKS}(?:\s*,\s*{_WEEKS})*)\s*)?(?P<dates>{_DATES})?:?\s*"
+    rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?"
 )
 _DATES_OFF = re.compile(rf"(?P<dates>{_DATES}(?:\s*,\s*{_DATES})*)\s+off")
 _DAYS_ONE = re.compile(_DAY)

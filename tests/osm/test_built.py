@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
 import re
+import xml.etree.ElementTree as ET
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -10,6 +12,7 @@ from typing import NamedTuple
 
 import pytest
 
+from automotive_cosim.contracts import LimitSource
 from automotive_cosim.geo.place import shipped
 from automotive_cosim.osm import arrows, extract, network
 from automotive_cosim.osm.agreement import differences
@@ -560,3 +563,42 @@ def test_what_sumo_does_not_have_is_listed_by_its_value(build: Build) -> None:
     assert all(f"traffic_calming={value}: node" in listed for value in calming)
     assert re.search("signals at no junction with signals, left out: nodes (\\d+, ){2}\\d+", listed)
     assert "signals with traffic_signals:direction=up, for every direction: node" in listed
+
+
+LANE_LIMITS: tuple[tuple[dict[str, str], tuple[int | str, ...]], ...] = (
+    ({"lanes": "3", "maxspeed:lanes": "||70"}, ("-", "-", 70)),
+    ({"lanes": "3", "maxspeed:lanes": "100|80|"}, (100, 80, "-")),
+    ({"lanes": "3", "maxspeed": "90", "maxspeed:lanes": "||70"}, (90, 90, 70)),
+    ({"lanes": "2", "maxspeed": "60", "maxspeed:lanes": "100|80"}, (100, 80)),
+    ({"lanes": "2", "maxspeed:lanes:forward": "50|30"}, (50, 30)),
+    ({"lanes": "2", "maxspeed:lanes": "50 mph|30 mph"}, (80, 48)),
+    ({"lanes": "2", "maxspeed:lanes": "none|80", "highway": "trunk"}, ("none", 80)),
+    ({"lanes": "2", "maxspeed:lanes": "walk|fast"}, (7, "-")),
+    ({"lanes": "2", "maxspeed:lanes": "|"}, ("-", "-")),
+    ({"lanes": "2", "maxspeed:lanes": "100|80|60"}, (100, 100)),
+    ({"lanes": "2", "maxspeed": "50", "maxspeed:lanes": "||60"}, (60, 60)),
+    ({"lanes": "2", "maxspeed:lanes": "||60"}, ("-", "-")),
+)
+"""Tags of a one-way road and the limit on the sign of each lane from the left; ``-`` without one."""
+
+
+@pytest.mark.parametrize("country", ["DE", "GB"])
+def test_each_lane_has_the_limit_of_its_own_sign(build: Build, tmp_path: Path, country: str) -> None:
+    world = build(ladder([ONE | tags for tags, _ in LANE_LIMITS]), country)  # type: ignore[call-arg]
+    net = ET.fromstring(gzip.decompress((tmp_path / "town.net.xml.gz").read_bytes()))
+    lanes = {lane.get("id", ""): float(lane.get("speed", "")) for lane in net.iter("lane")}
+    for index, (tags, signs) in enumerate(LANE_LIMITS):
+        edge = world.built.network.edges[str(FIRST + index)]
+        left_first = edge.lane_ids if country == "GB" else edge.lane_ids[::-1]
+        whole = edge.limit_source is LimitSource.POSTED
+        for lane, sign in zip(left_first, signs, strict=True):
+            assert (whole or lane in edge.signed_lanes) is (sign != "-"), tags
+            if sign != "-":
+                assert round(lanes[lane] * 3.6) == (142 if sign == "none" else sign), tags
+        assert edge.speed_mps == max(lanes[lane] for lane in left_first)
+    assert not list(differences(world.map, world.built, world.roads, world.country))
+    listed = set(re.findall(r"(?<=: )maxspeed:lanes=[^:,]*|^maxspeed:lanes=[^:,]*", told(world), re.MULTILINE))
+    for tags, signs in LANE_LIMITS:
+        parts = tags.get("maxspeed:lanes", "").split("|")
+        odd = "fast" in parts or (len(parts) != len(signs) and "maxspeed:lanes" in tags)
+        assert (f"maxspeed:lanes={tags.get('maxspeed:lanes')}" in listed) is odd, tags

@@ -123,12 +123,17 @@ def test_value_unit_and_zone(zone: str, key: str, value: str) -> None:
         ({"maxspeed:advisory": "40"}, None, None),
         ({"maxspeed:practical": "40"}, None, None),
         ({"minspeed": "60"}, None, None),
-        # lanes: the highest, where there is no limit of the road
+        # lanes: the highest, if each has a sign; an empty part has that of the road
         ({"maxspeed:lanes": "100|80|60"}, "100", "100"),
         ({"maxspeed:lanes": "100|none"}, "none", "none"),
-        ({"maxspeed:lanes": "100||60"}, "100", "100"),
+        ({"maxspeed:lanes": "100||60"}, None, None),
+        ({"maxspeed": "80", "maxspeed:lanes": "100||60"}, "100", "100"),
+        ({"maxspeed": "100", "maxspeed:lanes": "||70"}, "100", "100"),
+        ({"maxspeed:lanes": "||"}, None, None),
+        ({"maxspeed": "80", "maxspeed:lanes": "|"}, "80", "80"),
+        ({"maxspeed": "DE:zone30", "maxspeed:lanes": "20|"}, "30", "30"),
         ({"maxspeed:lanes:forward": "80|60"}, "80", None),
-        ({"maxspeed": "90", "maxspeed:lanes": "100|80"}, "90", "90"),
+        ({"maxspeed": "90", "maxspeed:lanes": "100|80"}, "100", "100"),
         # conditions: a limit of their own, at their hours
         ({"maxspeed": "50", "maxspeed:conditional": "30 @ (Mo-Fr 07:00-17:00)"}, "50", "50"),
         ({"maxspeed:conditional": "30 @ wet"}, None, None),
