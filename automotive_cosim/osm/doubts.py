@@ -30,6 +30,8 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         shut = {way.way_id for way in extract.closed}
         what = "closed to cars" if set(ways) <= shut else "open to cars" if not shut & set(ways) else "read by way"
         yield f"access that is doubtful, {what}: {tag}: {in_words('way', ways)}"
+    if extract.low_emission:
+        yield f"low-emission zones, taken as open to any car: {in_words('relation', extract.low_emission)}"
     for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in oneway.doubts(way.tags)):
         yield f"direction that is doubtful: {tag}: {in_words('way', ways)}"
     yield from _of_barriers(built.cut)
@@ -52,7 +54,7 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         about = tag if tag == limits.NO_UNIT else f"{tag}, left out"
         yield f"{about}: {in_words('way', ways)}"
     for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in _of_lane_limits(way, roads)):
-        yield f"limits of lanes of another number, not by lane but the highest if each has one: {tag}: {in_words('way', ways)}"
+        yield f"limits of lanes of another number, the highest if all have one: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag((way, tag) for way in everywhere for tag in _of_holidays(way.tags)):
         yield f"holidays, of which there is no calendar, taken for other days: {tag}: {in_words('way', ways)}"
     for part, ways in _by_tag((way, part) for way in extract.ways for part in _unread(way.tags)):

@@ -126,10 +126,19 @@ _ACCESS_OF_LANES = re.compile(
 _MAXSPEED = re.compile(r"maxspeed(?::(?P<group>motor_vehicle|motorcar))?(?::(?P<side>forward|backward))?")
 
 
+_FOR_TWO = re.compile(r"designated|only|[23]\+?")
+
+
 def _admits(tags: Mapping[str, str], side: str) -> bool:
+    """Whether a driver alone may drive there, at any hour."""
+    if tags.get("highway") == "construction":
+        return False
     whole = sorted(_ranked(tags, side, _ACCESS))
     if whole:
         return _for_cars(whole[-1][1])
+    shared = [tags.get(key, "") for key in ("hov", f"hov:{side}", "hov:lanes", f"hov:lanes:{side}")]
+    if any(text and all(_FOR_TWO.fullmatch(part.strip()) for part in text.split("|")) for text in shared):
+        return False
     lanes = sorted(_ranked(tags, side, _ACCESS_OF_LANES))
     if lanes:
         return any(not lane.strip() or _for_cars(lane) for lane in lanes[-1][1].split("|"))
@@ -141,7 +150,12 @@ def _at_times(tags: Mapping[str, str], side: str) -> bool:
     """Whether cars are let in at hours, by a condition on the clock, the calendar or the weather."""
     by_rank: list[tuple[int, bool]] = []
     for key, value in tags.items():
-        match = _ACCESS.fullmatch(key.removesuffix(":conditional"))
+        name = key.removesuffix(":conditional")
+        if key != name and name in ("hov", f"hov:{side}"):
+            found = [word for word, when in _CLAUSE.findall(value) if _CLOCK.fullmatch(when)]
+            if any(word in ("yes", "no") for word in found):
+                by_rank.append((9, True))
+        match = _ACCESS.fullmatch(name)
         if match is None or not value or match["side"] not in (None, side):
             continue
         rank = 2 * GROUPS.index(match["group"]) + (match["side"] is not None)

@@ -109,6 +109,8 @@ class Extract:
     """Water, green and buildings, wherever in the extract."""
     closed: tuple[OsmWay, ...] = ()
     """Roads that cars may not drive in any direction."""
+    low_emission: tuple[int, ...] = ()
+    """Relations of low-emission zones."""
 
     def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
@@ -135,6 +137,7 @@ class Extract:
             tuple(camera for camera in self.cameras if area.holds(*camera.position)),
             self.ground,
             tuple(way for way in self.closed if nodes.keys() & set(way.nodes)),
+            self.low_emission,
         )
 
     @property
@@ -177,6 +180,7 @@ def read(source: Path) -> Extract:
         tuple(_watching(cameras, relations, nodes, {way.way_id: way for way in ways})),
         ground.in_order(areas),
         tuple(way for way in complete if not any(directions(way.tags))),
+        tuple(sorted(relation.relation_id for relation in relations if _is_low_emission(relation))),
     )
 
 
@@ -397,7 +401,11 @@ def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[Relation, ...]]:
 
 
 def _is_kept(relation: Relation) -> bool:
-    return _is_restriction(relation) or _is_enforcement(relation)
+    return _is_restriction(relation) or _is_enforcement(relation) or _is_low_emission(relation)
+
+
+def _is_low_emission(relation: Relation) -> bool:
+    return relation.tags.get("boundary") == "low_emission_zone"
 
 
 def _is_restriction(relation: Relation) -> bool:
@@ -409,7 +417,10 @@ def _is_enforcement(relation: Relation) -> bool:
 
 
 def _is_road(tags: Mapping[str, str]) -> bool:
-    return tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes"
+    road = tags.get("highway")
+    return (tags.get("construction") if road == "construction" else road) in ROAD_CLASSES and tags.get(
+        "area"
+    ) != "yes"
 
 
 def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:

@@ -166,7 +166,8 @@ def _for_buses(tags: Mapping[str, str], end: str, may: Directions, *, left_hand:
 def _access_of_lanes(
     tags: Mapping[str, str], end: str, count: int | None, buses: int, *, is_two_way: bool, left_hand: bool
 ) -> dict[str, str]:
-    """Who may use each lane of a direction, in the words that netconvert reads."""
+    """Who may use each lane of a direction, in the words that netconvert reads; lanes for cars with passengers are
+    not for a driver alone."""
     suffix = f":{end}" if is_two_way or end == "backward" else ""
     told: dict[str, str] = {}
     for kind in BUS_KINDS:
@@ -178,14 +179,18 @@ def _access_of_lanes(
     if not told and buses and count is not None:
         lanes = ["designated"] * buses + ["yes"] * (count - buses)
         told[f"bus:lanes{suffix}"] = "|".join(lanes if left_hand else reversed(lanes))
-    for key in access.KEYS:
+    of_all: list[str] = []
+    for key in (*access.KEYS, "hov"):
         value = tags.get(f"{key}:lanes:{end}") or (
             "" if is_two_way and end == "backward" else tags.get(f"{key}:lanes", "")
         )
-        if value:
-            words = [lane.strip() for lane in value.split("|")]
-            told[f"vehicle:lanes{suffix}"] = "|".join(
-                "yes" if not word or access.lets_in(word) else "no" for word in words
-            )
-            break
+        if not value or (of_all and key != "hov"):
+            continue
+        words = [lane.strip() for lane in value.split("|")]
+        if key == "hov":
+            closed = ["no" if word in access.HOV_ONLY else "yes" for word in words]
+            words = closed if not of_all else [min(pair) for pair in zip(of_all, closed, strict=False)]
+        of_all = ["yes" if not word or access.lets_in(word) else "no" for word in words]
+    if of_all:
+        told[f"vehicle:lanes{suffix}"] = "|".join(of_all)
     return told

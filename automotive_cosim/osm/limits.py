@@ -145,8 +145,8 @@ def stated_limits(tags: Mapping[str, str], country: str = "") -> Stated:
     lanes = [_of_lanes(tags, direction, may_be_none=may_be_none) for direction in ends]
     for number, parts in enumerate(lanes):
         signs = [part or whole[number] for part in parts]
-        known = [sign for sign in signs if sign is not None]
-        if known:
+        if signs:
+            known = [sign for sign in signs if sign is not None]
             whole[number] = max(known, key=kmh_of) if len(known) == len(signs) else None
             lanes[number] = tuple(signs)
     return Stated(whole[0], whole[1], lanes[0], lanes[1])
@@ -196,8 +196,8 @@ def doubts(tags: Mapping[str, str], country: str) -> Iterator[str]:
         if country in MPH_COUNTRIES and any(match[2] is None for match in numbers):
             yield NO_UNIT
     for key in ("maxspeed:lanes", "maxspeed:lanes:forward", "maxspeed:lanes:backward"):
-        signs = {_sign(part.strip()) for part in tags.get(key, "").split("|") if part.strip()}
-        if None in signs or ("none" in signs and not may_be_none):
+        parts = {_sign(part.strip()) for part in tags.get(key, "").split("|") if part.strip()}
+        if None in parts or ("none" in parts and not may_be_none):
             yield f"{key}={tags[key]}"
     for key in ("zone:traffic", *CAR_KEYS, *ZONE_KEYS):
         for value in filter(_ZONE.fullmatch, _parts(tags.get(key, ""))):

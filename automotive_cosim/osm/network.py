@@ -304,8 +304,8 @@ def _with_lane_signs(text: str, roads: Mapping[int, MappedRoad]) -> str:
         if not signs:
             return edge[0]
         lanes = _LANE.findall(edge[0])
-        left_first = signs if road.left_hand else [None] * (len(lanes) - len(signs)) + list(signs[::-1])
-        from_kerb = iter([*left_first, *[None] * len(lanes)])
+        added: list[str | None] = [None] * (len(lanes) - len(signs))
+        from_kerb = iter([*signs, *added] if road.left_hand else [*added, *signs[::-1]])
 
         def speed(lane: re.Match[str]) -> str:
             sign = next(from_kerb)

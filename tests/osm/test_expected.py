@@ -21,7 +21,16 @@ from automotive_cosim.osm.oneway import VALUES, directions
 from automotive_cosim.osm.turns import CARS, KINDS, NO_BAN, value_for_cars
 from tests.laws import over
 
-CLASSES = ("motorway", "motorway_link", "trunk", "primary", "tertiary", "residential", "living_street")
+CLASSES = (
+    "construction",
+    "motorway",
+    "motorway_link",
+    "trunk",
+    "primary",
+    "tertiary",
+    "residential",
+    "living_street",
+)
 SPEEDS = ("50", "30 mph", "30mph", "30 MPH", "none", "walk", "70;90", "0", "7.5", "500", "1", "fast", "FR:urban",
           "DE:zone30", "GB:20", "UK:nsl_dual", "XX:30", "de:rural")  # fmt: skip
 POOLS = (
@@ -33,6 +42,10 @@ POOLS = (
     (["maxspeed:lanes", "maxspeed:lanes:backward"], ["100|80", "none|50", "|30 mph"]),
     (["psv:lanes:backward", "vehicle:lanes", "motor_vehicle:lanes:forward"],
      ["designated", "no|no", "yes|no", "|psv"]),
+    (["hov", "hov:forward", "hov:lanes", "hov:lanes:backward"],
+     ["designated", "yes", "no", "2+", "3", "lane", "designated|no", "designated|designated"]),
+    (["hov:conditional"], ["designated @ (Mo-Fr 06:00-09:00)", "no @ (Sa,Su)"]),
+    (["construction"], ["minor"]),
     (["junction"], ["roundabout", "circular", "yes"]),
     (["motorroad"], ["yes"]),
 )  # fmt: skip
