@@ -25,6 +25,13 @@ def in_words(kind: str, numbers: Sequence[int]) -> str:
 
 def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, country: str) -> Iterator[str]:
     """Everything about access, direction, barriers, turns, lanes and limits that somebody should look at."""
+    beyond = set(extract.other_side)
+    for land in sorted({road.country for road in roads.values()} - {country}):
+        ways = sorted(way for way, road in roads.items() if road.country == land)
+        about = "under its law"
+        if beyond & set(ways):
+            about = f"where traffic keeps the other side, left out (for them instead: --country {land})"
+        yield f"roads in {land}, {about}: {in_words('way', ways)}"
     everywhere = (*extract.ways, *extract.closed)
     for tag, ways in _by_tag((way, doubt) for way in everywhere for doubt in access.doubts(way.tags)):
         shut = {way.way_id for way in extract.closed}
@@ -50,7 +57,9 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
     ):
         done = "a lane each was built" if tag == lanes.SHARED else "left out"
         yield f"{tag}, {done}: {in_words('way', ways)}"
-    for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, country)):
+    for tag, ways in _by_tag(
+        (way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, roads[way.way_id].country)
+    ):
         about = tag if tag == limits.NO_UNIT else f"{tag}, left out"
         yield f"{about}: {in_words('way', ways)}"
     for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in _of_lane_limits(way, roads)):

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib import import_module
 from itertools import product
@@ -111,6 +111,8 @@ class Extract:
     """Roads that cars may not drive in any direction."""
     low_emission: tuple[int, ...] = ()
     """Relations of low-emission zones."""
+    other_side: tuple[int, ...] = ()
+    """Ways that were left out, because traffic keeps the other side there."""
 
     def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
@@ -138,6 +140,22 @@ class Extract:
             self.ground,
             tuple(way for way in self.closed if nodes.keys() & set(way.nodes)),
             self.low_emission,
+        )
+
+    def without(self, ways: Set[int]) -> Extract:
+        """The map without these roads, which become those on the other side."""
+        kept = tuple(way for way in self.ways if way.way_id not in ways)
+        used = {ref for way in kept for ref in way.nodes}
+        return replace(
+            self,
+            ways=kept,
+            nodes={ref: node for ref, node in self.nodes.items() if ref in used},
+            restrictions=tuple(
+                turn
+                for turn in self.restrictions
+                if not any(kind == "w" and ref in ways for kind, ref, _ in turn.members)
+            ),
+            other_side=tuple(sorted(ways)),
         )
 
     @property

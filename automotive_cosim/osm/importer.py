@@ -19,7 +19,7 @@ from automotive_cosim.osm import demand, extract, folder, ground, network, trips
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.demand import Demand, Journey
 from automotive_cosim.osm.report import ImportReport, make_report
-from automotive_cosim.osm.roads import describe
+from automotive_cosim.osm.roads import describe, on_one_side
 from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.scenarios import Scenario, Sumo, Trip, load
 from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, Stability, Stuck, measure
@@ -92,6 +92,8 @@ def import_map(
         options = replace(options, country=options.country or place.country)
         tell(f"reading the limits of {counted(len(mapped.ways), 'road')}", None)
         roads = describe(mapped, atlas, options.country)
+        mapped = on_one_side(mapped, roads, options.country)
+        place = atlas.place(*mapped.centre)
         tell("building the network", None)
         net = building / f"{options.name}.net.xml.gz"
         built = network.convert(mapped, roads, net, options.country, building.parent, tell)

@@ -166,26 +166,39 @@ def describe(extract: Extract, atlas: Atlas, country: str) -> dict[int, MappedRo
     Args:
         extract: the map.
         atlas: the law of every place, which sets the limits that no sign does.
-        country: ISO 3166-1 code of the map; a way in another country is under the law of this one all the same, so
-            that a wrong position near a border changes nothing.
+        country: ISO 3166-1 code of the map. Each road is under the law of the land on which it lies; if none lies
+            in this country, the map's positions are not trusted, and all are under its law.
     """
     towns, left = town_cells(extract), country in LEFT_HAND
+    places = {way.way_id: _place_of(way, extract, atlas) for way in extract.ways}
+    trusted = any(place.country == country for place in places.values())
+    layers = tuple(layer for layer in atlas.country(country) if layer.kind == "country")
     roads: dict[int, MappedRoad] = {}
     for way in extract.ways:
-        place = _place_of(way, extract, atlas, country)
+        place = places[way.way_id]
+        if not trusted or not place.country:
+            place = Place(country=country, layers=layers)
         built_up, dense = built_up_of(way.tags), is_dense(way, extract.nodes, towns)
         in_town = dense if built_up is None else built_up
         assumed = assumed_sign(way.tags, atlas, place, built_up=in_town)
         roads[way.way_id] = MappedRoad(
-            way.tags, country, stated_limits(way.tags, country), assumed, built_up, dense, left
+            way.tags, place.country, stated_limits(way.tags, place.country), assumed, built_up, dense, left
         )
     return roads
 
 
-def _place_of(way: OsmWay, extract: Extract, atlas: Atlas, country: str) -> Place:
-    place = atlas.place(*extract.nodes[way.nodes[len(way.nodes) // 2]].position)
-    if place.country == country:
-        return place
-    return Place(
-        country=country, layers=tuple(layer for layer in atlas.country(country) if layer.kind == "country")
-    )
+def _place_of(way: OsmWay, extract: Extract, atlas: Atlas) -> Place:
+    return atlas.place(*extract.nodes[way.nodes[len(way.nodes) // 2]].position)
+
+
+def on_one_side(extract: Extract, roads: Mapping[int, MappedRoad], country: str) -> Extract:
+    """The map without the roads of lands where traffic keeps the other side: a SUMO network keeps one.
+
+    Args:
+        extract: the map.
+        roads: its roads, by OSM way.
+        country: ISO 3166-1 code of the land whose side the network keeps.
+    """
+    left = country in LEFT_HAND
+    beyond = {way for way, road in roads.items() if (road.country in LEFT_HAND) is not left}
+    return extract.without(beyond) if beyond else extract

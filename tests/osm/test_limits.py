@@ -14,9 +14,9 @@ from hypothesis import strategies as st
 from automotive_cosim.geo.place import Atlas, Place, shipped
 from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND, LIMITS, WORLD, assumed_limit_kmh
-from automotive_cosim.osm.extract import ROAD_CLASSES
+from automotive_cosim.osm.extract import ROAD_CLASSES, Extract, Node, OsmWay, Position
 from automotive_cosim.osm.limits import CAR_KEYS, NO_UNIT, ZONE_KEYS, built_up_of, doubts, kmh_of, stated_limits
-from automotive_cosim.osm.roads import MappedRoad
+from automotive_cosim.osm.roads import MappedRoad, describe, on_one_side
 from tests.laws import over
 
 NETCONVERT_READS = re.compile(r"none|\d+(\.\d+)?( mph)?")
@@ -392,3 +392,34 @@ def test_countries_are_codes_and_differ_in_the_side() -> None:
     assert all(re.fullmatch("[A-Z]{2}", code) for code in LEFT_HAND | set(LIMITS))
     assert {"GB", "JP", "AU", "ZA", "IN"} <= LEFT_HAND
     assert not {"FR", "DE", "US", "CH", "SE"} & LEFT_HAND
+
+
+LANDS = (
+    ("CN", "HK", (114.06, 22.60), (114.17, 22.40)),
+    ("MO", "CN", (113.55, 22.19), (113.50, 22.28)),
+    ("LA", "TH", (102.62, 17.97), (102.75, 17.80)),
+    ("US", "CA", (-83.06, 42.35), (-83.00, 42.28)),
+    ("DE", "FR", (7.83, 48.57), (7.74, 48.58)),
+    ("CH", "FR", (6.14, 46.20), (6.10, 46.26)),
+)
+"""Two lands, and a place in each."""
+
+
+@over(LANDS)
+def test_each_road_is_under_the_law_of_its_land(
+    here: str, there: str, place: tuple[float, float], beyond: tuple[float, float]
+) -> None:
+    nodes = {
+        number: Node(Position(lon + step / 1000, lat), {})
+        for number, ((lon, lat), step) in enumerate(product((place, beyond), range(2)))
+    }
+    ways = tuple(OsmWay(way, {"highway": "primary"}, (2 * way, 2 * way + 1)) for way in range(2))
+    extract = Extract(ways, nodes, ())
+    roads = describe(extract, shipped(), here)
+    assert [roads[way].country for way in range(2)] == [here, there]
+    assert roads[1].assumed == describe(extract, shipped(), there)[1].assumed
+    kept = on_one_side(extract, roads, here)
+    same_side = (here in LEFT_HAND) is (there in LEFT_HAND)
+    assert [way.way_id for way in kept.ways] == ([0, 1] if same_side else [0])
+    assert kept.other_side == (() if same_side else (1,))
+    assert {road.country for road in describe(extract, shipped(), "JP").values()} == {"JP"}, "not where it says"
