@@ -7,6 +7,7 @@ ways (paths, railways) are removed, because each path that meets a road would sp
 from __future__ import annotations
 
 import re
+import shutil
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, replace
@@ -18,13 +19,13 @@ from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
-from automotive_cosim.formats.files import is_utf8, open_file
+from automotive_cosim.formats.files import is_utf8, open_file, opened
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.ground import MappedArea
 from automotive_cosim.osm.oneway import directions
-from automotive_cosim.osm.overpass_json import OverpassJson, is_json
+from automotive_cosim.osm.overpass_json import COUNTS, OverpassJson, is_json, refuse_broken_off
 from automotive_cosim.osm.shores import cut_water
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
@@ -239,20 +240,36 @@ _Read = tuple[list[OsmWay], tuple[Relation, ...], dict[int, Node], dict[int, Nod
 
 def _read_osm(source: Path) -> _Read:
     kind = _format(source, _head(source))
-    deleted = _checked(source) if kind != "pbf" else set[tuple[str, int]]()
+    deleted, version = _checked(source) if kind != "pbf" else (set[tuple[str, int]](), "")
     osmium = _osmium()
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-map-") as scratch:
         try:
+            file = source
+            if version in OLD_VERSIONS:
+                file, kind = _as_new(source, Path(scratch) / "new.osm"), "osm"
             if deleted:
-                return _read_sorted(source, kind, deleted, Path(scratch))
+                return _read_sorted(file, kind, deleted, Path(scratch))
             try:
-                return _read_file(osmium.io.File(str(source), kind))
+                return _read_file(osmium.io.File(str(file), kind))
             except RuntimeError as error:
                 if not _UNSORTED.search(str(error)):
                     raise
-                return _read_sorted(source, kind, deleted, Path(scratch))
+                return _read_sorted(file, kind, deleted, Path(scratch))
         except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
             raise ImportMapError(_explain(source, str(error))) from error
+
+
+OLD_VERSIONS = ("1", "1.0")
+"""What tools write (OSMnx before 1.3) that mean the present version of the format, 0.6."""
+
+
+def _as_new(source: Path, target: Path) -> Path:
+    """Writes a file unpacked, and with the present version."""
+    with opened(source) as old, target.open("wb") as new:
+        head = old.read(4096)
+        new.write(re.sub(rb"""(<osm\b[^>]*?version=["'])1(\.0)?(?=["'])""", rb"\g<1>0.6", head, count=1))
+        shutil.copyfileobj(old, new)
+    return target
 
 
 _UNSORTED = re.compile(r"out of order|twice")
@@ -281,8 +298,9 @@ def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch
 
 
 def _read_file(file: Any) -> _Read:
-    ways, relations = _read_ways(file)
-    nodes = _read_nodes(file, _wanted(ways, relations))
+    carried: dict[int, Node] = {}
+    ways, relations = _read_ways(file, carried)
+    nodes = carried | _read_nodes(file, _wanted(ways, relations))
     lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
     areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
     return ways, relations, nodes, _read_cameras(file), areas
@@ -346,15 +364,27 @@ class _UnreadableError(ImportMapError):
     """XML that osmium's own words describe better."""
 
 
-def _checked(source: Path) -> set[tuple[str, int]]:
-    """Refuses positions that libosmium would misread (1e300 becomes 0), and an archive of more than is read.
+def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
+    """Refuses positions that libosmium would misread (1e300 becomes 0), an archive of more than is read, and what a
+    server broke off.
 
     Returns:
-        The elements that JOSM keeps although they were deleted, by kind and id: libosmium takes them for real.
+        The elements that JOSM keeps although they were deleted, by kind and id: libosmium takes them for real. And
+        the version of the format.
     """
     deleted: set[tuple[str, int]] = set()
+    version = ""
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
+        nonlocal version
+        if name == "osm":
+            version = attributes.get("version", "")
+        elif name == "count":
+            raise ImportMapError(f"{source} {COUNTS}")
+        elif name == "remark":
+            with opened(source) as stream:
+                remark = re.search(rb"<remark>(.*?)</remark>", stream.read(), re.DOTALL)
+            refuse_broken_off(source, remark[1].decode("utf-8", "replace") if remark else "")
         for key, most in (("lat", 90), ("lon", 180)) if name == "node" else ():
             text = attributes.get(key, "0")
             if not POSITION.fullmatch(text) or abs(float(text)) > most:
@@ -369,7 +399,7 @@ def _checked(source: Path) -> set[tuple[str, int]]:
     except _UnreadableError as error:
         if isinstance(error.__cause__, OSError):
             raise ImportMapError(f"{source} is truncated or damaged ({error.__cause__})") from error
-    return deleted
+    return deleted, version
 
 
 def _format(source: Path, head: bytes) -> str:
@@ -402,7 +432,8 @@ def _explain(source: Path, error: str) -> str:
     return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
 
 
-def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[Relation, ...]]:
+def _read_ways(file: Any, carried: dict[int, Node]) -> tuple[list[OsmWay], tuple[Relation, ...]]:
+    """Roads and relations, and the nodes that ways carry along with their positions (``out geom``)."""
     osmium = _osmium()
     ways: list[OsmWay] = []
     relations: list[Relation] = []
@@ -412,6 +443,8 @@ def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[Relation, ...]]:
         if item.is_way():
             if _is_road(tags):
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
+                if item.nodes and item.nodes[0].location.valid():
+                    carried |= {node.ref: Node(Position(node.lon, node.lat), {}) for node in item.nodes}
         else:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
             relations.append(Relation(item.id, tags, members))

@@ -52,6 +52,9 @@ QUICK_DENSITY = 0.5
 STUCK_SHARE_MAX = 0.01
 """Trips that stood for good in a trial that flowed otherwise are left out, up to this share of all."""
 
+HALF_TURN_DEG = 180.0
+"""A map as wide as this reaches over the 180th meridian."""
+
 FULL_PER_KM = 1000 / 7.5
 """Cars that fit on a kilometre of lane: SUMO's default length of 5 m and gap of 2.5 m."""
 
@@ -87,6 +90,12 @@ def import_map(
         mapped = extract.read(source)
         if options.area is not None:
             mapped = mapped.crop(options.area)
+        west, _, east, _ = mapped.bounds
+        if east - west > HALF_TURN_DEG:
+            raise ImportMapError(
+                f"{source} has roads on both sides of the 180th meridian, which no SUMO network can; give one: "
+                "--bbox 0,-90,180,90 or --bbox=-180,-90,0,90"
+            )
         atlas = shipped()
         place = atlas.place(*mapped.centre)
         options = replace(options, country=options.country or place.country)
