@@ -60,8 +60,8 @@ class Approach(NamedTuple):
 class Signs:
     """The signs of a map, and what netconvert is told of them."""
 
-    approaches: dict[Approach, tuple[str, int]] = field(default_factory=dict)
-    """The kind of sign, and its node."""
+    approaches: dict[Approach, tuple[str, list[int]]] = field(default_factory=dict)
+    """The kind of sign, and its nodes."""
     types: dict[int, str] = field(default_factory=dict)
     """SUMO's type of a junction, by OSM node."""
     ruled: dict[int, bool] = field(default_factory=dict)
@@ -217,7 +217,7 @@ def read_signs(joints: Joints) -> Signs:
                 signs.leave_out("on a junction, without the road that it is for", ref)
         else:
             _place(kind, ref, node.tags, joints, signs)
-            found = next((each for each, sign in signs.approaches.items() if sign[1] == ref), None)
+            found = next((each for each, sign in signs.approaches.items() if ref in sign[1]), None)
             if found and node.tags.get("stop", "") in ALL_WAY:
                 every.add(found.node)
     _rule(joints, signs, every, signals)
@@ -254,7 +254,8 @@ def _place(kind: str, ref: int, tags: Mapping[str, str], joints: Joints, signs: 
     if not found:
         signs.leave_out(f"with no junction within {FARTHEST_M:.0f} m", ref)
     for _, approach in found:
-        signs.approaches.setdefault(approach, (kind, ref))
+        before, nodes = signs.approaches.get(approach, (kind, []))
+        signs.approaches[approach] = (STOP if STOP in (kind, before) else GIVE_WAY, [*nodes, ref])
 
 
 def _rule(joints: Joints, signs: Signs, every: set[int], signals: Sequence[tuple[float, float]]) -> None:
@@ -331,12 +332,12 @@ def compare(signs: Signs, joints: Joints, links: Links, goals: Mapping[str, str]
     edges: dict[str, str] = {}
     left_out = {why: list(nodes) for why, nodes in signs.unplaced.items()}
 
-    for approach, (kind, ref) in signs.approaches.items():
+    for approach, (kind, nodes) in signs.approaches.items():
         edge = joints.edge_id(approach)
         alone = approach.node not in signs.ruled and approach.node not in signs.types
         why = _why_not(kind, links.of.get(edge, ()), links.types.get(goals.get(edge, ""), ""), alone=alone)
         if why:
-            left_out.setdefault(why, []).append(ref)
+            left_out.setdefault(why, []).extend(nodes)
         else:
             edges[edge] = kind
     for ref, approaches in signs.by_class.items():
