@@ -25,13 +25,12 @@ def in_words(kind: str, numbers: Sequence[int]) -> str:
 
 def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, country: str) -> Iterator[str]:
     """Everything about access, direction, barriers, turns, lanes and limits that somebody should look at."""
-    beyond = set(extract.other_side)
+    for land, beyond in extract.other_side.items():
+        about = f"where traffic keeps the other side, left out (for them instead: --country {land})"
+        yield f"roads in {land}, {about}: {in_words('way', beyond)}"
     for land in sorted({road.country for road in roads.values()} - {country}):
-        ways = sorted(way for way, road in roads.items() if road.country == land)
-        about = "under its law"
-        if beyond & set(ways):
-            about = f"where traffic keeps the other side, left out (for them instead: --country {land})"
-        yield f"roads in {land}, {about}: {in_words('way', ways)}"
+        there = [way for way, road in roads.items() if road.country == land]
+        yield f"roads in {land}, under its law: {in_words('way', there)}"
     everywhere = (*extract.ways, *extract.closed)
     for tag, ways in _by_tag((way, doubt) for way in everywhere for doubt in access.doubts(way.tags)):
         shut = {way.way_id for way in extract.closed}

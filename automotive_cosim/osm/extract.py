@@ -10,7 +10,7 @@ import re
 import shutil
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Set
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib import import_module
 from itertools import product
@@ -112,8 +112,8 @@ class Extract:
     """Roads that cars may not drive in any direction."""
     low_emission: tuple[int, ...] = ()
     """Relations of low-emission zones."""
-    other_side: tuple[int, ...] = ()
-    """Ways that were left out, because traffic keeps the other side there."""
+    other_side: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    """Ways that were left out, all or in part, because traffic keeps the other side there, by country."""
 
     def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
@@ -121,42 +121,29 @@ class Extract:
         Raises:
             ImportMapError: it contains no road.
         """
-        nodes = {ref: node for ref, node in self.nodes.items() if area.holds(*node.position)}
-        ways = tuple(piece for way in self.ways for piece in _known_pieces(way, nodes))
-        if not ways:
+        part = self.part({ref: node for ref, node in self.nodes.items() if area.holds(*node.position)})
+        if not part.ways:
             west, south, east, north = self.bounds
             raise ImportMapError(
                 f"no road in the --bbox; the map reaches from {west:.4f},{south:.4f} to {east:.4f},{north:.4f}"
             )
-        kept = {way.way_id for way in ways}
-        turns = tuple(
-            turn for turn in self.restrictions if all(kind != "w" or ref in kept for kind, ref, _ in turn.members)
-        )
-        used = {ref for way in ways for ref in way.nodes}
-        return Extract(
-            ways,
-            {ref: node for ref, node in nodes.items() if ref in used},
-            turns,
-            tuple(camera for camera in self.cameras if area.holds(*camera.position)),
-            self.ground,
-            tuple(way for way in self.closed if nodes.keys() & set(way.nodes)),
-            self.low_emission,
-        )
+        return replace(part, cameras=tuple(camera for camera in self.cameras if area.holds(*camera.position)))
 
-    def without(self, ways: Set[int]) -> Extract:
-        """The map without these roads, which become those on the other side."""
-        kept = tuple(way for way in self.ways if way.way_id not in ways)
-        used = {ref for way in kept for ref in way.nodes}
+    def part(self, nodes: Mapping[int, Node]) -> Extract:
+        """The part with these nodes alone; of a road that leaves it and comes back, the longest stretch."""
+        ways = tuple(piece for way in self.ways for piece in _known_pieces(way, nodes))
+        kept = {way.way_id for way in ways}
+        used = {ref for way in ways for ref in way.nodes}
         return replace(
             self,
-            ways=kept,
-            nodes={ref: node for ref, node in self.nodes.items() if ref in used},
+            ways=ways,
+            nodes={ref: node for ref, node in nodes.items() if ref in used},
             restrictions=tuple(
                 turn
                 for turn in self.restrictions
-                if not any(kind == "w" and ref in ways for kind, ref, _ in turn.members)
+                if all(kind != "w" or ref in kept for kind, ref, _ in turn.members)
             ),
-            other_side=tuple(sorted(ways)),
+            closed=tuple(way for way in self.closed if nodes.keys() & set(way.nodes)),
         )
 
     @property

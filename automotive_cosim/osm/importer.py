@@ -99,10 +99,10 @@ def import_map(
         atlas = shipped()
         place = atlas.place(*mapped.centre)
         options = replace(options, country=options.country or place.country)
+        mapped = on_one_side(mapped, atlas, options.country)
+        place = atlas.place(*mapped.centre)
         tell(f"reading the limits of {counted(len(mapped.ways), 'road')}", None)
         roads = describe(mapped, atlas, options.country)
-        mapped = on_one_side(mapped, roads, options.country)
-        place = atlas.place(*mapped.centre)
         tell("building the network", None)
         net = building / f"{options.name}.net.xml.gz"
         built = network.convert(mapped, roads, net, options.country, building.parent, tell)

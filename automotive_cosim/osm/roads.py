@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.osm import lanes
@@ -191,14 +191,23 @@ def _place_of(way: OsmWay, extract: Extract, atlas: Atlas) -> Place:
     return atlas.place(*extract.nodes[way.nodes[len(way.nodes) // 2]].position)
 
 
-def on_one_side(extract: Extract, roads: Mapping[int, MappedRoad], country: str) -> Extract:
+def on_one_side(extract: Extract, atlas: Atlas, country: str) -> Extract:
     """The map without the roads of lands where traffic keeps the other side: a SUMO network keeps one.
 
     Args:
         extract: the map.
-        roads: its roads, by OSM way.
-        country: ISO 3166-1 code of the land whose side the network keeps.
+        atlas: the lands.
+        country: ISO 3166-1 code of the one whose side the network keeps; if nothing lies in it, the map's positions
+            are not trusted, and all is kept.
     """
-    left = country in LEFT_HAND
-    beyond = {way for way, road in roads.items() if (road.country in LEFT_HAND) is not left}
-    return extract.without(beyond) if beyond else extract
+    land = {ref: atlas.country_at(*node.position) for ref, node in extract.nodes.items()}
+    left, lands = country in LEFT_HAND, set(land.values())
+    beyond = {code for code in lands - {""} if (code in LEFT_HAND) is not left}
+    if country not in lands or not beyond:
+        return extract
+    other_side = {
+        code: tuple(way.way_id for way in extract.ways if any(land[ref] == code for ref in way.nodes))
+        for code in sorted(beyond)
+    }
+    kept = {ref: node for ref, node in extract.nodes.items() if land[ref] not in beyond}
+    return replace(extract.part(kept), other_side=other_side)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import string
+from dataclasses import replace
 from itertools import product
 
 import pytest
@@ -418,8 +419,12 @@ def test_each_road_is_under_the_law_of_its_land(
     roads = describe(extract, shipped(), here)
     assert [roads[way].country for way in range(2)] == [here, there]
     assert roads[1].assumed == describe(extract, shipped(), there)[1].assumed
-    kept = on_one_side(extract, roads, here)
+    kept = on_one_side(extract, shipped(), here)
     same_side = (here in LEFT_HAND) is (there in LEFT_HAND)
     assert [way.way_id for way in kept.ways] == ([0, 1] if same_side else [0])
-    assert kept.other_side == (() if same_side else (1,))
+    assert kept.other_side == ({} if same_side else {there: (1,)})
+    across = OsmWay(2, {"highway": "primary"}, (0, 1, 2, 3))
+    assert on_one_side(replace(extract, ways=(across,)), shipped(), here).ways[0].nodes == (
+        across.nodes if same_side else (0, 1)
+    ), "cut where the side changes"
     assert {road.country for road in describe(extract, shipped(), "JP").values()} == {"JP"}, "not where it says"
