@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from automotive_cosim.contracts.plain import counted
@@ -14,13 +15,19 @@ from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.posted import clauses, names_holidays, timed_limits
 
 SHOWN = 10
-"""How many OSM numbers a line names."""
+"""How many OSM numbers a line names where people read it; ``import.json`` has all."""
+
+_MANY = re.compile(rf"((?:-?\d+, ){{{SHOWN - 1}}}-?\d+)((?:, -?\d+)+)$")
 
 
 def in_words(kind: str, numbers: Sequence[int]) -> str:
-    """``"ways 1, 2 and 5 more"``."""
-    more = f" and {len(numbers) - SHOWN} more" if len(numbers) > SHOWN else ""
-    return f"{kind}{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers[:SHOWN]))}{more}"
+    """``"ways 1, 2, 3"``."""
+    return f"{kind}{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
+
+
+def shortened(line: str) -> str:
+    """A line with the first of many OSM numbers: ``"ways 1, 2 and 5 more"``."""
+    return _MANY.sub(lambda numbers: f"{numbers[1]} and {numbers[2].count(',')} more", line)
 
 
 def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, country: str) -> Iterator[str]:
@@ -52,7 +59,7 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
     for tag, ways in _by_tag(_of_arrows(extract, roads, built)):
         yield f"turn arrows that the lanes built do not follow, by angle: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag(
-        (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, oneway.directions(way.tags))
+        (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, roads[way.way_id].directions)
     ):
         done = "a lane each was built" if tag == lanes.SHARED else "left out"
         yield f"{tag}, {done}: {in_words('way', ways)}"
@@ -130,10 +137,9 @@ def _of_arrows(extract: Extract, roads: Mapping[int, MappedRoad], built: Built) 
         of_end.setdefault(there, {})[edge.from_node] = edge
     for way in extract.ways:
         road = roads[way.way_id]
-        may, counts = road.directions, lanes.built_of(way.tags, road.directions, left_hand=road.left_hand)
         for number, end in enumerate(access.ENDS):
-            wanted = arrows.arrows_of(way.tags, end, may) if may.open(end) else ()
-            if not wanted or len(wanted) != counts[number]:
+            wanted = arrows.arrows_of(way.tags, end, road.directions) if road.directions.open(end) else ()
+            if not wanted or len(wanted) != road.built_lanes[number]:
                 continue  # the latter is told by its number of lanes
             along = of_end.get((way.way_id, end == "backward"), {})
             last = [edge for edge in along.values() if edge.to_node not in along]

@@ -13,7 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Set
 from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib import import_module
-from itertools import product
+from itertools import compress, product
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -172,7 +172,8 @@ def read(source: Path) -> Extract:
     ways, relations, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
     ways.sort(key=lambda way: way.way_id)
     complete = [piece for way in ways for piece in _known_pieces(way, nodes)]
-    opened = tuple(way for way in complete if any(directions(way.tags)))
+    is_open = [any(directions(way.tags)) for way in complete]
+    opened = tuple(compress(complete, is_open))
     if not opened:
         raise ImportMapError(
             f"{source} has no roads for cars ({len(ways)} ways tagged as such, with {len(nodes)} of their nodes);"
@@ -185,7 +186,7 @@ def read(source: Path) -> Extract:
         tuple(sorted(filter(_is_restriction, relations), key=lambda turn: turn.relation_id)),
         tuple(_watching(cameras, relations, nodes, {way.way_id: way for way in ways})),
         ground.in_order(areas),
-        tuple(way for way in complete if not any(directions(way.tags))),
+        tuple(way for way, there in zip(complete, is_open, strict=True) if not there),
         tuple(sorted(relation.relation_id for relation in relations if _is_low_emission(relation))),
     )
 

@@ -18,6 +18,7 @@ from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, ground, network, trips
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.demand import Demand, Journey
+from automotive_cosim.osm.doubts import shortened
 from automotive_cosim.osm.report import ImportReport, make_report
 from automotive_cosim.osm.roads import describe, on_one_side
 from automotive_cosim.osm.settings import ImportOptions
@@ -138,7 +139,8 @@ def import_map(
             quick=options.quick,
         )
         report.write(building / "import.json")
-        folder.write_readme(building / "README.md", title=_title(options), source=source.name, lines=report.guessed)
+        lines = list(map(shortened, report.guessed))
+        folder.write_readme(building / "README.md", title=_title(options), source=source.name, lines=lines)
     return report
 
 

@@ -103,6 +103,8 @@ def for_netconvert(tags: Mapping[str, str], may: Directions, *, left_hand: bool 
     ):
         if is_open:
             told |= _access_of_lanes(tags, end, count, buses, is_two_way=may.is_two_way, left_hand=left_hand)
+    if not any(key.startswith("turn") for key in tags):
+        return told
     counts = built_of(tags, may, left_hand=left_hand)
     return told | arrows.for_netconvert(tags, may, counts, left_hand=left_hand)
 
@@ -115,7 +117,8 @@ def doubts(tags: Mapping[str, str], may: Directions) -> Iterator[str]:
             yield f"{key}={tags[key]}"
     if may.is_two_way and _count(tags, "lanes") == 1:
         yield SHARED
-    yield from arrows.doubts(tags, may, built_of(tags, may))
+    if any(key.startswith("turn") for key in tags):
+        yield from arrows.doubts(tags, may, built_of(tags, may))
 
 
 SHARED = "one lane for both directions"

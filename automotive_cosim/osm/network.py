@@ -179,9 +179,9 @@ def convert(
     if any(road.stated.lanes_forward or road.stated.lanes_backward for road in roads.values()):
         text = _with_lane_signs(text, roads)
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
-    _write(text, target)
+    raw.write_text(text, encoding="utf-8")
     tell("reading the network", None)
-    network = read_network(target)
+    network = read_network(raw)
     cameras = cameras_of(network, extract)
     more = {edge_id: {"speed_camera": places} for edge_id, places in cameras.beside.items()}
     for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
@@ -196,8 +196,10 @@ def convert(
         text = with_stops(text, stops, {network.edges[edge_id].to_node for edge_id in stops})
         links = read_links(text, network.edges)
     if more:
-        _write(_with_parameters(text, lambda edge_id: more.get(edge_id, {})), target)
-        network = read_network(target)
+        text = _with_parameters(text, lambda edge_id: more.get(edge_id, {}))
+        raw.write_text(text, encoding="utf-8")
+        network = read_network(raw)
+    target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
     edges = tuple(network.edges.values())
     return Built(
         network,
@@ -262,10 +264,6 @@ def write_osm(
             )
             tags = {"type": "restriction", "restriction": kind}
             writer.add_relation(mutable.Relation(id=relation, members=members, tags=tags))
-
-
-def _write(text: str, target: Path) -> None:
-    target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
 
 
 def _timed_turns(network: Network, pieces: Sequence[Piece], turns: BannedTurns) -> dict[tuple[str, str], str]:

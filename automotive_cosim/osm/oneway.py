@@ -44,6 +44,9 @@ IMPLIED: Mapping[tuple[str, str], Implied] = {
 }
 """What the tags of a road say about its direction. Service roads are not imported; no link implies one."""
 
+IMPLYING = ("highway", "junction")
+NOTHING = Implied(False, "")
+
 ROUND = ("roundabout", "circular")
 """Values of ``junction`` for roads around an island."""
 
@@ -136,4 +139,4 @@ def _signed(tags: Mapping[str, str]) -> Directions:
         value = tags.get(key, "").strip().lower()
         if value in VALUES:
             return VALUES[value]
-    return WITH if any(row.one_way and tags.get(key) == value for (key, value), row in IMPLIED.items()) else BOTH
+    return WITH if any(IMPLIED.get((key, tags.get(key, "")), NOTHING).one_way for key in IMPLYING) else BOTH

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.osm import lanes
@@ -77,7 +78,7 @@ def id_of(way: int, part: int = 1) -> str:
     return f"{f'new{-way}' if way < 0 else way}{f'.{part}' if part > 1 else ''}"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class MappedRoad:
     """A way of the map, with what was read from its tags and from what surrounds it."""
 
@@ -100,7 +101,7 @@ class MappedRoad:
         """Its name, or its number (``"A 5"``), as on signposts; empty without either."""
         return self.tags.get("name") or self.tags.get("ref", "")
 
-    @property
+    @cached_property
     def directions(self) -> Directions:
         """The directions open to cars."""
         return directions(self.tags)
@@ -119,12 +120,20 @@ class MappedRoad:
         """The limits on the signs of each lane of an edge from the left, None where the lane has none; empty if the
         lanes have none of their own, or others in number."""
         signs = self.stated.lanes(edge_id)
-        counts = lanes.built_of(self.tags, self.directions, left_hand=self.left_hand) if signs else (0, 0)
-        return signs if len(signs) == counts[edge_id.startswith("-")] else ()
+        return signs if signs and len(signs) == self.built_lanes[edge_id.startswith("-")] else ()
+
+    @cached_property
+    def _lanes(self) -> lanes.LaneCounts:
+        return lanes.lanes_of(self.tags, self.directions, left_hand=self.left_hand)
+
+    @cached_property
+    def built_lanes(self) -> tuple[int, int]:
+        """The lanes that netconvert builds with its nodes and against them."""
+        return lanes.built_of(self.tags, self.directions, left_hand=self.left_hand)
 
     def lanes(self, edge_id: str) -> int | None:
         """The lanes of one of its edges, those for buses included; None if its tags do not determine the number."""
-        return lanes.lanes_of(self.tags, self.directions, left_hand=self.left_hand).of(edge_id)
+        return self._lanes.of(edge_id)
 
     def for_netconvert(self) -> dict[str, str]:
         """The tags from which netconvert builds the road. The limit backwards is told of a two-way road only:
