@@ -43,21 +43,13 @@ CLOSED = frozenset(
 HOV_ONLY = frozenset(("designated", "only", "2", "2+", "3", "3+"))
 """Values of ``hov`` of what a driver alone may not use (OSM wiki, "Key:hov"; numbers are its older form)."""
 
-TOLD = {
-    "4wd_only": ("yes", "recommended"),
-    "abandoned": ("yes",),
-    "construction": ("yes", "minor", "widening"),
-    "disused": ("yes",),
-    "hov": ("lane",),
-    "ice_road": ("yes",),
-    "impassable": ("yes",),
-    "low_emission_zone": ("yes",),
-    "seasonal": ("yes", "winter", "summer", "spring", "autumn", "wet_season", "dry_season"),
-    "toll": ("yes",),
-    "toll:motor_vehicle": ("yes",),
-    "toll:motorcar": ("yes",),
-    "winter_road": ("yes",),
-}
+TOLD = frozenset(
+    ("4wd_only=yes", "4wd_only=recommended", "abandoned=yes", "construction=yes", "construction=minor",
+     "construction=widening", "disused=yes", "hov=lane", "ice_road=yes", "impassable=yes", "low_emission_zone=yes",
+     "seasonal=yes", "seasonal=winter", "seasonal=summer", "seasonal=spring", "seasonal=autumn",
+     "seasonal=wet_season", "seasonal=dry_season", "toll=yes", "toll:motor_vehicle=yes", "toll:motorcar=yes",
+     "winter_road=yes")
+)  # fmt: skip
 """Tags of roads that are open to cars at a price, or not to every car, or not always, which are told."""
 
 DOUBTED = frozenset(("unknown", "discouraged", "variable"))
@@ -163,12 +155,10 @@ def doubts(tags: Mapping[str, str]) -> Iterator[str]:
             yield found.tag
     yield from _conditional(tags)
     for key, value in tags.items():
-        if value in TOLD.get(key, ()):
+        is_timed = key.startswith("hov") and key.endswith(":conditional")
+        is_unread = is_timed and not all(is_understood(when) for _, when, _ in clauses(value))
+        if f"{key}={value}" in TOLD or is_unread or (is_timed and ":lanes" in key):
             yield f"{key}={value}"
-        if key.startswith("hov") and key.endswith(":conditional"):
-            of_lanes = ":lanes" in key
-            if of_lanes or not all(is_understood(when) for _, when, _ in clauses(value)):
-                yield f"{key}={value}"
 
 
 def _conditional(tags: Mapping[str, str]) -> Iterator[str]:

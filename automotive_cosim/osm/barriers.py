@@ -6,15 +6,14 @@ is cut there: each side ends at a node of its own. Where one direction only is c
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
 from automotive_cosim.osm.access import ENDS, KEYS, access
-from automotive_cosim.osm.area import KM_PER_DEG
 from automotive_cosim.osm.extract import Extract, OsmWay, Position
+from automotive_cosim.osm.facing import away_m
 from automotive_cosim.osm.oneway import BOTH, VALUES
 
 PASSABLE = frozenset(
@@ -157,7 +156,7 @@ def cut(extract: Extract) -> Cut:
 def _before(ref: int, neighbour: int, extract: Extract) -> Position:
     """A place a little before a barrier: netconvert takes two nodes at one place for one."""
     (lon, lat), (lon_on, lat_on) = extract.nodes[ref].position, extract.nodes[neighbour].position
-    length_m = KM_PER_DEG * 1000 * math.hypot((lon_on - lon) * math.cos(math.radians(lat)), lat_on - lat)
+    length_m = away_m((lon, lat), (lon_on, lat_on))
     share = min(0.5, GAP_M / max(length_m, GAP_M))
     return Position(lon + share * (lon_on - lon), lat + share * (lat_on - lat))
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
+from itertools import islice
 
 import shapely
 
@@ -20,10 +21,6 @@ WITHIN_M = 30.0
 
 ON_ROAD_M = 1.0
 """A camera nearer than this is a node of the road."""
-
-FAR_AWAY = "at no road of the network, left out"
-BOTH = "of which the map does not say whom they watch, both directions taken"
-NOBODY = "for a direction in which nobody drives, left out"
 
 
 @dataclass(slots=True)
@@ -54,7 +51,7 @@ def cameras_of(network: Network, extract: Extract) -> Cameras:
         point = shapely.Point(to_metres.x_y(*camera.position))
         near = sorted(tree.query(point, "dwithin", WITHIN_M), key=lambda at: (lines[at].distance(point), at))
         if not near:
-            found.tell(FAR_AWAY, camera)
+            found.tell("at no road of the network, left out", camera)
             continue
         there = [(edges[at], lines[at]) for at in near]
         for edge, line in _watched(camera, there, point, network, found, is_joint=camera.node in joints):
@@ -89,12 +86,10 @@ def _watched(
     told = facing(camera.tags)
     courses = [bearing_deg(*course) for course in camera.courses]
     if courses or told.front_deg is not None:
-        headings = courses or [((told.front_deg or 0.0) + 180) % 360]
         chosen: dict[str, tuple[Edge, shapely.LineString]] = {}
-        for heading in headings:
+        for heading in courses or [(told.front_deg or 0.0) + 180]:
             along = (each for each in near if turned_deg(heading, _heading(each[1], point)) < ALONG_DEG)
-            if first := next(along, None):
-                chosen[first[0].edge_id] = first
+            chosen |= {first[0].edge_id: first for first in islice(along, 1)}
         if chosen:
             return list(chosen.values())
         if len(both) == 1 and not courses:
@@ -102,10 +97,10 @@ def _watched(
     elif told.ends is not None and not is_joint:
         ended = [each for each in both if ENDS[each[0].edge_id.startswith("-")] in told.ends]
         if not ended:
-            found.tell(NOBODY, camera)
+            found.tell("for a direction in which nobody drives, left out", camera)
         return ended
     if len(both) > 1 and told.ends != ENDS:
-        found.tell(BOTH, camera)
+        found.tell("of which the map does not say whom they watch, both directions taken", camera)
     return both
 
 

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.osm import access, arrows, barriers, lanes, limits, oneway, signs
+from automotive_cosim.osm import access, arrows, barriers, lanes, limits, oneway
 from automotive_cosim.osm.extract import Extract, OsmWay
 from automotive_cosim.osm.facing import facing
 from automotive_cosim.osm.network import Built
@@ -49,8 +49,7 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         yield f"direction that is doubtful: {tag}: {in_words('way', ways)}"
     yield from _of_barriers(built.cut)
     yield from _of_turns(built)
-    kinds = {ref: node.tags.get("highway", "") for ref, node in extract.nodes.items()}
-    for why, kind, nodes in signs.doubts(built.signs, kinds):
+    for (why, kind), nodes in _of_signs(extract, built):
         yield f"{kind.replace('_', '-')} signs {why}, left out: {in_words('node', nodes)}"
     for tag, nodes in sorted(_not_built(extract, built).items()):
         yield f"{tag}: {in_words('node', nodes)}"
@@ -127,6 +126,15 @@ def _of_turns(built: Built) -> Iterator[str]:
     ):
         if relations:
             yield f"{about}: {in_words('relation', relations)}"
+
+
+def _of_signs(extract: Extract, built: Built) -> list[tuple[tuple[str, str], list[int]]]:
+    """The nodes of signs that the network does not follow, by the reason and the kind."""
+    found: dict[tuple[str, str], set[int]] = {}
+    for why, nodes in built.signs.left_out.items():
+        for ref in nodes:
+            found.setdefault((why, extract.nodes[ref].tags["highway"]), set()).add(ref)
+    return sorted((about, sorted(nodes)) for about, nodes in found.items())
 
 
 def _of_arrows(extract: Extract, roads: Mapping[int, MappedRoad], built: Built) -> Iterator[tuple[OsmWay, str]]:

@@ -12,17 +12,12 @@ from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 from automotive_cosim.osm.access import ENDS
+from automotive_cosim.osm.area import KM_PER_DEG
 
 POINTS = ("N", "NNE", "NE", "ENE", "E", "ESE", "SE", "SSE", "S", "SSW", "SW", "WSW", "W", "WNW", "NW", "NNW")
 """Of the compass, 22.5 degrees apart."""
 
-WORDS = {
-    "forward": ENDS[:1],
-    "backward": ENDS[1:],
-    "both": ENDS,
-    "forward;backward": ENDS,
-    "backward;forward": ENDS,
-}
+WORDS = {"forward": ENDS[:1], "backward": ENDS[1:], "both": ENDS}
 """What is said along a way."""
 
 ALONG_DEG = 60.0
@@ -81,3 +76,9 @@ def bearing_deg(start: Sequence[float], goal: Sequence[float]) -> float:
     """From one longitude and latitude to another near it, clockwise from north."""
     east = (goal[0] - start[0]) * math.cos(math.radians(start[1]))
     return math.degrees(math.atan2(east, goal[1] - start[1])) % 360
+
+
+def away_m(start: Sequence[float], goal: Sequence[float]) -> float:
+    """How far one longitude and latitude is from another near it."""
+    east = (goal[0] - start[0]) * math.cos(math.radians(start[1]))
+    return 1000 * KM_PER_DEG * math.hypot(east, goal[1] - start[1])

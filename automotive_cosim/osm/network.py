@@ -19,7 +19,7 @@ from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.links import Links, read_links, with_stops
 from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
-from automotive_cosim.osm.signs import STOP, Followed, Joints, compare, dark, patches, read_signs
+from automotive_cosim.osm.signs import STOP, Joints, Signs, dark, followed, patches, read_signs
 from automotive_cosim.osm.turns import Ban, BannedTurns, read_turns
 from automotive_cosim.traffic.network import DERESTRICTED_MPS, SIGN, TIMED_TURN, Edge, Network, read_network
 from automotive_cosim.traffic.posted import sign_mps
@@ -62,7 +62,7 @@ class Built:
     """The roads, and the barriers at which they were cut."""
     turns: BannedTurns
     """The turn restrictions, as read for cars."""
-    signs: Followed
+    signs: Signs
     """Its stop and give-way signs."""
     cameras: Cameras
     """Its speed cameras."""
@@ -188,11 +188,10 @@ def convert(
         more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
     links = read_links(text, network.edges)
     goals = {edge_id: edge.to_node for edge_id, edge in network.edges.items()}
-    followed = compare(signs, joints, links, goals)
-    for edge_id, kind in followed.edges.items():
+    signed = followed(signs, joints, links, goals)
+    for edge_id, kind in signed.items():
         more.setdefault(edge_id, {})[SIGN] = kind
-    stops = {edge_id for edge_id, kind in followed.edges.items() if kind == STOP}
-    if stops:
+    if stops := {edge_id for edge_id, kind in signed.items() if kind == STOP}:
         text = with_stops(text, stops, {network.edges[edge_id].to_node for edge_id in stops})
         links = read_links(text, network.edges)
     if more:
@@ -200,20 +199,8 @@ def convert(
         raw.write_text(text, encoding="utf-8")
         network = read_network(raw)
     target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
-    edges = tuple(network.edges.values())
-    return Built(
-        network,
-        edges,
-        signals,
-        roundabouts,
-        barred,
-        turns,
-        followed,
-        cameras,
-        links,
-        opened,
-        tuple(dark(joints, links, goals)),
-    )
+    edges, unlit = tuple(network.edges.values()), tuple(dark(joints, links, goals))
+    return Built(network, edges, signals, roundabouts, barred, turns, signs, cameras, links, opened, unlit)
 
 
 _PATCH_FAILED = re.compile(r"Missing position|(?:from|to)-node is not given")

@@ -9,18 +9,16 @@ afterwards: a patch of the junction's type would take its signals away.
 
 from __future__ import annotations
 
-import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import NamedTuple
 
 from automotive_cosim.osm.access import ENDS
-from automotive_cosim.osm.area import KM_PER_DEG
 from automotive_cosim.osm.barriers import Piece
-from automotive_cosim.osm.extract import Node
-from automotive_cosim.osm.facing import bearing_deg, ends_facing, facing
+from automotive_cosim.osm.extract import Node, Position
+from automotive_cosim.osm.facing import away_m, bearing_deg, ends_facing, facing
 from automotive_cosim.osm.links import Link, Links
 from automotive_cosim.osm.oneway import ROUND, Directions
 from automotive_cosim.osm.roads import id_of
@@ -44,49 +42,20 @@ PRIORITY = {STOP: 0, GIVE_WAY: -1}
 MAJOR = 14
 """Of the approaches without one, where their classes differ: as high as a motorway's."""
 
+AT_SIGNALS = "at signals, which decide there"
+AT_JOINED = "at junctions where netconvert gives right of way otherwise"
+UNCLEAR = "on a junction, without the road that it is for"
+
 
 class Approach(NamedTuple):
-    """Where a sign stands: a piece of road, by index, which cars leave in a direction of ``ENDS``."""
+    """A piece of road, by index, which cars leave in a direction of ``ENDS``."""
 
     piece: int
     end: str
-    edge: str
-    """The edge, as netconvert names it, without the number of its piece: ``"#2"``."""
+    suffix: str
+    """What netconvert's edge has after the number of its piece: ``"#2"``."""
     node: int
     """The junction that it leads to."""
-
-
-@dataclass(slots=True)
-class Signs:
-    """The signs of a map, and what netconvert is told of them."""
-
-    approaches: dict[Approach, tuple[str, list[int]]] = field(default_factory=dict)
-    """The kind of sign, and its nodes."""
-    types: dict[int, str] = field(default_factory=dict)
-    """SUMO's type of a junction, by OSM node."""
-    ruled: dict[int, bool] = field(default_factory=dict)
-    """The junctions at which some approaches have signs and others do not, and whether they certainly have no
-    signals."""
-    majors: list[Approach] = field(default_factory=list)
-    """Those others, where their classes differ."""
-    by_class: dict[int, list[Approach]] = field(default_factory=dict)
-    """The approaches of junctions at which the minor roads stop; which they are, the classes say."""
-    minis: list[int] = field(default_factory=list)
-    unplaced: dict[str, list[int]] = field(default_factory=dict)
-    """Nodes of signs, by the reason for which they are for no approach."""
-
-    def leave_out(self, why: str, node: int) -> None:
-        """Notes a sign that is not followed."""
-        self.unplaced.setdefault(why, []).append(node)
-
-
-class Segment(NamedTuple):
-    """A part of a piece that netconvert makes an edge of, by the first and the last index of its nodes."""
-
-    first: int
-    last: int
-    suffix: str
-    """What the edge's id has after the number of the piece."""
 
 
 class Joints:
@@ -101,194 +70,168 @@ class Joints:
             nodes: the map's.
         """
         self.pieces, self.may, self.nodes = pieces, may, nodes
-        self._first_at: dict[tuple[float, float], int] = {}
         self.at: dict[int, list[tuple[int, int]]] = {}
         """The pieces that have a node, and where."""
         self.arms: Counter[int] = Counter()
-        self.paths = [self._path(piece.nodes) for piece in pieces]
-        for index, path in enumerate(self.paths):
-            for place, ref in enumerate(path):
-                self.at.setdefault(ref, []).append((index, place))
+        self.paths: list[list[int]] = []
+        first_at: dict[Position, int] = {}
+        for index, piece in enumerate(pieces):
+            path: list[int] = []
+            for ref in piece.nodes:  # netconvert takes nodes at one place for one, the first
+                same = first_at.setdefault(nodes[ref].position, ref) if ref in nodes else ref
+                if path[-1:] != [same]:
+                    self.at.setdefault(same, []).append((index, len(path)))
+                    path.append(same)
+            self.paths.append(path)
             self.arms.update(path)
             self.arms.update(path[1:-1])
-
-    def _path(self, refs: Sequence[int]) -> list[int]:
-        """The nodes of a piece; netconvert takes nodes at one place for one, the first."""
-        path: list[int] = []
-        for ref in refs:
-            node = self.nodes.get(ref)
-            same = ref if node is None else self._first_at.setdefault((node.position[0], node.position[1]), ref)
-            if not path or path[-1] != same:
-                path.append(same)
-        return path
 
     def has_signal(self, ref: int) -> bool:
         """Whether netconvert takes a node for a signal."""
         tags = self.nodes[ref].tags if ref in self.nodes else {}
         return "traffic_signal" in tags.get("highway", "") or "traffic_signals" in tags.get("crossing", "")
 
-    def segments(self, piece: int) -> list[Segment]:
-        """The edges that netconvert makes of a piece."""
+    def segments(self, piece: int) -> list[tuple[int, int, str]]:
+        """The edges that netconvert makes of a piece, by the first and the last of its nodes, and their suffixes;
+        none of a loop, which it splits otherwise."""
         path = self.paths[piece]
+        if len(set(path)) < len(path):
+            return []
         inner = [at for at in range(1, len(path) - 1) if len(self.at[path[at]]) + self.has_signal(path[at]) > 1]
-        found: list[Segment] = []
         bounds = [0, *inner, len(path) - 1]
-        number = 0 if inner else -1
-        for first, last in pairwise(bounds):
-            number = self._split(path, first, last, number, found)
-        return found
+        return [(*ends, f"#{number}" * bool(inner)) for number, ends in enumerate(pairwise(bounds))]
 
-    def _split(self, path: Sequence[int], first: int, last: int, number: int, found: list[Segment]) -> int:
-        if path[first] == path[last]:
-            middle = first + (last - first + 1) // 2
-            if last - first < 2:
-                return max(number, 0)
-            number = self._split(path, first, middle, max(number, 0), found)
-            return self._split(path, middle, last, number, found)
-        found.append(Segment(first, last, f"#{number}" if number >= 0 else ""))
-        return max(number, 0) + 1
-
-    def length_m(self, piece: int, first: int, last: int) -> float:
-        """Along a piece, between two of its nodes."""
-        path = self.paths[piece][min(first, last) : max(first, last) + 1]
-        places = [self.nodes[ref].position for ref in path if ref in self.nodes]
-        return sum(
-            1000 * KM_PER_DEG * math.hypot((b[0] - a[0]) * math.cos(math.radians(a[1])), b[1] - a[1])
-            for a, b in pairwise(places)
-        )
-
-    def onward(self, piece: int, place: int, end: str) -> tuple[Approach, float] | None:
-        """The approach by which cars that drive on from a node of a piece come to the next junction, and how far it
-        is; None if they come to none."""
+    def onward(self, piece: int, place: int, end: str) -> tuple[float, Approach] | None:
+        """How far it is to the next junction for cars that drive on from a node of a piece, and their approach;
+        None if there is none within ``FARTHEST_M``."""
         way_m = 0.0
-        for _ in range(len(self.pieces)):
-            if not self.may[piece].open(end):
-                return None
-            segments = self.segments(piece)
-            if end == "forward":
-                ahead = [each for each in segments if each.last > place]
-            else:
-                ahead = [each for each in reversed(segments) if each.first < place]
-            for each in ahead:
-                goal = each.last if end == "forward" else each.first
-                way_m += self.length_m(piece, place, goal)
+        while self.may[piece].open(end) and way_m <= FARTHEST_M:
+            ref, ahead = None, self.segments(piece)
+            for first, last, suffix in ahead if end == "forward" else ahead[::-1]:
+                goal = last if end == "forward" else first
+                if (goal > place) is not (end == "forward") or goal == place:
+                    continue
+                path = self.paths[piece][min(place, goal) : max(place, goal) + 1]
+                way_m += sum(
+                    away_m(self.nodes[one].position, self.nodes[other].position)
+                    for one, other in pairwise(path)
+                    if one in self.nodes and other in self.nodes
+                )
                 place, ref = goal, self.paths[piece][goal]
                 if self.arms[ref] > 2:
-                    return Approach(piece, end, each.suffix, ref), way_m
-            others = [each for each in self.at[ref] if each[0] != piece] if ahead else []
-            if len(others) != 1 or way_m > FARTHEST_M:
+                    return (way_m, Approach(piece, end, suffix, ref)) if way_m <= FARTHEST_M else None
+            others = [each for each in self.at[ref] if each[0] != piece] if ref is not None else []
+            if len(others) != 1:
                 return None
             piece, place = others[0]
             end = "forward" if place == 0 else "backward"
         return None
 
-    def edge_id(self, approach: Approach) -> str:
-        """The edge of an approach in the network."""
-        piece = self.pieces[approach.piece]
-        return f"{'-' * (approach.end == 'backward')}{id_of(piece.way.way_id, piece.part)}{approach.edge}"
-
     def arriving(self, ref: int) -> Iterator[Approach]:
         """The approaches of a junction."""
         for piece in dict.fromkeys(piece for piece, _ in self.at.get(ref, ())):
-            path = self.paths[piece]
-            for each in self.segments(piece):
-                for end, goal in (("forward", each.last), ("backward", each.first)):
-                    if path[goal] == ref and self.may[piece].open(end):
-                        yield Approach(piece, end, each.suffix, ref)
+            for first, last, suffix in self.segments(piece):
+                for end, goal in zip(ENDS, (last, first), strict=True):
+                    if self.paths[piece][goal] == ref and self.may[piece].open(end):
+                        yield Approach(piece, end, suffix, ref)
+
+    def edge_id(self, approach: Approach) -> str:
+        """The edge of an approach in the network."""
+        piece = self.pieces[approach.piece]
+        return f"{'-' * (approach.end == 'backward')}{id_of(piece.way.way_id, piece.part)}{approach.suffix}"
+
+
+@dataclass(slots=True)
+class Signs:
+    """The signs of a map, and what netconvert is told of them."""
+
+    approaches: dict[Approach, tuple[str, list[int]]] = field(default_factory=dict)
+    """The kind of sign, and its nodes."""
+    on_junctions: dict[int, str] = field(default_factory=dict)
+    """Junctions with a sign of their own, and SUMO's type for it; empty where the minor roads stop, by class."""
+    types: dict[int, str] = field(default_factory=dict)
+    """Types that junctions get."""
+    ruled: dict[int, bool] = field(default_factory=dict)
+    """The junctions of which some approaches have signs, and whether they certainly have no signals."""
+    majors: list[Approach] = field(default_factory=list)
+    """The other approaches there, where their classes differ."""
+    left_out: dict[str, list[int]] = field(default_factory=dict)
+    """Nodes of signs that are not followed, by the reason."""
+
+    def leave_out(self, why: str, *nodes: int) -> None:
+        """Notes signs that are not followed."""
+        self.left_out.setdefault(why, []).extend(nodes)
 
 
 def read_signs(joints: Joints) -> Signs:
     """The signs of a map, each with its approach."""
-    signs = Signs()
-    signals = [node.position for ref, node in joints.nodes.items() if joints.has_signal(ref)]
-    every: set[int] = set()
+    signs, every = Signs(), set[int]()
     for ref, node in joints.nodes.items():
-        kind = node.tags.get("highway", "")
+        kind, stop = node.tags.get("highway", ""), node.tags.get("stop", "")
         if kind not in KINDS or ref not in joints.at:
             continue
-        if kind == MINI:
-            (signs.minis.append(ref) if joints.arms[ref] > 2 else signs.leave_out("on no junction", ref))
-        elif joints.arms[ref] > 2:
-            if kind == STOP and node.tags.get("stop", "") in ALL_WAY:
-                every.add(ref)
-            elif kind == STOP and node.tags.get("stop") == "minor":
-                signs.by_class[ref] = list(joints.arriving(ref))
-            else:
-                signs.leave_out("on a junction, without the road that it is for", ref)
+        if joints.arms[ref] <= 2:
+            found = _place(kind, ref, node.tags, joints, signs) if kind != MINI else []
+            every |= {approach.node for approach in found} if stop in ALL_WAY else set()
+            if kind == MINI:
+                signs.leave_out("on no junction", ref)
+        elif kind == MINI or (kind == STOP and stop in {*ALL_WAY, "minor"}):
+            signs.on_junctions[ref] = {MINI: "left_before_right"}.get(kind, "allway_stop" * (stop != "minor"))
         else:
-            _place(kind, ref, node.tags, joints, signs)
-            found = next((each for each, sign in signs.approaches.items() if ref in sign[1]), None)
-            if found and node.tags.get("stop", "") in ALL_WAY:
-                every.add(found.node)
-    _rule(joints, signs, every, signals)
+            signs.leave_out(UNCLEAR, ref)
+    _rule(joints, signs, every)
     return signs
 
 
-def _place(kind: str, ref: int, tags: Mapping[str, str], joints: Joints, signs: Signs) -> None:
+def _place(kind: str, ref: int, tags: Mapping[str, str], joints: Joints, signs: Signs) -> list[Approach]:
     """Finds the approaches of a sign on a road; if no direction is said, it is for the nearest junction."""
-    here = joints.at[ref]
-    piece, place = here[0]
-    path = joints.paths[piece]
     told = facing(tags, kind)
-    if told.unread:
-        signs.leave_out(f"with {told.unread}", ref)
-        return
+    ends: tuple[str, ...] = ENDS
+    piece, place = joints.at[ref][0]
     if told.front_deg is not None:
-        ahead, behind = (path[min(place + 1, len(path) - 1)], path[max(place - 1, 0)])
-        along = bearing_deg(joints.nodes[behind].position, joints.nodes[ahead].position)
-        ends = ends_facing(told.front_deg, along)
-        if len(ends) > 1:
-            signs.leave_out("that face across the road", ref)
-            return
-    else:
-        ends = told.ends or ENDS
-    found: list[tuple[float, Approach]] = []
-    for end in ends:
-        starts = [
-            each for each in here if (each[1] < len(joints.paths[each[0]]) - 1 if end == "forward" else each[1])
-        ]
-        ways = [joints.onward(*each, end) for each in (starts or here)]
-        found += [(way[1], way[0]) for way in ways if way and way[1] <= FARTHEST_M]
-    if told.ends is None and told.front_deg is None:
-        found = sorted(found)[:1]
+        path = joints.paths[piece]
+        behind, ahead = path[max(place - 1, 0)], path[min(place + 1, len(path) - 1)]
+        ends = ends_facing(told.front_deg, bearing_deg(joints.nodes[behind].position, joints.nodes[ahead].position))
+    if told.unread or (told.front_deg is not None and len(ends) > 1):
+        signs.leave_out(f"with {told.unread}" if told.unread else "that face across the road", ref)
+        return []
+    ways = [joints.onward(*each, end) for end in told.ends or ends for each in joints.at[ref]]
+    found = sorted(way for way in ways if way)
+    if not told.ends and told.front_deg is None:
+        found = found[:1]
     if not found:
         signs.leave_out(f"with no junction within {FARTHEST_M:.0f} m", ref)
     for _, approach in found:
         before, nodes = signs.approaches.get(approach, (kind, []))
         signs.approaches[approach] = (STOP if STOP in (kind, before) else GIVE_WAY, [*nodes, ref])
+    return [approach for _, approach in found]
 
 
-def _rule(joints: Joints, signs: Signs, every: set[int], signals: Sequence[tuple[float, float]]) -> None:
-    """Gives the junctions their types."""
-    by_junction: dict[int, dict[Approach, str]] = {}
-    for approach, (kind, _) in signs.approaches.items():
-        by_junction.setdefault(approach.node, {})[approach] = kind
-    for ref in every:
-        by_junction.setdefault(ref, {})
-    for ref in signs.minis:
-        if not _near(joints.nodes[ref].position, signals):
-            signs.types[ref] = "left_before_right"
+def _rule(joints: Joints, signs: Signs, every: set[int]) -> None:
+    """Says which junctions get a type, and at which the approaches get priorities."""
+    signals = [node.position for ref, node in joints.nodes.items() if joints.has_signal(ref)]
+
+    def is_free(ref: int) -> bool:
+        here = joints.nodes[ref].position
+        return all(
+            abs(here[1] - lat) > 0.001 or away_m(here, (lon, lat)) > SIGNALS_WITHIN_M for lon, lat in signals
+        )
+
+    by_junction: dict[int, set[Approach]] = {}
+    for approach in signs.approaches:
+        by_junction.setdefault(approach.node, set()).add(approach)
+    wanted = {ref: kind for ref, kind in signs.on_junctions.items() if kind} | dict.fromkeys(every, "allway_stop")
     for ref, signed in by_junction.items():
         arriving = list(joints.arriving(ref))
-        near = ref not in joints.nodes or _near(joints.nodes[ref].position, signals)
         rest = [each for each in arriving if each not in signed]
-        if ref in every or (set(signed.values()) == {STOP} and not rest and len(arriving) > 1):
-            signs.types |= {} if near else {ref: "allway_stop"}
-        elif any(joints.pieces[each.piece].way.tags.get("junction") in ROUND for each in arriving):
-            continue  # who is on a roundabout has priority anyway
-        elif rest:
-            signs.ruled[ref] = not near
+        if not rest and len(arriving) > 1 and all(signs.approaches[each][0] == STOP for each in signed):
+            wanted.setdefault(ref, "allway_stop")
+        is_round = any(joints.pieces[each.piece].way.tags.get("junction") in ROUND for each in arriving)
+        if rest and ref not in wanted and not is_round:  # who is on a roundabout has priority anyway
+            signs.ruled[ref] = is_free(ref)
             if len({joints.pieces[each.piece].way.road_class for each in rest}) > 1:
                 signs.majors += rest
-
-
-def _near(place: Sequence[float], signals: Iterable[tuple[float, float]]) -> bool:
-    most_deg = SIGNALS_WITHIN_M / 1000 / KM_PER_DEG
-    wide = math.cos(math.radians(place[1]))
-    return any(
-        abs(lat - place[1]) < most_deg and math.hypot((lon - place[0]) * wide, lat - place[1]) < most_deg
-        for lon, lat in signals
-    )
+    signs.types = {ref: kind for ref, kind in wanted.items() if ref in joints.nodes and is_free(ref)}
 
 
 def patches(signs: Signs, first_number: int) -> dict[str, str]:
@@ -303,25 +246,16 @@ def patches(signs: Signs, first_number: int) -> dict[str, str]:
     nodes = "".join(f'<node id="{ref}" type="{kind}"/>' for ref, kind in signs.types.items())
     nodes += "".join(f'<node id="{ref}" rightOfWay="edgePriority"/>' for ref, free in signs.ruled.items() if free)
     priorities = {each: PRIORITY[kind] for each, (kind, _) in signs.approaches.items() if each.node in signs.ruled}
-    priorities |= dict.fromkeys(signs.majors, MAJOR)
     edges = "".join(
-        f'<edge id="{"-" * (each.end == "backward")}{first_number + each.piece}{each.edge}" priority="{value}"/>'
-        for each, value in priorities.items()
+        f'<edge id="{"-" * (each.end == "backward")}{first_number + each.piece}{each.suffix}" priority="{value}"/>'
+        for each, value in (priorities | dict.fromkeys(signs.majors, MAJOR)).items()
     )
     return {"--node-files": f"<nodes>{nodes}</nodes>", "--edge-files": f"<edges>{edges}</edges>"}
 
 
-class Followed(NamedTuple):
-    """What became of the signs in a built network."""
-
-    edges: dict[str, str]
-    """The edges at whose end cars give way as a sign says, or are to stop, and its kind."""
-    left_out: dict[str, list[int]]
-    """Nodes of the others, by the reason."""
-
-
-def compare(signs: Signs, joints: Joints, links: Links, goals: Mapping[str, str]) -> Followed:
-    """Compares a built network with the signs.
+def followed(signs: Signs, joints: Joints, links: Links, goals: Mapping[str, str]) -> dict[str, str]:
+    """The edges of a built network at whose end cars yield as a sign says, or are to stop, and its kind; the other
+    signs are left out.
 
     Args:
         signs: those of the map.
@@ -330,56 +264,35 @@ def compare(signs: Signs, joints: Joints, links: Links, goals: Mapping[str, str]
         goals: the junction at the end of each of its edges.
     """
     edges: dict[str, str] = {}
-    left_out = {why: list(nodes) for why, nodes in signs.unplaced.items()}
-
     for approach, (kind, nodes) in signs.approaches.items():
         edge = joints.edge_id(approach)
-        alone = approach.node not in signs.ruled and approach.node not in signs.types
-        why = _why_not(kind, links.of.get(edge, ()), links.types.get(goals.get(edge, ""), ""), alone=alone)
+        why = _why_not(links.of.get(edge, ()), links.types.get(goals.get(edge, ""), ""))
+        if why == AT_JOINED and approach.node not in signs.ruled.keys() | signs.types.keys():
+            why = "where no traffic crosses or joins"
         if why:
-            left_out.setdefault(why, []).extend(nodes)
+            signs.leave_out(why, *nodes)
         else:
             edges[edge] = kind
-    for ref, approaches in signs.by_class.items():
-        arriving = [joints.edge_id(approach) for approach in approaches]
+    for ref, kind in signs.on_junctions.items():
+        arriving = [] if kind else [joints.edge_id(approach) for approach in joints.arriving(ref)]
         minor = [edge for edge in arriving if {link.state for link in links.of.get(edge, ())} == {"m"}]
         edges |= dict.fromkeys(minor, STOP)
-        if not minor:
-            left_out.setdefault(AT_JOINED, []).append(ref)
-    for ref in signs.minis:
-        wanted = signs.types.get(ref)
-        if not wanted or links.types.get(str(ref)) != wanted:
-            left_out.setdefault(AT_JOINED if wanted else AT_SIGNALS, []).append(ref)
-    return Followed(edges, left_out)
+        if not minor and (not kind or links.types.get(str(ref)) != kind):
+            signs.leave_out(AT_JOINED if ref in signs.types or not kind else AT_SIGNALS, ref)
+    return edges
 
 
-AT_SIGNALS = "at signals, which decide there"
-AT_JOINED = "at junctions where netconvert gives right of way otherwise"
-NO_CHOICE = "where no traffic crosses or joins"
-
-
-def _why_not(kind: str, links: Sequence[Link], junction: str, *, alone: bool) -> str:
-    """Why a network does not do what a sign says; empty if it does."""
+def _why_not(links: Sequence[Link], junction: str) -> str:
+    """Why cars do not yield at the end of an edge; empty if they do."""
     states = {link.state for link in links if link.direction != "t"}
     if junction.startswith("traffic_light"):
         return AT_SIGNALS
     if not states:
         return "at roads that are not in the network, or within a junction"
-    if states <= {"s", "w"} or states == {"m"}:
-        return ""
-    return NO_CHOICE if alone and states == {"M"} else AT_JOINED
+    return "" if states <= {"s", "w"} or states == {"m"} else AT_JOINED
 
 
-def doubts(found: Followed, kinds: Mapping[int, str]) -> Iterator[tuple[str, str, list[int]]]:
-    """The signs that the network does not follow: the reason, the kind, and the nodes."""
-    for why, nodes in sorted(found.left_out.items()):
-        for kind in KINDS:
-            of_kind = sorted({ref for ref in nodes if kinds[ref] == kind})
-            if of_kind:
-                yield why, kind, of_kind
-
-
-def dark(joints: Joints, links: Links, goals: Mapping[str, str]) -> list[int]:
+def dark(joints: Joints, links: Links, goals: Mapping[str, str]) -> Iterator[int]:
     """The nodes with signals that light no junction of the network, in the direction that they are for: those
     between junctions, as at crossings on foot, which netconvert discards. Those within a junction are part of it.
 
@@ -388,13 +301,11 @@ def dark(joints: Joints, links: Links, goals: Mapping[str, str]) -> list[int]:
         links: the network's connections.
         goals: the junction at the end of each of its edges.
     """
-    found: list[int] = []
     for ref in filter(joints.has_signal, joints.at):
         ends = facing(joints.nodes[ref].tags, "traffic_signals").ends or ENDS
         ways = [joints.onward(*place, end) for place in joints.at[ref] for end in ends]
-        approaches = [*joints.arriving(ref)] if joints.arms[ref] > 2 else [way[0] for way in ways if way]
+        approaches = list(joints.arriving(ref)) if joints.arms[ref] > 2 else [way[1] for way in ways if way]
         there = {goals[edge] for edge in map(joints.edge_id, approaches) if edge in goals}
-        inside = approaches and not there
-        if not inside and not any(links.types.get(goal, "").startswith("traffic_light") for goal in there):
-            found.append(ref)
-    return found
+        is_inside = approaches and not there
+        if not is_inside and not any(links.types.get(goal, "").startswith("traffic_light") for goal in there):
+            yield ref

@@ -602,3 +602,9 @@ def test_each_lane_has_the_limit_of_its_own_sign(build: Build, tmp_path: Path, c
         parts = tags.get("maxspeed:lanes", "").split("|")
         odd = "fast" in parts or (len(parts) != len(signs) and "maxspeed:lanes" in tags)
         assert (f"maxspeed:lanes={tags.get('maxspeed:lanes')}" in listed) is odd, tags
+
+
+def test_signs_at_what_netconvert_has_not_cost_no_map(build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(network, "patches", lambda *_: {"--edge-files": '<edges><edge id="99#0"/></edges>'})
+    made, _ = row_of_crossings([{}], [{"s": {"highway": "stop"}}])
+    assert "stop signs at junctions where netconvert gives right of way otherwise" in told(build(made))
