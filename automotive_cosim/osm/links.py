@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Mapping, Set
+from collections.abc import Mapping, Sequence, Set
 from typing import NamedTuple
 
 _CONNECTION = re.compile(
-    r'<connection from="([^":][^"]*)" to="([^"]*)" fromLane="(\d+)"[^>]*? dir="(.)" state="(.)"'
+    r'<connection from="([^"]*)" to="([^"]*)" fromLane="(\d+)" toLane="(\d+)"(?:[^>]*? via="([^"]*)")?[^>]*?'
+    r' dir="(.)" state="(.)"'
 )
 _JUNCTION = re.compile(r'<junction id="([^":][^"]*)" type="([^"]*)"')
 
 
 class Link(NamedTuple):
-    """A connection from a lane onto an edge."""
+    """A connection from a lane onto another."""
 
     lane: int
     """From the kerb."""
     to_edge: str
+    to_lane: int
+    via: str
+    """The lane through the junction; empty without one."""
     direction: str
     """SUMO's letter: ``s`` straight, ``l`` left, ``L`` slightly left, ``t`` back, ..."""
     state: str
@@ -25,24 +29,19 @@ class Link(NamedTuple):
 
 
 class Links(NamedTuple):
-    """Those of some edges, and the types of all junctions."""
+    """Those of all edges, also inside junctions, and the types of the junctions."""
 
-    of: Mapping[str, tuple[Link, ...]]
+    of: Mapping[str, Sequence[Link]]
     types: Mapping[str, str]
 
 
-def read_links(text: str, wanted: Container[str]) -> Links:
-    """Reads a network's text.
-
-    Args:
-        text: the network.
-        wanted: the edges whose connections to read.
-    """
+def read_links(text: str) -> Links:
+    """Reads a network's text."""
     found: dict[str, list[Link]] = {}
-    for each in _CONNECTION.finditer(text):
-        if each[1] in wanted:
-            found.setdefault(each[1], []).append(Link(int(each[3]), each[2], each[4], each[5]))
-    return Links({edge: tuple(links) for edge, links in found.items()}, dict(_JUNCTION.findall(text)))
+    for from_edge, to_edge, lane, to_lane, via, direction, state in _CONNECTION.findall(text):
+        link = Link(int(lane), to_edge, int(to_lane), via, direction, state)
+        found.setdefault(from_edge, []).append(link)
+    return Links(found, dict(_JUNCTION.findall(text)))
 
 
 def with_stops(text: str, edges: Set[str], junctions: Set[str]) -> str:
@@ -55,7 +54,7 @@ def with_stops(text: str, edges: Set[str], junctions: Set[str]) -> str:
     """
 
     def stopping(link: re.Match[str]) -> str:
-        return f'{link[0][:-2]}s"' if link[1] in edges and link[5] == "m" else link[0]
+        return f'{link[0][:-2]}s"' if link[1] in edges and link[7] == "m" else link[0]
 
     def typed(junction: re.Match[str]) -> str:
         is_priority = junction[1] in junctions and junction[2] == "priority"

@@ -186,14 +186,14 @@ def convert(
     more = {edge_id: {"speed_camera": places} for edge_id, places in cameras.beside.items()}
     for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
         more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
-    links = read_links(text, network.edges)
+    links = read_links(text)
     goals = {edge_id: edge.to_node for edge_id, edge in network.edges.items()}
     signed = followed(signs, joints, links, goals)
     for edge_id, kind in signed.items():
         more.setdefault(edge_id, {})[SIGN] = kind
     if stops := {edge_id for edge_id, kind in signed.items() if kind == STOP}:
         text = with_stops(text, stops, {network.edges[edge_id].to_node for edge_id in stops})
-        links = read_links(text, network.edges)
+        links = read_links(text)
     if more:
         text = _with_parameters(text, lambda edge_id: more.get(edge_id, {}))
         raw.write_text(text, encoding="utf-8")
