@@ -56,7 +56,9 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
     for what, nodes in sorted(built.cameras.told.items()):
         yield f"speed cameras {what}: {in_words('node', nodes)}"
     for tag, ways in _by_tag(_of_arrows(extract, roads, built)):
-        yield f"turn arrows that the lanes built do not follow, by angle: {tag}: {in_words('way', ways)}"
+        yield f"turn arrows not followed, the lanes lead by angle: {tag}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, f"stop={way.tags['stop']}") for way in extract.ways if "stop" in way.tags):
+        yield f"stop signs on a whole way, left out: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag(
         (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, roads[way.way_id].directions)
     ):
@@ -138,7 +140,7 @@ def _of_signs(extract: Extract, built: Built) -> list[tuple[tuple[str, str], lis
 
 
 def _of_arrows(extract: Extract, roads: Mapping[int, MappedRoad], built: Built) -> Iterator[tuple[OsmWay, str]]:
-    """Ways whose lanes lead elsewhere at their end than the arrows there say."""
+    """Ways whose lanes lead elsewhere at their end than the arrows there say, or end within a junction."""
     of_end: dict[tuple[int, bool], dict[str, Edge]] = {}
     for edge in built.edges:
         there = way_of(edge.edge_id), edge.edge_id.startswith("-")
@@ -151,7 +153,7 @@ def _of_arrows(extract: Extract, roads: Mapping[int, MappedRoad], built: Built) 
                 continue  # the latter is told by its number of lanes
             along = of_end.get((way.way_id, end == "backward"), {})
             last = [edge for edge in along.values() if edge.to_node not in along]
-            if not all(_leads_there(edge, wanted, built, roads) for edge in last):
+            if not last or not all(_leads_there(edge, wanted, built, roads) for edge in last):
                 key = arrows.key_of(way.tags, end)
                 yield way, f"{key}={way.tags[key]}"
 
