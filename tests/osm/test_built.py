@@ -156,6 +156,7 @@ def test_lanes_of_buses_are_not_for_cars(build: Build) -> None:
         (one | {"lanes": "2", "busway:right": "lane"}, 1, True),
         (one | {"lanes": "2", "oneway:psv": "no"}, 1, False),
         (one | {"lanes": "2", "access:lanes": "yes|no"}, 1, False),
+        (one | {"lanes": "3", "hov:lanes": "designated|no|no"}, 2, False),
         (one | {"lanes": "2"}, 2, False),
     )
     for country in ("DE", "GB"):

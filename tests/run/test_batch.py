@@ -4,7 +4,7 @@ import os
 import sys
 import time
 from collections import Counter
-from contextlib import closing, nullcontext
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +17,6 @@ from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_jobs, run_plan
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
-from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.kept import pictures, read_steps, read_trial
 from automotive_cosim.run.plan import make_plan
@@ -127,12 +126,6 @@ def trouble(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     yield tmp_path
     sys.modules.pop("trouble", None)
-
-
-@pytest.fixture(scope="module")
-def fork_server():
-    with closing(ForkServer()) as shared:
-        yield shared
 
 
 def tries(folder):
@@ -254,7 +247,7 @@ def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants_and_never_aga
     task, far = CATALOGUE["system_local_units"], CATALOGUE["road_speed_80_in_50"].half("second").trigger
     second = replace(task.half("second"), trigger=replace(far, within_s=5.0))
     monkeypatch.setitem(CATALOGUE._tasks, task.id, replace(task, second=second))
-    here, there = Here(simulations, fork_server), {"tasks": [task.id]}
+    here, there = Here(simulations, fork_server), {"tasks": [task.id], "limits": {"steps": 2}}
     both = plan("no-op", "always-alert", **there)
     end = run_plan(both, tmp_path / "both", retries=5, executor=here)
     assert (end.planned, end.done, end.judged, end.ran, end.errors) == (4, 4, 2, 4, 2)
