@@ -185,8 +185,11 @@ def test_names_of_sites_do_not_overlap_on_the_map() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("hours", [range(7, 10), pytest.param(range(24), marks=pytest.mark.proof)])
-def test_a_day_is_calibrated_hour_by_hour(sumo: None, tmp_path: Path, hours: range) -> None:
+def test_a_day_is_calibrated_hour_by_hour(
+    sumo: None, tmp_path: Path, hours: range, monkeypatch: pytest.MonkeyPatch
+) -> None:
     """A tenth of the example's counts with the profile of a day; the grid's traffic, also a tenth, has none."""
+    monkeypatch.setattr("automotive_cosim.report.calibration.MANY_HOURS", 2)
     counts = tmp_path / "day.csv"
     sites = [line.split(",") for line in COUNTS.read_text().splitlines()[1:]]
     lines = [

@@ -79,7 +79,7 @@ def test_one_can_drive_on_from_every_place(simulations: Simulations, family: str
 
 @pytest.mark.slow
 def test_the_car_drives_on_at_every_destination(simulations: Simulations) -> None:
-    moments = driven(LAPS, simulations, 800.0)
+    moments = driven(replace(LAPS, coarse=True), simulations, 800.0)
     assert len(moments) == 801
     assert all(moment.driving.end is None for moment in moments)
     goals = dict.fromkeys(moment.driving.ahead.route_edges[-1] for moment in moments)
@@ -218,7 +218,7 @@ def test_a_van_is_no_ambulance(simulations: Simulations) -> None:
 def test_an_incident_ahead_is_on_the_way_and_its_lookalike_is_not(simulations: Simulations, what: Any) -> None:
     for other_way in (False, True):
         incident = AheadIncident(what=what, from_s=20.0, to_s=490.0, ahead_m=1500.0, other_way=other_way)
-        script = replace(LAPS, scenario="beauce", trips=("plain",), incidents=(incident,))
+        script = replace(LAPS, scenario="beauce", trips=("plain",), incidents=(incident,), coarse=True)
         moments = driven(script, simulations, 500.0)
         told = [one for moment in moments for one in moment.driving.ahead.incidents]
         assert {one.kind for one in told} == {IncidentKind(what)}

@@ -13,6 +13,7 @@ from automotive_cosim.errors import NoRoomError, ScenarioError, UnknownNameError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
+from automotive_cosim.traffic.sumo import load_library
 from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
@@ -66,6 +67,8 @@ LOST_CAR = '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/></vehicle>'
 def test_a_broken_scenario_is_refused_in_one_line(
     variant: Variant, change: Callable[[Path], None], said: str, capfd: pytest.CaptureFixture[str]
 ) -> None:
+    load_library()  # which may warn
+    capfd.readouterr()
     scenario = variant(change)
     texts = []
     for make in (Forked, InProcess):
