@@ -192,6 +192,10 @@ class RoadAhead:
     divided by the limit, as reported by a live-traffic service."""
     incidents: tuple[RoadIncident, ...] = ()
     """Incidents anywhere in the network that such a service reports now."""
+    next_sign: str = ""
+    """The next stop or give-way sign on the route, ``"stop"`` or ``"give_way"``, and its distance; empty and None
+    if the map has none."""
+    sign_distance_m: float | None = None
 
     @property
     def delay_min(self) -> int:

@@ -169,6 +169,10 @@ def answer(rule: Rule, context: GeoContext) -> Value | None:
 # --- in words ---------------------------------------------------------------------------------------------
 
 
+SIGN_WITHIN_M = 300.0
+"""A stop or give-way sign on the route is named from here on."""
+
+
 def _lines(context: GeoContext) -> Iterator[Line]:
     yield Line(f"Place: {_place(context)}", "place")
     yield Line(f"Position: {_position(context)}", "gps")
@@ -177,6 +181,9 @@ def _lines(context: GeoContext) -> Iterator[Line]:
     if context.road.limit_hours:
         yield Line(f"Posted for certain hours: {context.road.limit_hours}", "road")
     yield from _limits(context)
+    ahead = context.driving.ahead
+    if ahead.next_sign and ahead.sign_distance_m is not None and ahead.sign_distance_m <= SIGN_WITHIN_M:
+        yield Line(f"Sign ahead: {ahead.next_sign.replace('_', ' ')} in {ahead.sign_distance_m:.0f} m", "road")
     yield Line(f"Speed: {_speed(context.speed_kmh, context)}, heading {_compass(context.heading_deg)}", "motion")
     yield Line(f"Time: {_time(context)}", "sky")
     yield Line(f"Weather: {_weather(context)}", "weather")

@@ -99,6 +99,10 @@ class Atlas:
             layers=layers,
         )
 
+    def country_at(self, lon_deg: float, lat_deg: float) -> str:
+        """ISO 3166-1 code of the country of a position; empty at sea. Much faster than its whole place."""
+        return country_at(tzfpy.get_tz(lon_deg, lat_deg), lon_deg, lat_deg)
+
     def country(self, code: str) -> tuple[Jurisdiction, ...]:
         """A country's law with those of its cities and regions, cities first and itself last; empty without any.
 

@@ -7,6 +7,7 @@ Four laws hold for all of them:
 * A list lets a car in if any of its values does: ``no;destination`` lets it in, ``psv;delivery`` does not.
 * A direction all of whose lanes are for buses is closed to cars.
 * A value that is not known to let a car in keeps it out, and is told.
+* A road for cars with passengers (``hov``) is closed to a driver alone, unless a key about cars opens it, and told.
 
 Conditions on the clock, the calendar and the weather are kept for the drive (``at_hours``), others are told.
 """
@@ -39,6 +40,18 @@ CLOSED = frozenset(
 )  # fmt: skip
 """Values for others than an ordinary car."""
 
+HOV_ONLY = frozenset(("designated", "only", "2", "2+", "3", "3+"))
+"""Values of ``hov`` of what a driver alone may not use (OSM wiki, "Key:hov"; numbers are its older form)."""
+
+TOLD = frozenset(
+    ("4wd_only=yes", "4wd_only=recommended", "abandoned=yes", "construction=yes", "construction=minor",
+     "construction=widening", "disused=yes", "hov=lane", "ice_road=yes", "impassable=yes", "low_emission_zone=yes",
+     "seasonal=yes", "seasonal=winter", "seasonal=summer", "seasonal=spring", "seasonal=autumn",
+     "seasonal=wet_season", "seasonal=dry_season", "toll=yes", "toll:motor_vehicle=yes", "toll:motorcar=yes",
+     "winter_road=yes")
+)  # fmt: skip
+"""Tags of roads that are open to cars at a price, or not to every car, or not always, which are told."""
+
 DOUBTED = frozenset(("unknown", "discouraged", "variable"))
 """Values that let a car in and are told all the same."""
 
@@ -61,10 +74,17 @@ class Access(NamedTuple):
 
 def access(tags: Mapping[str, str], direction: str = "") -> Access:
     """Whether cars may pass: along a way in a direction of ``ENDS``, or a node, which has none."""
+    if tags.get("highway") == "construction":
+        date = f", opening_date={tags['opening_date']}" if "opening_date" in tags else ""
+        return Access(False, f"highway=construction{date}", is_doubtful=True)
+    hov = _hov(tags, direction)
     for key in KEYS:
         for name in (f"{key}:{direction}", key) if direction else (key,):
             if tags.get(name):
-                return _read(name, tags[name])
+                found = _read(name, tags[name])
+                return Access(True, f"{hov}, {found.tag}", is_doubtful=True) if hov and found.is_open else found
+    if hov:
+        return Access(False, hov, is_doubtful=True)
     for key in KEYS:
         for name in (f"{key}:lanes:{direction}", f"{key}:lanes") if direction else ():
             lanes = tags.get(name, "").split("|")
@@ -75,6 +95,15 @@ def access(tags: Mapping[str, str], direction: str = "") -> Access:
         if set(tags.get(name, "").split("|")) == {"designated"}:
             return Access(is_open=False, tag=f"{name}={tags[name]}")
     return Access(is_open=True)
+
+
+def _hov(tags: Mapping[str, str], direction: str) -> str:
+    """The tag that gives a road to cars with passengers, ``"hov=designated"``; empty without one."""
+    for name in (f"hov:{direction}", "hov", f"hov:lanes:{direction}", "hov:lanes"):
+        value = tags.get(name, "")
+        if value and all(lane.strip() in HOV_ONLY for lane in value.split("|")):
+            return f"{name}={value}"
+    return ""
 
 
 def at_hours(tags: Mapping[str, str], direction: str) -> str:
@@ -91,6 +120,10 @@ def at_hours(tags: Mapping[str, str], direction: str) -> str:
             for value, condition, _ in clauses(tags.get(f"{name}:conditional", "")):
                 if not OF_THE_VEHICLE.search(condition) and is_understood(condition):
                     found.append((lets_in(value), condition))
+    for name in ("hov", f"hov:{direction}"):
+        for value, condition, _ in clauses(tags.get(f"{name}:conditional", "")):
+            if (value in HOV_ONLY or value in ("yes", "no")) and is_understood(condition):
+                found.append((value not in HOV_ONLY, condition))
     if all(is_open is usual for is_open, _ in found):
         return ""
     return timed([*([] if usual else [(False, ALWAYS)]), *found])
@@ -121,6 +154,11 @@ def doubts(tags: Mapping[str, str]) -> Iterator[str]:
         if found.is_doubtful:
             yield found.tag
     yield from _conditional(tags)
+    for key, value in tags.items():
+        is_timed = key.startswith("hov") and key.endswith(":conditional")
+        is_unread = is_timed and not all(is_understood(when) for _, when, _ in clauses(value))
+        if f"{key}={value}" in TOLD or is_unread or (is_timed and ":lanes" in key):
+            yield f"{key}={value}"
 
 
 def _conditional(tags: Mapping[str, str]) -> Iterator[str]:

@@ -57,7 +57,7 @@ def differences(
     for found in of_edges(built.edges, roads):
         if found.what != "lanes" or found.edge_id not in beside_ramps:
             yield found
-    yield from _of_access_and_limits(extract, built, country)
+    yield from _of_access_and_limits(extract, built, roads, country)
     yield from _of_barriers(extract, built)
     yield from _of_turns(extract, built)
 
@@ -85,12 +85,15 @@ def of_edges(edges: Iterable[Edge], roads: Mapping[int, MappedRoad]) -> Iterator
             yield Difference("lanes", str(lanes), str(len(edge.lane_ids)), edge.edge_id, way)
 
 
-def _of_access_and_limits(extract: Extract, built: Built, country: str) -> Iterator[Difference]:
+def _of_access_and_limits(
+    extract: Extract, built: Built, roads: Mapping[int, MappedRoad], country: str
+) -> Iterator[Difference]:
     of_way: dict[int, list[Edge]] = {}
     for edge in built.edges:
         of_way.setdefault(way_of(edge.edge_id), []).append(edge)
     for way in (*extract.ways, *extract.closed):
-        expected = expect(way.tags, country, miles=MILES, metric=country_codes())
+        land = roads[way.way_id].country if way.way_id in roads else country
+        expected = expect(way.tags, land, miles=MILES, metric=country_codes())
         edges = of_way.get(way.way_id, ())
         against = [edge.edge_id.startswith("-") for edge in edges]
         found = (not all(against), any(against))

@@ -30,6 +30,11 @@ class Area(NamedTuple):
             west_deg, south_deg, east_deg, north_deg = (float(part) for part in text.split(","))
         except ValueError:
             west_deg = south_deg = east_deg = north_deg = math.nan
+        if -180 <= east_deg < west_deg <= 180:
+            raise ImportMapError(
+                f"--bbox {text!r} reaches over the 180th meridian, which no SUMO network can; give one side: "
+                f"{west_deg:g},{south_deg:g},180,{north_deg:g} or -180,{south_deg:g},{east_deg:g},{north_deg:g}"
+            )
         if not (-180 <= west_deg < east_deg <= 180 and -90 <= south_deg < north_deg <= 90):
             raise ImportMapError(
                 f"--bbox {text!r} is not an area on earth; give WEST,SOUTH,EAST,NORTH in degrees, such as "

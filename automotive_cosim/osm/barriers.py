@@ -1,20 +1,20 @@
 """Barriers on roads: where cars cannot pass, a road ends on both sides (OSM wiki, "Key:barrier").
 
 An access key on the barrier decides (``access``), else the kind of barrier. netconvert knows no barriers, so a way
-is cut there: each side ends at a node of its own.
+is cut there: each side ends at a node of its own. Where one direction only is closed, cars may not go straight on.
 """
 
 from __future__ import annotations
 
-import math
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
-from automotive_cosim.osm.access import KEYS, access
-from automotive_cosim.osm.area import KM_PER_DEG
+from automotive_cosim.osm.access import ENDS, KEYS, access
 from automotive_cosim.osm.extract import Extract, OsmWay, Position
+from automotive_cosim.osm.facing import away_m
+from automotive_cosim.osm.oneway import BOTH, VALUES
 
 PASSABLE = frozenset(
     ("no", "entrance", "border_control", "toll_booth", "checkpoint", "cattle_grid", "sally_port", "kerb", "coupure",
@@ -73,15 +73,31 @@ class Cut:
     """Gates of which the map does not say for whom they open."""
     unplaced: tuple[Barrier, ...] = ()
     """Barriers on junctions, of which it does not say which road they stop: passed."""
+    one_way: tuple[tuple[int, int, int], ...] = ()
+    """Where a barrier stops cars in one direction only: the piece that they come from, the node, and the piece into
+    which they may not drive on."""
 
 
 def stops(tags: Mapping[str, str]) -> str | None:
-    """The tag by which a node stops cars; None if it does not."""
+    """The tag by which a node stops cars in both directions; None if it does not."""
+    forward, backward = (_stops(tags, end) for end in ENDS)
+    return forward if backward else None
+
+
+def closed_end(tags: Mapping[str, str]) -> str:
+    """The direction of ``ENDS`` in which a node stops cars, if it lets them pass in the other; empty if not."""
+    closed = [end for end in ENDS if _stops(tags, end)]
+    return closed[0] if len(closed) == 1 else ""
+
+
+def _stops(tags: Mapping[str, str], end: str) -> str | None:
     barrier = tags.get("barrier", "").lower()
     if not barrier or barrier == "no":
         return None
-    if any(tags.get(key) for key in KEYS):
-        found = access(tags)
+    if not VALUES.get(tags.get("oneway", ""), BOTH).open(end):
+        return f"barrier={barrier}, oneway={tags['oneway']}"
+    if any(tags.get(name) for key in KEYS for name in (key, f"{key}:{end}")):
+        found = access(tags, end)
         return None if found.is_open else f"barrier={barrier}, {found.tag}"
     return None if barrier in PASSABLE | GATES else f"barrier={barrier}"
 
@@ -97,11 +113,18 @@ def cut(extract: Extract) -> Cut:
     stopping: list[Barrier] = []
     gates: list[Barrier] = []
     unplaced: list[Barrier] = []
+    halves: dict[int, str] = {}
+    ends_of_ways = {ref for way in extract.ways for ref in (way.nodes[0], way.nodes[-1])}
     for ref, node in extract.nodes.items():
         if "barrier" not in node.tags or arms[ref] < 2:
             continue
         tag = stops(node.tags)
-        if tag is not None:
+        if closed := closed_end(node.tags):
+            if arms[ref] == 2 and ref not in ends_of_ways:
+                halves[ref] = closed
+            else:
+                unplaced.append(Barrier(ref, f"{_stops(node.tags, closed)} for one direction"))
+        elif tag is not None:
             (stopping if arms[ref] == 2 else unplaced).append(Barrier(ref, tag))
         elif is_unclear_gate(node.tags):
             gates.append(Barrier(ref, f"barrier={node.tags['barrier']}"))
@@ -109,9 +132,10 @@ def cut(extract: Extract) -> Cut:
     free = max((abs(ref) for ref in extract.nodes), default=0)
     made: dict[int, Position] = {}
     pieces: list[Piece] = []
+    one_way: list[tuple[int, int, int]] = []
     seen: set[int] = set()
     for way in extract.ways:
-        for part, nodes in enumerate(_split(way.nodes, shut), start=1):
+        for part, nodes in enumerate(_split(way.nodes, shut | halves.keys()), start=1):
             ends = list(nodes)
             for index in (0, -1):
                 ref = ends[index]
@@ -121,14 +145,18 @@ def cut(extract: Extract) -> Cut:
                     ends[index] = free
                 elif ref in shut:
                     seen.add(ref)
+            if ends[0] in halves and part > 1:
+                here = (len(pieces) - 1, len(pieces))
+                before, after = here if halves[ends[0]] == "forward" else here[::-1]
+                one_way.append((before, ends[0], after))
             pieces.append(Piece(way, part, tuple(ends)))
-    return Cut(tuple(pieces), made, tuple(stopping), tuple(gates), tuple(unplaced))
+    return Cut(tuple(pieces), made, tuple(stopping), tuple(gates), tuple(unplaced), tuple(one_way))
 
 
 def _before(ref: int, neighbour: int, extract: Extract) -> Position:
     """A place a little before a barrier: netconvert takes two nodes at one place for one."""
     (lon, lat), (lon_on, lat_on) = extract.nodes[ref].position, extract.nodes[neighbour].position
-    length_m = KM_PER_DEG * 1000 * math.hypot((lon_on - lon) * math.cos(math.radians(lat)), lat_on - lat)
+    length_m = away_m((lon, lat), (lon_on, lat_on))
     share = min(0.5, GAP_M / max(length_m, GAP_M))
     return Position(lon + share * (lon_on - lon), lat + share * (lat_on - lat))
 

@@ -2,46 +2,94 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.osm import access, barriers, lanes, limits, oneway
+from automotive_cosim.osm import access, arrows, barriers, lanes, limits, oneway
 from automotive_cosim.osm.extract import Extract, OsmWay
+from automotive_cosim.osm.facing import facing
 from automotive_cosim.osm.network import Built
 from automotive_cosim.osm.roads import MappedRoad, way_of
-from automotive_cosim.traffic.posted import clauses, timed_limits
+from automotive_cosim.traffic.network import Edge
+from automotive_cosim.traffic.posted import clauses, names_holidays, timed_limits
 
 SHOWN = 10
-"""How many OSM numbers a line names."""
+"""How many OSM numbers a line names where people read it; ``import.json`` has all."""
+
+_MANY = re.compile(rf"((?:-?\d+, ){{{SHOWN - 1}}}-?\d+)((?:, -?\d+)+)$")
 
 
 def in_words(kind: str, numbers: Sequence[int]) -> str:
-    """``"ways 1, 2 and 5 more"``."""
-    more = f" and {len(numbers) - SHOWN} more" if len(numbers) > SHOWN else ""
-    return f"{kind}{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers[:SHOWN]))}{more}"
+    """``"ways 1, 2, 3"``."""
+    return f"{kind}{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
+
+
+def shortened(line: str) -> str:
+    """A line with the first of many OSM numbers: ``"ways 1, 2 and 5 more"``."""
+    return _MANY.sub(lambda numbers: f"{numbers[1]} and {numbers[2].count(',')} more", line)
 
 
 def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, country: str) -> Iterator[str]:
     """Everything about access, direction, barriers, turns, lanes and limits that somebody should look at."""
+    for land, beyond in extract.other_side.items():
+        about = f"where traffic keeps the other side, left out (for them instead: --country {land})"
+        yield f"roads in {land}, {about}: {in_words('way', beyond)}"
+    for land in sorted({road.country for road in roads.values()} - {country}):
+        there = [way for way, road in roads.items() if road.country == land]
+        yield f"roads in {land}, under its law: {in_words('way', there)}"
     everywhere = (*extract.ways, *extract.closed)
     for tag, ways in _by_tag((way, doubt) for way in everywhere for doubt in access.doubts(way.tags)):
         shut = {way.way_id for way in extract.closed}
         what = "closed to cars" if set(ways) <= shut else "open to cars" if not shut & set(ways) else "read by way"
         yield f"access that is doubtful, {what}: {tag}: {in_words('way', ways)}"
+    if extract.low_emission:
+        yield f"low-emission zones, taken as open to any car: {in_words('relation', extract.low_emission)}"
     for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in oneway.doubts(way.tags)):
         yield f"direction that is doubtful: {tag}: {in_words('way', ways)}"
     yield from _of_barriers(built.cut)
     yield from _of_turns(built)
+    for (why, kind), nodes in _of_signs(extract, built):
+        yield f"{kind.replace('_', '-')} signs {why}, left out: {in_words('node', nodes)}"
+    for tag, nodes in sorted(_not_built(extract, built).items()):
+        yield f"{tag}: {in_words('node', nodes)}"
+    for what, nodes in sorted(built.cameras.told.items()):
+        yield f"speed cameras {what}: {in_words('node', nodes)}"
+    for tag, ways in _by_tag(_of_arrows(extract, roads, built)):
+        yield f"turn arrows not followed, the lanes lead by angle: {tag}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, f"stop={way.tags['stop']}") for way in extract.ways if "stop" in way.tags):
+        yield f"stop signs on a whole way, left out: {tag}: {in_words('way', ways)}"
     for tag, ways in _by_tag(
-        (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, oneway.directions(way.tags))
+        (way, doubt) for way in extract.ways for doubt in lanes.doubts(way.tags, roads[way.way_id].directions)
     ):
         done = "a lane each was built" if tag == lanes.SHARED else "left out"
         yield f"{tag}, {done}: {in_words('way', ways)}"
-    for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, country)):
+    for tag, ways in _by_tag(
+        (way, doubt) for way in extract.ways for doubt in limits.doubts(way.tags, roads[way.way_id].country)
+    ):
         about = tag if tag == limits.NO_UNIT else f"{tag}, left out"
         yield f"{about}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, tag) for way in extract.ways for tag in _of_lane_limits(way, roads)):
+        yield f"limits of lanes of another number, the highest if all have one: {tag}: {in_words('way', ways)}"
+    for tag, ways in _by_tag((way, tag) for way in everywhere for tag in _of_holidays(way.tags)):
+        yield f"holidays, of which there is no calendar, taken for other days: {tag}: {in_words('way', ways)}"
     for part, ways in _by_tag((way, part) for way in extract.ways for part in _unread(way.tags)):
         yield f"limits under conditions that are not understood, left out: {part}: {in_words('way', ways)}"
+
+
+def _of_lane_limits(way: OsmWay, roads: Mapping[int, MappedRoad]) -> Iterator[str]:
+    road = roads[way.way_id]
+    for end, edge_id in zip(access.ENDS, ("", "-"), strict=True):
+        if road.directions.open(end) and road.stated.lanes(edge_id) and not road.lane_signs(edge_id):
+            key = next(key for key in (f"maxspeed:lanes:{end}", "maxspeed:lanes") if way.tags.get(key))
+            yield f"{key}={way.tags[key]}"
+
+
+def _of_holidays(tags: Mapping[str, str]) -> Iterator[str]:
+    for key, value in tags.items():
+        is_ours = key.startswith(("maxspeed", *access.KEYS, "oneway", "hov"))
+        if is_ours and key.endswith(":conditional") and any(names_holidays(when) for _, when, _ in clauses(value)):
+            yield f"{key}={value}"
 
 
 def _unread(tags: Mapping[str, str]) -> Iterator[str]:
@@ -80,6 +128,64 @@ def _of_turns(built: Built) -> Iterator[str]:
     ):
         if relations:
             yield f"{about}: {in_words('relation', relations)}"
+
+
+def _of_signs(extract: Extract, built: Built) -> list[tuple[tuple[str, str], list[int]]]:
+    """The nodes of signs that the network does not follow, by the reason and the kind."""
+    found: dict[tuple[str, str], set[int]] = {}
+    for why, nodes in built.signs.left_out.items():
+        for ref in nodes:
+            found.setdefault((why, extract.nodes[ref].tags["highway"]), set()).add(ref)
+    return sorted((about, sorted(nodes)) for about, nodes in found.items())
+
+
+def _of_arrows(extract: Extract, roads: Mapping[int, MappedRoad], built: Built) -> Iterator[tuple[OsmWay, str]]:
+    """Ways whose lanes lead elsewhere at their end than the arrows there say, or end within a junction."""
+    of_end: dict[tuple[int, bool], dict[str, Edge]] = {}
+    for edge in built.edges:
+        there = way_of(edge.edge_id), edge.edge_id.startswith("-")
+        of_end.setdefault(there, {})[edge.from_node] = edge
+    for way in extract.ways:
+        road = roads[way.way_id]
+        for number, end in enumerate(access.ENDS):
+            wanted = arrows.arrows_of(way.tags, end, road.directions) if road.directions.open(end) else ()
+            if not wanted or len(wanted) != road.built_lanes[number]:
+                continue  # the latter is told by its number of lanes
+            along = of_end.get((way.way_id, end == "backward"), {})
+            last = [edge for edge in along.values() if edge.to_node not in along]
+            if not last or not all(_leads_there(edge, wanted, built, roads) for edge in last):
+                key = arrows.key_of(way.tags, end)
+                yield way, f"{key}={way.tags[key]}"
+
+
+def _leads_there(edge: Edge, wanted: arrows.Lanes, built: Built, roads: Mapping[int, MappedRoad]) -> bool:
+    """Whether an edge at the end of a way leads where its arrows say; one without a choice does if it goes on into
+    a road with arrows of its own."""
+    links = built.links.of.get(edge.edge_id, ())
+    onward = {link.to_edge for link in links if link.direction != "t"}
+    if len(onward) == 1:
+        beyond = onward.pop()
+        road = roads[way_of(beyond)]
+        if arrows.arrows_of(road.tags, access.ENDS[beyond.startswith("-")], road.directions):
+            return True
+    count = max(link.lane for link in links) + 1 if links else 0
+    by_lane = [[(link.direction, link.to_edge) for link in links if link.lane == lane] for lane in range(count)]
+    left_hand = roads[way_of(edge.edge_id)].left_hand
+    return arrows.leads_there(wanted, by_lane if left_hand else by_lane[::-1])
+
+
+def _not_built(extract: Extract, built: Built) -> dict[str, list[int]]:
+    """What stands at the road and SUMO does not have: calming, and signals at no junction."""
+    found: dict[str, list[int]] = {"signals at no junction with signals, left out": sorted(built.dark)}
+    for ref, node in extract.nodes.items():
+        calming = node.tags.get("traffic_calming", "no")
+        if calming != "no":
+            found.setdefault(f"traffic calming that SUMO does not have: traffic_calming={calming}", []).append(ref)
+        if node.tags.get("highway") == "traffic_signals":
+            told = facing(node.tags, "traffic_signals")
+            if told.unread:
+                found.setdefault(f"signals with {told.unread}, for every direction", []).append(ref)
+    return {tag: nodes for tag, nodes in found.items() if nodes}
 
 
 def unconnected(extract: Extract, built: Built) -> Iterator[str]:

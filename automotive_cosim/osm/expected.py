@@ -79,8 +79,13 @@ def expect_stop(tags: Mapping[str, str]) -> bool:
     kind = tags.get("barrier", "no").lower()
     if kind == "no":
         return False
-    said = [tags[group] for group in GROUPS if tags.get(group)]
-    return not _for_cars(said[-1]) if said else kind not in OPENING + NO_HINDRANCE
+    passes = kind in OPENING + NO_HINDRANCE
+    way = ONE_WAY.get(tags.get("oneway", ""), 0)
+    for side, sign in (("forward", -1), ("backward", 1)):
+        said = sorted(_ranked(tags, side, _ACCESS))
+        if way != sign and (_for_cars(said[-1][1]) if said else passes):
+            return False
+    return True
 
 
 def expect_turn(tags: Mapping[str, str], members: tuple[tuple[str, int, str], ...]) -> ExpectedTurn | None:
@@ -121,10 +126,19 @@ _ACCESS_OF_LANES = re.compile(
 _MAXSPEED = re.compile(r"maxspeed(?::(?P<group>motor_vehicle|motorcar))?(?::(?P<side>forward|backward))?")
 
 
+_FOR_TWO = re.compile(r"designated|only|[23]\+?")
+
+
 def _admits(tags: Mapping[str, str], side: str) -> bool:
+    """Whether a driver alone may drive there, at any hour."""
+    if tags.get("highway") == "construction":
+        return False
     whole = sorted(_ranked(tags, side, _ACCESS))
     if whole:
         return _for_cars(whole[-1][1])
+    shared = [tags.get(key, "") for key in ("hov", f"hov:{side}", "hov:lanes", f"hov:lanes:{side}")]
+    if any(text and all(_FOR_TWO.fullmatch(part.strip()) for part in text.split("|")) for text in shared):
+        return False
     lanes = sorted(_ranked(tags, side, _ACCESS_OF_LANES))
     if lanes:
         return any(not lane.strip() or _for_cars(lane) for lane in lanes[-1][1].split("|"))
@@ -136,7 +150,12 @@ def _at_times(tags: Mapping[str, str], side: str) -> bool:
     """Whether cars are let in at hours, by a condition on the clock, the calendar or the weather."""
     by_rank: list[tuple[int, bool]] = []
     for key, value in tags.items():
-        match = _ACCESS.fullmatch(key.removesuffix(":conditional"))
+        name = key.removesuffix(":conditional")
+        if key != name and name in ("hov", f"hov:{side}"):
+            found = [word for word, when in _CLAUSE.findall(value) if _CLOCK.fullmatch(when)]
+            if any(word in ("yes", "no") for word in found):
+                by_rank.append((9, True))
+        match = _ACCESS.fullmatch(name)
         if match is None or not value or match["side"] not in (None, side):
             continue
         rank = 2 * GROUPS.index(match["group"]) + (match["side"] is not None)
@@ -149,8 +168,8 @@ def _at_times(tags: Mapping[str, str], side: str) -> bool:
 
 _CLAUSE = re.compile(r"(-?[\w][\w;,/]*?) *@ *(\([^()]*\)|[^;()]+)")
 _CLOCK = re.compile(
-    r"\(?(?:24/7|\d\d?:\d\d|(?:Mo|Tu|We|Th|Fr|Sa|Su)\[-?[1-5]\]|(?:Mo|Tu|We|Th|Fr|Sa|Su|PH|SH|off|wet|snow|AND)\b"
-    r"|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-–,;: ])+\)?"
+    r"\(?(?:24/7|\d\d?:\d\d|(?:Mo|Tu|We|Th|Fr|Sa|Su)\[-?[1-5]\]|(?:Mo|Tu|We|Th|Fr|Sa|Su|PH|SH|off|week|wet|snow|AND)\b"
+    r"|/\d\d?|\d\d?\b(?=[-/ ])|(?:Jan|Feb|Mar|Apr|May|Jun|Jul|Aug|Sep|Oct|Nov|Dec)\b(?: \d\d?\b)?|[-–,;: ])+\)?"
 )
 
 
@@ -162,7 +181,7 @@ def _for_cars(value: str) -> bool:
 def _one_way(tags: Mapping[str, str]) -> int:
     """1 with the nodes, -1 against them, 0 both."""
     found = 0
-    if tags.get("junction") in ("roundabout", "circular") or tags.get("highway") in ("motorway", "motorway_link"):
+    if tags.get("junction") in ("roundabout", "circular") or tags.get("highway") == "motorway":
         found = 1
     for key in ("oneway", *(f"oneway:{group}" for group in GROUPS[1:])):
         word = tags.get(key, "").strip().lower()
@@ -191,17 +210,25 @@ def _limit(
     zones = [value for key, value in tags.items() if _ZONE_KEY.fullmatch(key) for value in _zones(value)]
     in_town = _in_town(tags)
     free = fast and in_town is not True and not any(_zone_kmh(value, miles=miles, metric=metric) for value in zones)
+    whole = _whole_limit(tags, side, free=free, miles=miles, metric=metric)
+    text = tags.get(f"maxspeed:lanes:{side}") or tags.get("maxspeed:lanes") or ""
+    each = [_kmh(part.strip()) for part in text.split("|")]
+    each = [None if kmh is not None and kmh > 1e9 and not free else kmh for kmh in each]
+    if not any(each):
+        return whole
+    every = [whole if kmh is None else kmh for kmh in each]
+    return None if None in every else max(kmh for kmh in every if kmh is not None)
+
+
+def _whole_limit(
+    tags: Mapping[str, str], side: str, *, free: bool, miles: Container[str], metric: Container[str]
+) -> float | None:
+    """The limit of a direction, whatever those of its lanes are."""
     ranked = sorted(_ranked(tags, side, _MAXSPEED), reverse=True)
     for _, value in ranked:
         kmh = _kmh(value)
         if kmh is not None and (kmh != float("inf") or free):
             return kmh
-    for key in (f"maxspeed:lanes:{side}", "maxspeed:lanes"):
-        if tags.get(key):
-            each = [kmh for kmh in map(_kmh, tags[key].split("|")) if kmh is not None and (kmh < 1e9 or free)]
-            if each:
-                return max(each)
-            break
     for key in ("maxspeed", "zone:maxspeed", "maxspeed:type", "source:maxspeed"):
         for value in tags.get(key, "").split(";"):
             kmh = _zone_kmh(value.strip(), miles=miles, metric=metric)

@@ -7,23 +7,25 @@ ways (paths, railways) are removed, because each path that meets a road would sp
 from __future__ import annotations
 
 import re
+import shutil
 import tempfile
 from collections.abc import Iterable, Iterator, Mapping, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from functools import partial
 from importlib import import_module
+from itertools import compress, product
 from pathlib import Path
 from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
-from automotive_cosim.formats.files import is_utf8, open_file
+from automotive_cosim.formats.files import is_utf8, open_file, opened
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
 from automotive_cosim.osm.ground import MappedArea
 from automotive_cosim.osm.oneway import directions
-from automotive_cosim.osm.overpass_json import OverpassJson, is_json
+from automotive_cosim.osm.overpass_json import COUNTS, OverpassJson, is_json, refuse_broken_off
 from automotive_cosim.osm.shores import cut_water
 from automotive_cosim.traffic.sumo_programs import INSTALL
 
@@ -72,12 +74,27 @@ class Node:
 
 
 @dataclass(frozen=True, slots=True)
-class TurnRestriction:
-    """A turn restriction; members are (``"n"`` or ``"w"``, id, role)."""
+class Relation:
+    """A relation; members are (``"n"`` or ``"w"``, id, role)."""
 
     relation_id: int
     tags: Mapping[str, str]
     members: tuple[tuple[str, int, str], ...]
+
+
+Course = tuple[Position, Position]
+"""Where watched traffic comes from and goes to."""
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A speed camera, on a road or beside it."""
+
+    node: int
+    position: Position
+    tags: Mapping[str, str]
+    courses: tuple[Course, ...] = ()
+    """The traffic that it watches, by the enforcement relations of which it is the device."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,13 +104,16 @@ class Extract:
     ways: tuple[OsmWay, ...]
     """Those that cars may drive, in the order of their ids."""
     nodes: Mapping[int, Node]
-    restrictions: tuple[TurnRestriction, ...]
-    cameras: tuple[Position, ...] = ()
-    """Positions of speed cameras, on a road or beside it."""
+    restrictions: tuple[Relation, ...]
+    cameras: tuple[Camera, ...] = ()
     ground: tuple[MappedArea, ...] = ()
     """Water, green and buildings, wherever in the extract."""
     closed: tuple[OsmWay, ...] = ()
     """Roads that cars may not drive in any direction."""
+    low_emission: tuple[int, ...] = ()
+    """Relations of low-emission zones."""
+    other_side: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
+    """Ways that were left out, all or in part, because traffic keeps the other side there, by country."""
 
     def crop(self, area: Area) -> Extract:
         """The part within an area; of a road that leaves and comes back, the longest stretch.
@@ -101,25 +121,29 @@ class Extract:
         Raises:
             ImportMapError: it contains no road.
         """
-        nodes = {ref: node for ref, node in self.nodes.items() if area.holds(*node.position)}
-        ways = tuple(piece for way in self.ways for piece in _known_pieces(way, nodes))
-        if not ways:
+        part = self.part({ref: node for ref, node in self.nodes.items() if area.holds(*node.position)})
+        if not part.ways:
             west, south, east, north = self.bounds
             raise ImportMapError(
                 f"no road in the --bbox; the map reaches from {west:.4f},{south:.4f} to {east:.4f},{north:.4f}"
             )
+        return replace(part, cameras=tuple(camera for camera in self.cameras if area.holds(*camera.position)))
+
+    def part(self, nodes: Mapping[int, Node]) -> Extract:
+        """The part with these nodes alone; of a road that leaves it and comes back, the longest stretch."""
+        ways = tuple(piece for way in self.ways for piece in _known_pieces(way, nodes))
         kept = {way.way_id for way in ways}
-        turns = tuple(
-            turn for turn in self.restrictions if all(kind != "w" or ref in kept for kind, ref, _ in turn.members)
-        )
         used = {ref for way in ways for ref in way.nodes}
-        return Extract(
-            ways,
-            {ref: node for ref, node in nodes.items() if ref in used},
-            turns,
-            tuple(camera for camera in self.cameras if area.holds(*camera)),
-            self.ground,
-            tuple(way for way in self.closed if nodes.keys() & set(way.nodes)),
+        return replace(
+            self,
+            ways=ways,
+            nodes={ref: node for ref, node in nodes.items() if ref in used},
+            restrictions=tuple(
+                turn
+                for turn in self.restrictions
+                if all(kind != "w" or ref in kept for kind, ref, _ in turn.members)
+            ),
+            closed=tuple(way for way in self.closed if nodes.keys() & set(way.nodes)),
         )
 
     @property
@@ -145,10 +169,11 @@ def read(source: Path) -> Extract:
         ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
-    ways, restrictions, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
+    ways, relations, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
     ways.sort(key=lambda way: way.way_id)
     complete = [piece for way in ways for piece in _known_pieces(way, nodes)]
-    opened = tuple(way for way in complete if any(directions(way.tags)))
+    is_open = [any(directions(way.tags)) for way in complete]
+    opened = tuple(compress(complete, is_open))
     if not opened:
         raise ImportMapError(
             f"{source} has no roads for cars ({len(ways)} ways tagged as such, with {len(nodes)} of their nodes);"
@@ -158,35 +183,81 @@ def read(source: Path) -> Extract:
     return Extract(
         opened,
         {ref: node for ref, node in sorted(nodes.items()) if ref in used},
-        tuple(sorted(restrictions, key=lambda turn: turn.relation_id)),
-        cameras,
+        tuple(sorted(filter(_is_restriction, relations), key=lambda turn: turn.relation_id)),
+        tuple(_watching(cameras, relations, nodes, {way.way_id: way for way in ways})),
         ground.in_order(areas),
-        tuple(way for way in complete if not any(directions(way.tags))),
+        tuple(way for way, there in zip(complete, is_open, strict=True) if not there),
+        tuple(sorted(relation.relation_id for relation in relations if _is_low_emission(relation))),
     )
 
 
-_Read = tuple[
-    list[OsmWay], tuple[TurnRestriction, ...], dict[int, Node], tuple[Position, ...], tuple[MappedArea, ...]
-]
-"""Ways open to cars, turn restrictions, the nodes of those ways, speed cameras, and the ground."""
+def _watching(
+    tagged: Mapping[int, Node], relations: Iterable[Relation], nodes: Mapping[int, Node], ways: Mapping[int, OsmWay]
+) -> Iterator[Camera]:
+    """The nodes tagged as speed cameras, and the devices of relations that enforce a limit, with what these say."""
+    cameras, courses = dict(tagged), dict[int, list[Course]]()
+
+    def place(kind: str, ref: int) -> Position | None:
+        if kind == "w" and ref in ways:
+            ref = ways[ref].nodes[len(ways[ref].nodes) // 2]
+        return nodes[ref].position if ref in nodes else None
+
+    for relation in filter(_is_enforcement, relations):
+        roles: dict[str, list[Position]] = {}
+        for kind, ref, role in relation.members:
+            if there := place(kind, ref):
+                roles.setdefault(role, []).append(there)
+        for kind, ref, role in relation.members:
+            if kind != "n" or role != "device" or ref not in nodes:
+                continue
+            if relation.tags.get("enforcement") in LIMITS_ENFORCED:
+                cameras.setdefault(ref, nodes[ref])
+            here = [nodes[ref].position]
+            course = product(roles.get("from", here), roles.get("to", here))
+            courses.setdefault(ref, []).extend((start, goal) for start, goal in course if start != goal)
+    for ref, node in sorted(cameras.items()):
+        yield Camera(ref, node.position, node.tags, tuple(courses.get(ref, ())))
+
+
+LIMITS_ENFORCED = frozenset(("maxspeed", "average_speed"))
+"""Values of ``enforcement`` that are about speed (OSM wiki, "Relation:enforcement")."""
+
+_Read = tuple[list[OsmWay], tuple[Relation, ...], dict[int, Node], dict[int, Node], tuple[MappedArea, ...]]
+"""Ways open to cars, relations, the nodes of both, speed cameras, and the ground."""
 
 
 def _read_osm(source: Path) -> _Read:
     kind = _format(source, _head(source))
-    deleted = _checked(source) if kind != "pbf" else set[tuple[str, int]]()
+    deleted, version = _checked(source) if kind != "pbf" else (set[tuple[str, int]](), "")
     osmium = _osmium()
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-map-") as scratch:
         try:
+            file = source
+            if version in OLD_VERSIONS:
+                file, kind = _as_new(source, Path(scratch) / "new.osm"), "osm"
             if deleted:
-                return _read_sorted(source, kind, deleted, Path(scratch))
+                return _read_sorted(file, kind, deleted, Path(scratch))
             try:
-                return _read_file(osmium.io.File(str(source), kind))
+                return _read_file(osmium.io.File(str(file), kind))
             except RuntimeError as error:
                 if not _UNSORTED.search(str(error)):
                     raise
-                return _read_sorted(source, kind, deleted, Path(scratch))
+                return _read_sorted(file, kind, deleted, Path(scratch))
         except (RuntimeError, ValueError, ArithmeticError, MemoryError, osmium.InvalidLocationError) as error:
             raise ImportMapError(_explain(source, str(error))) from error
+
+
+OLD_VERSIONS = ("1", "1.0")
+"""What tools write (OSMnx before 1.3) that mean the present version of the format, 0.6."""
+
+
+def _as_new(source: Path, target: Path) -> Path:
+    """Writes a file unpacked, and with the present version."""
+    with opened(source) as old, target.open("wb") as new:
+        head = old.read(4096)
+        new.write(re.sub(rb"""(<osm\b[^>]*?version=["'])1(\.0)?(?=["'])""", rb"\g<1>0.6", head, count=1))
+        shutil.copyfileobj(old, new)
+    return target
 
 
 _UNSORTED = re.compile(r"out of order|twice")
@@ -215,34 +286,41 @@ def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch
 
 
 def _read_file(file: Any) -> _Read:
-    ways, restrictions = _read_ways(file)
-    nodes = _read_nodes(file, {ref for way in ways for ref in way.nodes})
+    carried: dict[int, Node] = {}
+    ways, relations = _read_ways(file, carried)
+    nodes = carried | _read_nodes(file, _wanted(ways, relations))
     lines = [[nodes[ref].position for ref in way.nodes if ref in nodes] for way in ways]
     areas = tuple(_read_ground(file, [line for line in lines if len(line) > 1]))
-    return ways, restrictions, nodes, _read_cameras(file), areas
+    return ways, relations, nodes, _read_cameras(file), areas
+
+
+def _wanted(ways: Iterable[OsmWay], relations: Iterable[Relation]) -> set[int]:
+    """The nodes of roads, and of what enforces a limit."""
+    members = (member for relation in relations if _is_enforcement(relation) for member in relation.members)
+    return {ref for way in ways for ref in way.nodes} | {ref for kind, ref, _ in members if kind == "n"}
 
 
 def _read_json(source: Path) -> _Read:
     read = OverpassJson(source)
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
-    turns = tuple(TurnRestriction(*relation) for relation in read.relations() if _is_restriction(relation[1]))
-    wanted = {ref for way in ways for ref in way.nodes}
+    relations = tuple(filter(_is_kept, (Relation(*relation) for relation in read.relations())))
+    wanted = _wanted(ways, relations)
     outlines = [(kind, refs) for _, tags, refs in read.ways() if (kind := _ground_of(tags, refs)) is not None]
     corners = {ref for _, refs in outlines for ref in refs}
     places: dict[int, Position] = {}
     nodes: dict[int, Node] = {}
-    cameras: list[Position] = []
+    cameras: dict[int, Node] = {}
     for node_id, tags, place in read.nodes():
         if node_id in corners:
             places[node_id] = Position(*place)
         if node_id in wanted:
             nodes[node_id] = Node(Position(*place), tags)
         if tags.get("highway") == "speed_camera":
-            cameras.append(Position(*place))
+            cameras[node_id] = Node(Position(*place), tags)
     areas = (
         MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
     )
-    return ways, turns, dict(sorted(nodes.items())), tuple(cameras), tuple(areas)
+    return ways, relations, dict(sorted(nodes.items())), cameras, tuple(areas)
 
 
 def _ground_of(tags: Mapping[str, str], refs: tuple[int, ...]) -> GroundKind | None:
@@ -274,15 +352,27 @@ class _UnreadableError(ImportMapError):
     """XML that osmium's own words describe better."""
 
 
-def _checked(source: Path) -> set[tuple[str, int]]:
-    """Refuses positions that libosmium would misread (1e300 becomes 0), and an archive of more than is read.
+def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
+    """Refuses positions that libosmium would misread (1e300 becomes 0), an archive of more than is read, and what a
+    server broke off.
 
     Returns:
-        The elements that JOSM keeps although they were deleted, by kind and id: libosmium takes them for real.
+        The elements that JOSM keeps although they were deleted, by kind and id: libosmium takes them for real. And
+        the version of the format.
     """
     deleted: set[tuple[str, int]] = set()
+    version = ""
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
+        nonlocal version
+        if name == "osm":
+            version = attributes.get("version", "")
+        elif name == "count":
+            raise ImportMapError(f"{source} {COUNTS}")
+        elif name == "remark":
+            with opened(source) as stream:
+                remark = re.search(rb"<remark>(.*?)</remark>", stream.read(), re.DOTALL)
+            refuse_broken_off(source, remark[1].decode("utf-8", "replace") if remark else "")
         for key, most in (("lat", 90), ("lon", 180)) if name == "node" else ():
             text = attributes.get(key, "0")
             if not POSITION.fullmatch(text) or abs(float(text)) > most:
@@ -297,7 +387,7 @@ def _checked(source: Path) -> set[tuple[str, int]]:
     except _UnreadableError as error:
         if isinstance(error.__cause__, OSError):
             raise ImportMapError(f"{source} is truncated or damaged ({error.__cause__})") from error
-    return deleted
+    return deleted, version
 
 
 def _format(source: Path, head: bytes) -> str:
@@ -330,28 +420,46 @@ def _explain(source: Path, error: str) -> str:
     return f"{source} cannot be read as OSM data ({error}); give OSM XML (plain, .gz or .bz2) or .osm.pbf"
 
 
-def _read_ways(file: Any) -> tuple[list[OsmWay], tuple[TurnRestriction, ...]]:
+def _read_ways(file: Any, carried: dict[int, Node]) -> tuple[list[OsmWay], tuple[Relation, ...]]:
+    """Roads and relations, and the nodes that ways carry along with their positions (``out geom``)."""
     osmium = _osmium()
     ways: list[OsmWay] = []
-    restrictions: list[TurnRestriction] = []
+    relations: list[Relation] = []
     wanted = osmium.filter.KeyFilter("highway", "type")
     for item in osmium.FileProcessor(file, osmium.osm.WAY | osmium.osm.RELATION).with_filter(wanted):
         tags = {tag.k: tag.v for tag in item.tags}
         if item.is_way():
             if _is_road(tags):
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
-        elif _is_restriction(tags):
+                if item.nodes and item.nodes[0].location.valid():
+                    carried |= {node.ref: Node(Position(node.lon, node.lat), {}) for node in item.nodes}
+        else:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
-            restrictions.append(TurnRestriction(item.id, tags, members))
-    return ways, tuple(restrictions)
+            relations.append(Relation(item.id, tags, members))
+    return ways, tuple(filter(_is_kept, relations))
 
 
-def _is_restriction(tags: Mapping[str, str]) -> bool:
-    return tags.get("type", "").partition(":")[0] == "restriction"
+def _is_kept(relation: Relation) -> bool:
+    return _is_restriction(relation) or _is_enforcement(relation) or _is_low_emission(relation)
+
+
+def _is_low_emission(relation: Relation) -> bool:
+    return relation.tags.get("boundary") == "low_emission_zone"
+
+
+def _is_restriction(relation: Relation) -> bool:
+    return relation.tags.get("type", "").partition(":")[0] == "restriction"
+
+
+def _is_enforcement(relation: Relation) -> bool:
+    return relation.tags.get("type") == "enforcement"
 
 
 def _is_road(tags: Mapping[str, str]) -> bool:
-    return tags.get("highway") in ROAD_CLASSES and tags.get("area") != "yes"
+    road = tags.get("highway")
+    return (tags.get("construction") if road == "construction" else road) in ROAD_CLASSES and tags.get(
+        "area"
+    ) != "yes"
 
 
 def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:
@@ -365,11 +473,15 @@ def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:
     return nodes
 
 
-def _read_cameras(file: Any) -> tuple[Position, ...]:
+def _read_cameras(file: Any) -> dict[int, Node]:
     osmium = _osmium()
     tagged = osmium.filter.TagFilter(("highway", "speed_camera"))
     found = osmium.FileProcessor(file, osmium.osm.NODE).with_filter(tagged)
-    return tuple(Position(node.location.lon, node.location.lat) for node in found if node.location.valid())
+    return {
+        node.id: Node(Position(node.location.lon, node.location.lat), {tag.k: tag.v for tag in node.tags})
+        for node in found
+        if node.location.valid()
+    }
 
 
 def _read_ground(file: Any, roads: list[list[Position]]) -> Iterator[MappedArea]:

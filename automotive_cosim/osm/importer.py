@@ -18,8 +18,9 @@ from automotive_cosim.geo.place import Place, shipped
 from automotive_cosim.osm import demand, extract, folder, ground, network, trips
 from automotive_cosim.osm.country import country_codes
 from automotive_cosim.osm.demand import Demand, Journey
+from automotive_cosim.osm.doubts import shortened
 from automotive_cosim.osm.report import ImportReport, make_report
-from automotive_cosim.osm.roads import describe
+from automotive_cosim.osm.roads import describe, on_one_side
 from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.scenarios import Scenario, Sumo, Trip, load
 from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, Stability, Stuck, measure
@@ -51,6 +52,9 @@ QUICK_DENSITY = 0.5
 
 STUCK_SHARE_MAX = 0.01
 """Trips that stood for good in a trial that flowed otherwise are left out, up to this share of all."""
+
+HALF_TURN_DEG = 180.0
+"""A map as wide as this reaches over the 180th meridian."""
 
 FULL_PER_KM = 1000 / 7.5
 """Cars that fit on a kilometre of lane: SUMO's default length of 5 m and gap of 2.5 m."""
@@ -87,9 +91,17 @@ def import_map(
         mapped = extract.read(source)
         if options.area is not None:
             mapped = mapped.crop(options.area)
+        west, _, east, _ = mapped.bounds
+        if east - west > HALF_TURN_DEG:
+            raise ImportMapError(
+                f"{source} has roads on both sides of the 180th meridian, which no SUMO network can; give one: "
+                "--bbox 0,-90,180,90 or --bbox=-180,-90,0,90"
+            )
         atlas = shipped()
         place = atlas.place(*mapped.centre)
         options = replace(options, country=options.country or place.country)
+        mapped = on_one_side(mapped, atlas, options.country)
+        place = atlas.place(*mapped.centre)
         tell(f"reading the limits of {counted(len(mapped.ways), 'road')}", None)
         roads = describe(mapped, atlas, options.country)
         tell("building the network", None)
@@ -127,7 +139,8 @@ def import_map(
             quick=options.quick,
         )
         report.write(building / "import.json")
-        folder.write_readme(building / "README.md", title=_title(options), source=source.name, lines=report.guessed)
+        lines = list(map(shortened, report.guessed))
+        folder.write_readme(building / "README.md", title=_title(options), source=source.name, lines=lines)
     return report
 
 

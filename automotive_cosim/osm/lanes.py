@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
-from automotive_cosim.osm import access
+from automotive_cosim.osm import access, arrows
 from automotive_cosim.osm.oneway import Directions
 
 MOST = 10
@@ -61,6 +61,8 @@ def lanes_of(tags: Mapping[str, str], may: Directions, *, left_hand: bool = Fals
     counts: list[int | None] = []
     buses: list[int] = []
     for end, count, is_open in zip(access.ENDS, (forward, backward), may, strict=True):
+        if count is None and total is None and is_open:
+            count = len(arrows.arrows_of(tags, end, may)) or None
         taken = _for_buses(tags, end, may, left_hand=left_hand) if is_open else 0
         if taken and count is None:
             halves = total is not None and may.is_two_way
@@ -68,6 +70,15 @@ def lanes_of(tags: Mapping[str, str], may: Directions, *, left_hand: bool = Fals
         counts.append(count)
         buses.append(min(taken, (count or 1) - 1))
     return LaneCounts(counts[0], counts[1], buses[0], buses[1])
+
+
+def built_of(tags: Mapping[str, str], may: Directions, *, left_hand: bool = False) -> tuple[int, int]:
+    """The lanes that netconvert builds with the nodes of a way and against them, where its tags do not tell all."""
+    lanes, total = lanes_of(tags, may, left_hand=left_hand), _count(tags, "lanes")
+    if total is not None and may.is_two_way and lanes.forward is None and lanes.backward is None:
+        return (total + 1) // 2, max(1, total // 2)
+    usual = USUAL.get(tags.get("highway", ""), 1)
+    return lanes.forward or usual, lanes.backward or usual
 
 
 def for_netconvert(tags: Mapping[str, str], may: Directions, *, left_hand: bool = False) -> dict[str, str]:
@@ -92,7 +103,10 @@ def for_netconvert(tags: Mapping[str, str], may: Directions, *, left_hand: bool 
     ):
         if is_open:
             told |= _access_of_lanes(tags, end, count, buses, is_two_way=may.is_two_way, left_hand=left_hand)
-    return told
+    if not any(key.startswith("turn") for key in tags):
+        return told
+    counts = built_of(tags, may, left_hand=left_hand)
+    return told | arrows.for_netconvert(tags, may, counts, left_hand=left_hand)
 
 
 def doubts(tags: Mapping[str, str], may: Directions) -> Iterator[str]:
@@ -103,6 +117,8 @@ def doubts(tags: Mapping[str, str], may: Directions) -> Iterator[str]:
             yield f"{key}={tags[key]}"
     if may.is_two_way and _count(tags, "lanes") == 1:
         yield SHARED
+    if any(key.startswith("turn") for key in tags):
+        yield from arrows.doubts(tags, may, built_of(tags, may))
 
 
 SHARED = "one lane for both directions"
@@ -153,7 +169,8 @@ def _for_buses(tags: Mapping[str, str], end: str, may: Directions, *, left_hand:
 def _access_of_lanes(
     tags: Mapping[str, str], end: str, count: int | None, buses: int, *, is_two_way: bool, left_hand: bool
 ) -> dict[str, str]:
-    """Who may use each lane of a direction, in the words that netconvert reads."""
+    """Who may use each lane of a direction, in the words that netconvert reads; lanes for cars with passengers are
+    not for a driver alone."""
     suffix = f":{end}" if is_two_way or end == "backward" else ""
     told: dict[str, str] = {}
     for kind in BUS_KINDS:
@@ -165,14 +182,18 @@ def _access_of_lanes(
     if not told and buses and count is not None:
         lanes = ["designated"] * buses + ["yes"] * (count - buses)
         told[f"bus:lanes{suffix}"] = "|".join(lanes if left_hand else reversed(lanes))
-    for key in access.KEYS:
+    of_all: list[str] = []
+    for key in (*access.KEYS, "hov"):
         value = tags.get(f"{key}:lanes:{end}") or (
             "" if is_two_way and end == "backward" else tags.get(f"{key}:lanes", "")
         )
-        if value:
-            words = [lane.strip() for lane in value.split("|")]
-            told[f"vehicle:lanes{suffix}"] = "|".join(
-                "yes" if not word or access.lets_in(word) else "no" for word in words
-            )
-            break
+        if not value or (of_all and key != "hov"):
+            continue
+        words = [lane.strip() for lane in value.split("|")]
+        if key == "hov":
+            closed = ["no" if word in access.HOV_ONLY else "yes" for word in words]
+            words = closed if not of_all else [min(pair) for pair in zip(of_all, closed, strict=False)]
+        of_all = ["yes" if not word or access.lets_in(word) else "no" for word in words]
+    if of_all:
+        told[f"vehicle:lanes{suffix}"] = "|".join(of_all)
     return told

@@ -118,25 +118,38 @@ class Zone(NamedTuple):
 @dataclass(frozen=True, slots=True)
 class Stated:
     """The limits that a way's tags state, as netconvert reads them (``"50"``, ``"30 mph"``, ``"none"``); None where
-    they state none."""
+    they state none. Of lanes with signs of their own, the highest; None if some have none."""
 
     forward: str | None
     """In the direction of the way's nodes."""
     backward: str | None
+    lanes_forward: tuple[str | None, ...] = ()
+    """Those of each lane from the left, if any has a sign of its own; None where it has none."""
+    lanes_backward: tuple[str | None, ...] = ()
 
     def of(self, edge_id: str) -> str | None:
         """The one of an edge: netconvert marks the direction against the way's nodes by a minus."""
         return self.backward if edge_id.startswith("-") else self.forward
+
+    def lanes(self, edge_id: str) -> tuple[str | None, ...]:
+        """Those of an edge's lanes."""
+        return self.lanes_backward if edge_id.startswith("-") else self.lanes_forward
 
 
 def stated_limits(tags: Mapping[str, str], country: str = "") -> Stated:
     """The limits for a car that the tags of a way state; the country decides where there may be none."""
     zone = next(_signs_of_zones(tags), None)
     may_be_none = may_be_unlimited(tags, country)
-    forward, backward = (
-        _nearest(tags, direction, may_be_none=may_be_none) for direction in ("forward", "backward")
-    )
-    return Stated(forward or zone, backward or zone)
+    ends = ("forward", "backward")
+    whole = [_nearest(tags, direction, may_be_none=may_be_none) or zone for direction in ends]
+    lanes = [_of_lanes(tags, direction, may_be_none=may_be_none) for direction in ends]
+    for number, parts in enumerate(lanes):
+        signs = [part or whole[number] for part in parts]
+        if signs:
+            known = [sign for sign in signs if sign is not None]
+            whole[number] = max(known, key=kmh_of) if len(known) == len(signs) else None
+            lanes[number] = tuple(signs)
+    return Stated(whole[0], whole[1], lanes[0], lanes[1])
 
 
 def may_be_unlimited(tags: Mapping[str, str], country: str = "") -> bool:
@@ -182,6 +195,10 @@ def doubts(tags: Mapping[str, str], country: str) -> Iterator[str]:
         numbers = [match for match in map(_NUMBER.fullmatch, _parts(value)) if match]
         if country in MPH_COUNTRIES and any(match[2] is None for match in numbers):
             yield NO_UNIT
+    for key in ("maxspeed:lanes", "maxspeed:lanes:forward", "maxspeed:lanes:backward"):
+        parts = {_sign(part.strip()) for part in tags.get(key, "").split("|") if part.strip()}
+        if None in parts or ("none" in parts and not may_be_none):
+            yield f"{key}={tags[key]}"
     for key in ("zone:traffic", *CAR_KEYS, *ZONE_KEYS):
         for value in filter(_ZONE.fullmatch, _parts(tags.get(key, ""))):
             zone = zone_of(value)
@@ -198,15 +215,20 @@ def _limit_keys(endings: Sequence[str]) -> Iterator[str]:
 
 
 def _nearest(tags: Mapping[str, str], direction: str, *, may_be_none: bool) -> str | None:
-    """The limit of a direction: its own, the one of both, or the highest of its lanes."""
+    """The limit of a direction: its own, or the one of both."""
     for key in _limit_keys((f":{direction}", "")):
         sign = _sign(tags.get(key, ""))
         if sign is not None and (sign != "none" or may_be_none):
             return sign
-    lanes = tags.get(f"maxspeed:lanes:{direction}") or tags.get("maxspeed:lanes", "")
-    found = (sign for sign in map(_sign, lanes.split("|")) if sign is not None)
-    signs = [sign for sign in found if sign != "none" or may_be_none]
-    return max(signs, key=kmh_of, default=None)
+    return None
+
+
+def _of_lanes(tags: Mapping[str, str], direction: str, *, may_be_none: bool) -> tuple[str | None, ...]:
+    """The signs of each lane of a direction from the left; empty if no lane has one of its own."""
+    text = tags.get(f"maxspeed:lanes:{direction}") or tags.get("maxspeed:lanes", "")
+    signs = [_sign(part.strip()) for part in text.split("|")]
+    found = tuple(sign if sign != "none" or may_be_none else None for sign in signs)
+    return found if any(found) else ()
 
 
 def _signs_of_zones(tags: Mapping[str, str]) -> Iterator[str]:

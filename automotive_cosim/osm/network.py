@@ -10,18 +10,19 @@ from importlib import import_module
 from pathlib import Path
 from xml.sax.saxutils import quoteattr, unescape
 
-import shapely
-
 from automotive_cosim.contracts import Tell
 from automotive_cosim.errors import ImportMapError
 from automotive_cosim.osm.barriers import Cut, Piece, cut
+from automotive_cosim.osm.cameras import Cameras, cameras_of
 from automotive_cosim.osm.country import LEFT_HAND
-from automotive_cosim.osm.extract import Extract, Position
+from automotive_cosim.osm.extract import Extract
+from automotive_cosim.osm.links import Links, read_links, with_stops
 from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
-from automotive_cosim.osm.turns import BannedTurns, read_turns
-from automotive_cosim.traffic.georeference import GeoReference
-from automotive_cosim.traffic.network import TIMED_TURN, Edge, Network, read_network
+from automotive_cosim.osm.signs import STOP, Joints, Signs, dark, followed, patches, read_signs
+from automotive_cosim.osm.turns import Ban, BannedTurns, read_turns
+from automotive_cosim.traffic.network import DERESTRICTED_MPS, SIGN, TIMED_TURN, Edge, Network, read_network
+from automotive_cosim.traffic.posted import sign_mps
 from automotive_cosim.traffic.sumo_programs import first_error, home, run
 
 GEOMETRY = (
@@ -48,10 +49,6 @@ SIGNALS = (
 """OSM has signals at the stop lines: SUMO guesses which junction they belong to, and their phases."""
 
 
-CAMERA_WITHIN_M = 30.0
-"""A camera farther from every road is at one that was not imported."""
-
-
 @dataclass(frozen=True, slots=True)
 class Built:
     """The network built from a map."""
@@ -65,8 +62,16 @@ class Built:
     """The roads, and the barriers at which they were cut."""
     turns: BannedTurns
     """The turn restrictions, as read for cars."""
+    signs: Signs
+    """Its stop and give-way signs."""
+    cameras: Cameras
+    """Its speed cameras."""
+    links: Links
+    """The connections of all edges."""
     opened: tuple[str, ...] = ()
     """Edges with a lane that was opened to cars, so that none is trapped beside it."""
+    dark: tuple[int, ...] = ()
+    """Nodes with signals that light no junction."""
 
 
 def entries(edges: Sequence[Edge]) -> frozenset[str]:
@@ -124,25 +129,38 @@ def convert(
             tell(f"building the network, {stage}", None)
 
     barred = cut(extract)
-    turns = read_turns(
-        extract.restrictions, barred.pieces, [roads[piece.way.way_id].directions for piece in barred.pieces]
-    )
+    may = [roads[piece.way.way_id].directions for piece in barred.pieces]
+    turns = read_turns(extract.restrictions, barred.pieces, may)
+    turns.bans |= {Ban(*passing): 0 for passing in barred.one_way}
+    joints = Joints(barred.pieces, may, extract.nodes)
+    signs = read_signs(joints)
     write_osm(extract, barred, turns, roads, scratch / "roads.osm")
-    ok, printed = run(
-        "netconvert",
-        (
-            "--osm-files=roads.osm",
-            f"--type-files={home() / 'data' / 'typemap' / 'osmNetconvert.typ.xml'}",
-            "--osm.lane-access",
-            "--verbose",
-            *GEOMETRY,
-            *SIGNALS,
-            *(["--lefthand"] if country in LEFT_HAND else []),
-            f"--output-file={raw.name}",
-        ),
-        folder=scratch,
-        heard=heard,
-    )
+
+    def converted(more: Mapping[str, str]) -> tuple[bool, str]:
+        for option, patch in more.items():
+            (scratch / f"signs{option}.xml").write_text(patch, encoding="utf-8")
+        return run(
+            "netconvert",
+            (
+                "--osm-files=roads.osm",
+                f"--type-files={home() / 'data' / 'typemap' / 'osmNetconvert.typ.xml'}",
+                "--osm.lane-access",
+                "--osm.turn-lanes",
+                "--verbose",
+                *GEOMETRY,
+                *SIGNALS,
+                *(["--lefthand"] if country in LEFT_HAND else []),
+                *(f"{option}=signs{option}.xml" for option in more),
+                f"--output-file={raw.name}",
+            ),
+            folder=scratch,
+            heard=heard,
+        )
+
+    patched = patches(signs, FIRST_NUMBER)
+    ok, printed = converted(patched)
+    if not ok and patched and _PATCH_FAILED.search(printed):
+        ok, printed = converted({})
     if not ok and "No nodes loaded" not in printed:
         raise ImportMapError(f"netconvert cannot build a network from this map: {first_error(printed)}")
     text = raw.read_text(encoding="utf-8") if ok else ""
@@ -158,17 +176,35 @@ def convert(
     text, opened = open_traps(text)
     tell("building the network, its parameters", None)
     text = _with_parameters(text, lambda edge_id: roads[way_of(edge_id)].parameters(edge_id))
+    if any(road.stated.lanes_forward or road.stated.lanes_backward for road in roads.values()):
+        text = _with_lane_signs(text, roads)
     signals, roundabouts = text.count("<tlLogic "), text.count("<roundabout ")
-    _write(text, target)
+    raw.write_text(text, encoding="utf-8")
     tell("reading the network", None)
-    network = read_network(target)
-    more = {edge_id: _cameras(places_m) for edge_id, places_m in _beside_cameras(network, extract.cameras).items()}
+    network = read_network(raw)
+    cameras = cameras_of(network, extract)
+    more = {edge_id: {"speed_camera": places} for edge_id, places in cameras.beside.items()}
     for (edge_id, to_edge), hours in _timed_turns(network, barred.pieces, turns).items():
         more.setdefault(edge_id, {})[f"{TIMED_TURN}{to_edge}"] = hours
+    links = read_links(text)
+    goals = {edge_id: edge.to_node for edge_id, edge in network.edges.items()}
+    signed = followed(signs, joints, links, goals)
+    for edge_id, kind in signed.items():
+        more.setdefault(edge_id, {})[SIGN] = kind
+    if stops := {edge_id for edge_id, kind in signed.items() if kind == STOP}:
+        text = with_stops(text, stops, {network.edges[edge_id].to_node for edge_id in stops})
+        links = read_links(text)
     if more:
-        _write(_with_parameters(text, lambda edge_id: more.get(edge_id, {})), target)
-        network = read_network(target)
-    return Built(network, tuple(network.edges.values()), signals, roundabouts, barred, turns, opened)
+        text = _with_parameters(text, lambda edge_id: more.get(edge_id, {}))
+        raw.write_text(text, encoding="utf-8")
+        network = read_network(raw)
+    target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
+    edges, unlit = tuple(network.edges.values()), tuple(dark(joints, links, goals))
+    return Built(network, edges, signals, roundabouts, barred, turns, signs, cameras, links, opened, unlit)
+
+
+_PATCH_FAILED = re.compile(r"Missing position|(?:from|to)-node is not given")
+"""What netconvert says of a sign at an edge or a junction that it has not: without the signs, it builds the map."""
 
 
 def _stage(line: str) -> str:
@@ -217,35 +253,6 @@ def write_osm(
             writer.add_relation(mutable.Relation(id=relation, members=members, tags=tags))
 
 
-def _write(text: str, target: Path) -> None:
-    target.write_bytes(gzip.compress(text.encode(), compresslevel=9, mtime=0))
-
-
-def _beside_cameras(network: Network, cameras: Sequence[Position]) -> dict[str, list[float]]:
-    """Edges with their cameras, in metres from the start. The map does not say which way a camera faces, so it
-    counts for both directions."""
-    if not cameras or network.map.projection is None:
-        return {}
-    edges = list(network.edges.values())
-    lines = [shapely.LineString(edge.shape_m) for edge in edges]
-    tree, to_metres = shapely.STRtree(lines), GeoReference(network.map)
-    found: dict[str, list[float]] = {}
-    for camera in cameras:
-        point = shapely.Point(to_metres.x_y(*camera))
-        index = tree.nearest(point)
-        if lines[index].distance(point) > CAMERA_WITHIN_M:
-            continue
-        for edge_id in {edges[index].edge_id, network.opposite.get(edges[index].edge_id, "")} - {""}:
-            edge = network.edges[edge_id]
-            share = shapely.LineString(edge.shape_m).project(point, normalized=True)
-            found.setdefault(edge_id, []).append(round(share * edge.length_m, 1))
-    return found
-
-
-def _cameras(places_m: Sequence[float]) -> dict[str, str]:
-    return {"speed_camera": " ".join(f"{place_m:g}" for place_m in sorted(places_m))}
-
-
 def _timed_turns(network: Network, pieces: Sequence[Piece], turns: BannedTurns) -> dict[tuple[str, str], str]:
     """The turns from edge to edge that cars may make at certain hours only, and when. Of several between the same
     roads, those at the node that is meant."""
@@ -267,6 +274,33 @@ _DIGITS = re.compile(r"\d+")
 
 _EDGE = re.compile(r'(<edge id=("[^":][^"]*")(?: [^>]*)?[^/]>.*?)(\s*</edge>)', re.DOTALL)
 """An edge that is not inside a junction: all before its end, its quoted id, its end."""
+
+
+_LANE = re.compile(r'<lane ([^>]*?)speed="[^"]*"([^>]*?)/>')
+"""A lane without parameters."""
+
+
+def _with_lane_signs(text: str, roads: Mapping[int, MappedRoad]) -> str:
+    """The network's text with the limits of lanes that have signs of their own."""
+
+    def signed(edge: re.Match[str]) -> str:
+        road, edge_id = roads[way_of(unescape(edge[2][1:-1]))], unescape(edge[2][1:-1])
+        signs = road.lane_signs(edge_id)
+        if not signs:
+            return edge[0]
+        lanes = _LANE.findall(edge[0])
+        added: list[str | None] = [None] * (len(lanes) - len(signs))
+        from_kerb = iter([*signs, *added] if road.left_hand else [*added, *signs[::-1]])
+
+        def speed(lane: re.Match[str]) -> str:
+            sign = next(from_kerb)
+            mps = sign_mps(sign or road.assumed) or DERESTRICTED_MPS
+            told = f'><param key="maxspeed" value="{sign}"/></lane>' if sign else "/>"
+            return f'<lane {lane[1]}speed="{mps:.2f}"{lane[2]}{told}'
+
+        return _LANE.sub(speed, edge[0])
+
+    return _EDGE.sub(signed, text)
 
 
 def _with_parameters(text: str, of: Callable[[str], Mapping[str, str]]) -> str:

@@ -1,6 +1,6 @@
 """In which directions cars may drive a road: the keys about one-way roads, and access by direction.
 
-The words are those of the OSM wiki's pages "Key:oneway" and "Tag:junction=roundabout". The nearer key wins
+The words are those of the OSM wiki's page "Key:oneway", and those of ``IMPLIED``. The nearer key wins
 (``oneway:motorcar`` before ``oneway:motor_vehicle`` before ``oneway:vehicle`` before ``oneway``), and an access key
 of one direction (``motor_vehicle:backward=no``) closes it whatever ``oneway`` says.
 """
@@ -15,8 +15,40 @@ from automotive_cosim.traffic.posted import clauses, is_understood
 
 KEYS = ("oneway:motorcar", "oneway:motor_vehicle", "oneway:vehicle", "oneway")
 
+
+class Implied(NamedTuple):
+    """Whether a tag implies one direction, where no key about it is there."""
+
+    one_way: bool
+    source: str
+    """The OSM wiki's page that says so."""
+    told: bool = False
+    """Whether such a road without ``oneway`` is told: most of them have one direction, and a mapper forgot it."""
+
+
+IMPLIED: Mapping[tuple[str, str], Implied] = {
+    ("highway", "motorway"): Implied(True, "Tag:highway=motorway: implies oneway=yes"),
+    ("junction", "roundabout"): Implied(True, "Tag:junction=roundabout: implies oneway=yes"),
+    ("junction", "circular"): Implied(True, "Tag:junction=circular: implies oneway=yes"),
+    ("highway", "motorway_link"): Implied(False, "Tag:highway=motorway_link: implies nothing", told=True),
+    ("highway", "trunk_link"): Implied(False, "Tag:highway=trunk_link: implies nothing"),
+    ("highway", "primary_link"): Implied(False, "Tag:highway=primary_link: implies nothing"),
+    ("highway", "secondary_link"): Implied(False, "Tag:highway=secondary_link: implies nothing"),
+    ("highway", "tertiary_link"): Implied(False, "Tag:highway=tertiary_link: implies nothing"),
+    ("highway", "trunk"): Implied(False, "Tag:highway=trunk: implies nothing"),
+    ("junction", "jughandle"): Implied(False, "Tag:junction=jughandle: oneway is to be added", told=True),
+    ("junction", "filter"): Implied(False, "Key:junction: a value without implications"),
+    ("junction", "intersection"): Implied(False, "Key:junction: a value without implications"),
+    ("motorroad", "yes"): Implied(False, "Key:motorroad: implies access, not direction"),
+    ("dual_carriageway", "yes"): Implied(False, "Key:dual_carriageway: is added to oneway=yes", told=True),
+}
+"""What the tags of a road say about its direction. Service roads are not imported; no link implies one."""
+
+IMPLYING = ("highway", "junction")
+NOTHING = Implied(False, "")
+
 ROUND = ("roundabout", "circular")
-"""Values of ``junction`` that imply one direction."""
+"""Values of ``junction`` for roads around an island."""
 
 
 class Directions(NamedTuple):
@@ -94,6 +126,12 @@ def doubts(tags: Mapping[str, str]) -> Iterator[str]:
             yield f"{key}={value}"
         if tags.get(f"{key}:conditional") and not any(at_hours(tags, end) for end in access.ENDS):
             yield f"{key}:conditional={tags[f'{key}:conditional']}"
+    if not any(tags.get(key) for key in KEYS) and _signed(tags) is BOTH:
+        yield from (
+            f"{key}={value} without oneway, both directions"
+            for (key, value), row in IMPLIED.items()
+            if row.told and tags.get(key) == value
+        )
 
 
 def _signed(tags: Mapping[str, str]) -> Directions:
@@ -101,5 +139,4 @@ def _signed(tags: Mapping[str, str]) -> Directions:
         value = tags.get(key, "").strip().lower()
         if value in VALUES:
             return VALUES[value]
-    is_round = tags.get("junction") in ROUND
-    return WITH if is_round or tags.get("highway", "").startswith("motorway") else BOTH
+    return WITH if any(IMPLIED.get((key, tags.get(key, "")), NOTHING).one_way for key in IMPLYING) else BOTH

@@ -65,7 +65,8 @@ class _BusyError(Exception):
 
 
 def query(area: Area, limits: DownloadLimits) -> str:
-    """What to ask for, in Overpass QL: the roads of an area, with turn restrictions and speed cameras; water and
+    """What to ask for, in Overpass QL: the roads of an area, with turn restrictions, speed cameras and
+    what these enforce; water and
     green; in an area of at most ``BUILDINGS_KM2``, buildings too."""
     box = f"{area.south_deg:.7f},{area.west_deg:.7f},{area.north_deg:.7f},{area.east_deg:.7f}"
     values: dict[str, list[str]] = {}
@@ -79,8 +80,10 @@ def query(area: Area, limits: DownloadLimits) -> str:
         f"[out:xml][timeout:{limits.timeout_s:.0f}][maxsize:{limits.size_mb * 1e6:.0f}];"
         f"way[highway]({box})->.roads;"
         f"({ground})->.ground;"
+        f"node[highway=speed_camera]({box})->.cameras;"
+        "rel(bn.cameras)[type=enforcement]->.watches;"
         f'(.roads;node(w.roads);rel(bw.roads)[type~"^restriction"];'
-        f"node[highway=speed_camera]({box});.ground;.ground >;);"
+        ".cameras;.watches;node(r.watches);.ground;.ground >;);"
         "out body;"
     )
 

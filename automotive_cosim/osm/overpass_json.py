@@ -6,6 +6,7 @@ their positions (``out geom;``).
 
 from __future__ import annotations
 
+import re
 import zlib
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -31,6 +32,26 @@ def is_json(head: bytes) -> bool:
     return head.lstrip(b"\xef\xbb\xbf \t\r\n").startswith((b"{", b"["))
 
 
+COUNTS = "only counts elements (out count;); ask for them: out body; >; out skel;"
+"""What is wrong with an answer without a map."""
+
+BROKEN_OFF = re.compile(r"error|timed out|out of memory")
+"""What a server's remark says if the answer before it is not whole, although it answers with success."""
+
+
+def refuse_broken_off(source: Path, remark: str) -> None:
+    """Refuses an answer after which a server says that it stopped.
+
+    Raises:
+        ImportMapError: it says so.
+    """
+    if BROKEN_OFF.search(remark):
+        words = " ".join(remark.split())
+        raise ImportMapError(
+            f"{source} is not whole: the server stopped ({words}); ask it again, for less or with a longer timeout"
+        )
+
+
 class OverpassJson:
     """The elements of one answer."""
 
@@ -49,6 +70,9 @@ class OverpassJson:
             raise ImportMapError(
                 f"{source} is JSON but has no OSM elements; give the answer of an Overpass server ([out:json])"
             )
+        refuse_broken_off(source, str(read.get("remark", "")))
+        if elements and all(element.get("type") == "count" for element in elements):
+            raise ImportMapError(f"{source} {COUNTS}")
         self._source = source
         self._elements: list[dict[str, Any]] = elements
 

@@ -8,10 +8,10 @@ Where that happens, the lane between is opened to cars, as drivers cross it ther
 from __future__ import annotations
 
 import re
-import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from io import BytesIO
+
+from automotive_cosim.osm.links import Link, read_links
 
 SHORT_M = 50.0
 """On a shorter edge there is no room to sort oneself into lanes, so it is never parted."""
@@ -27,18 +27,10 @@ class _Lanes:
     open: dict[str, list[bool]] = field(default_factory=dict)
     """By edge, for each lane from the kerb: whether cars may use it."""
     length_m: dict[str, float] = field(default_factory=dict)
-    links: dict[str, list[_Link]] = field(default_factory=dict)
+    links: Mapping[str, Sequence[Link]] = field(default_factory=dict)
     """By the edge they leave."""
     origins: dict[str, set[str]] = field(default_factory=dict)
     """The edges from which links lead onto an edge."""
-
-
-@dataclass(frozen=True, slots=True)
-class _Link:
-    to_edge: str
-    from_lane: int
-    to_lane: int
-    via: str
 
 
 def open_traps(text: str) -> tuple[str, tuple[str, ...]]:
@@ -75,7 +67,7 @@ def _traps(edge: str, lanes: _Lanes) -> bool:
             sides = [
                 targets
                 for block, targets in zip(blocks, ahead, strict=True)
-                if any(link.from_lane in start and link.to_edge == edge and link.to_lane in block for link in links)
+                if any(link.lane in start and link.to_edge == edge and link.to_lane in block for link in links)
             ]
             if sides and frozenset[str]().union(*sides) != everywhere:
                 return True
@@ -84,12 +76,12 @@ def _traps(edge: str, lanes: _Lanes) -> bool:
 
 def _targets(edge: str, block: frozenset[int], lanes: _Lanes) -> frozenset[str]:
     links = lanes.links.get(edge, ())
-    return frozenset(link.to_edge for link in links if link.from_lane in block and _open_link(edge, link, lanes))
+    return frozenset(link.to_edge for link in links if link.lane in block and _open_link(edge, link, lanes))
 
 
-def _open_link(origin: str, link: _Link, lanes: _Lanes) -> bool:
+def _open_link(origin: str, link: Link, lanes: _Lanes) -> bool:
     start, end = lanes.open.get(origin, []), lanes.open.get(link.to_edge, [])
-    return link.from_lane < len(start) and link.to_lane < len(end) and start[link.from_lane] and end[link.to_lane]
+    return link.lane < len(start) and link.to_lane < len(end) and start[link.lane] and end[link.to_lane]
 
 
 def _blocks(is_open: Sequence[bool]) -> Blocks:
@@ -103,28 +95,23 @@ def _blocks(is_open: Sequence[bool]) -> Blocks:
 
 
 def _read(text: str) -> _Lanes:
-    lanes = _Lanes()
-    for _, element in ET.iterparse(BytesIO(text.encode())):
-        if element.tag == "edge" and "function" not in element.attrib:
-            edge = element.attrib["id"]
-            of_edge = list(element.iterfind("lane"))
-            lanes.open[edge] = [_open_to_cars(lane) for lane in of_edge]
-            lanes.length_m[edge] = float(of_edge[0].attrib["length"])
-        elif element.tag == "connection":
-            link = _Link(
-                element.attrib["to"],
-                int(element.attrib["fromLane"]),
-                int(element.attrib["toLane"]),
-                element.get("via", ""),
-            )
-            lanes.links.setdefault(element.attrib["from"], []).append(link)
-            lanes.origins.setdefault(link.to_edge, set()).add(element.attrib["from"])
-        if element.tag in ("edge", "connection", "junction", "tlLogic"):
-            element.clear()  # a whole network as a tree takes hundreds of megabytes
+    lanes = _Lanes(links=read_links(text).of)
+    for edge, inner in _EDGE.findall(text):
+        of_edge = [dict(_ATTRIBUTE.findall(lane)) for lane in _LANES.findall(inner)]
+        lanes.open[edge] = [_open_to_cars(lane) for lane in of_edge]
+        lanes.length_m[edge] = float(of_edge[0]["length"])
+    for edge, links in lanes.links.items():
+        for link in links:
+            lanes.origins.setdefault(link.to_edge, set()).add(edge)
     return lanes
 
 
-def _open_to_cars(lane: ET.Element) -> bool:
+_EDGE = re.compile(r'<edge id="([^":][^"]*)"[^>]*>(.*?)</edge>', re.DOTALL)
+_LANES = re.compile(r"<lane ([^>]*)>")
+_ATTRIBUTE = re.compile(r'\b(allow|disallow|length)="([^"]*)"')
+
+
+def _open_to_cars(lane: Mapping[str, str]) -> bool:
     allowed = lane.get("allow")
     if allowed is not None:
         return allowed == "all" or "passenger" in allowed.split()
@@ -157,7 +144,7 @@ def _ways_through(lanes: _Lanes, opened: set[str]) -> Iterator[str]:
     """The inner lanes of open connections from or to these edges; some wait in the middle of the junction, so they
     are two."""
     onward: Mapping[str, str] = {
-        f"{edge}_{link.from_lane}": link.via
+        f"{edge}_{link.lane}": link.via
         for edge, links in lanes.links.items()
         if edge.startswith(":")
         for link in links

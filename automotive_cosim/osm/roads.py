@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 
 from automotive_cosim.geo.place import Atlas, Place
 from automotive_cosim.osm import lanes
@@ -17,7 +18,7 @@ from automotive_cosim.osm.access import ENDS
 from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND
 from automotive_cosim.osm.extract import Extract, OsmWay
-from automotive_cosim.osm.limits import Stated, built_up_of, conditional_of, stated_limits
+from automotive_cosim.osm.limits import Stated, built_up_of, conditional_of, kmh_of, stated_limits
 from automotive_cosim.osm.oneway import Directions, at_hours, directions
 from automotive_cosim.osm.towns import is_dense, town_cells
 from automotive_cosim.traffic.network import TIMED_ACCESS
@@ -45,7 +46,7 @@ KEPT_TAGS = (
 )
 """OSM tags that become parameters of the edges."""
 
-TOLD = re.compile(r"highway|junction|layer|bridge|tunnel|bus|psv|foot|(?:bicycle:lanes|turn|change|width)(?::.*)?")
+TOLD = re.compile(r"highway|junction|layer|bridge|tunnel|bus|psv|foot|(?:bicycle:lanes|change|width)(?::.*)?")
 """The tags that netconvert is told as they are. All others that it knows are about speed, access, direction and the
 number of lanes, which are read here first, or make it give a road a compound type instead of its class."""
 
@@ -77,7 +78,7 @@ def id_of(way: int, part: int = 1) -> str:
     return f"{f'new{-way}' if way < 0 else way}{f'.{part}' if part > 1 else ''}"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class MappedRoad:
     """A way of the map, with what was read from its tags and from what surrounds it."""
 
@@ -100,7 +101,7 @@ class MappedRoad:
         """Its name, or its number (``"A 5"``), as on signposts; empty without either."""
         return self.tags.get("name") or self.tags.get("ref", "")
 
-    @property
+    @cached_property
     def directions(self) -> Directions:
         """The directions open to cars."""
         return directions(self.tags)
@@ -111,12 +112,28 @@ class MappedRoad:
         return self.directions.is_two_way
 
     def limit(self, edge_id: str) -> str:
-        """The limit of one of its edges, as netconvert reads it."""
-        return self.stated.of(edge_id) or self.assumed
+        """The limit of one of its edges, as netconvert reads it: the highest of its lanes'."""
+        signs = [self.stated.of(edge_id) or self.assumed, *self.lane_signs(edge_id)]
+        return self.stated.of(edge_id) or max(filter(None, signs), key=kmh_of)
+
+    def lane_signs(self, edge_id: str) -> tuple[str | None, ...]:
+        """The limits on the signs of each lane of an edge from the left, None where the lane has none; empty if the
+        lanes have none of their own, or others in number."""
+        signs = self.stated.lanes(edge_id)
+        return signs if signs and len(signs) == self.built_lanes[edge_id.startswith("-")] else ()
+
+    @cached_property
+    def _lanes(self) -> lanes.LaneCounts:
+        return lanes.lanes_of(self.tags, self.directions, left_hand=self.left_hand)
+
+    @cached_property
+    def built_lanes(self) -> tuple[int, int]:
+        """The lanes that netconvert builds with its nodes and against them."""
+        return lanes.built_of(self.tags, self.directions, left_hand=self.left_hand)
 
     def lanes(self, edge_id: str) -> int | None:
         """The lanes of one of its edges, those for buses included; None if its tags do not determine the number."""
-        return lanes.lanes_of(self.tags, self.directions, left_hand=self.left_hand).of(edge_id)
+        return self._lanes.of(edge_id)
 
     def for_netconvert(self) -> dict[str, str]:
         """The tags from which netconvert builds the road. The limit backwards is told of a two-way road only:
@@ -143,7 +160,7 @@ class MappedRoad:
         posted = self.stated.of(edge_id)
         if posted is not None:
             kept["maxspeed"] = posted
-        elif self.assumed == "none":
+        elif self.limit(edge_id) == "none":
             kept["maxspeed:assumed"] = "none"
         if self.built_up is None:
             kept["zone:traffic:assumed"] = f"{self.country}:{'urban' if self.is_dense else 'rural'}"
@@ -158,26 +175,48 @@ def describe(extract: Extract, atlas: Atlas, country: str) -> dict[int, MappedRo
     Args:
         extract: the map.
         atlas: the law of every place, which sets the limits that no sign does.
-        country: ISO 3166-1 code of the map; a way in another country is under the law of this one all the same, so
-            that a wrong position near a border changes nothing.
+        country: ISO 3166-1 code of the map. Each road is under the law of the land on which it lies; if none lies
+            in this country, the map's positions are not trusted, and all are under its law.
     """
     towns, left = town_cells(extract), country in LEFT_HAND
+    places = {way.way_id: _place_of(way, extract, atlas) for way in extract.ways}
+    trusted = any(place.country == country for place in places.values())
+    layers = tuple(layer for layer in atlas.country(country) if layer.kind == "country")
     roads: dict[int, MappedRoad] = {}
     for way in extract.ways:
-        place = _place_of(way, extract, atlas, country)
+        place = places[way.way_id]
+        if not trusted or not place.country:
+            place = Place(country=country, layers=layers)
         built_up, dense = built_up_of(way.tags), is_dense(way, extract.nodes, towns)
         in_town = dense if built_up is None else built_up
         assumed = assumed_sign(way.tags, atlas, place, built_up=in_town)
         roads[way.way_id] = MappedRoad(
-            way.tags, country, stated_limits(way.tags, country), assumed, built_up, dense, left
+            way.tags, place.country, stated_limits(way.tags, place.country), assumed, built_up, dense, left
         )
     return roads
 
 
-def _place_of(way: OsmWay, extract: Extract, atlas: Atlas, country: str) -> Place:
-    place = atlas.place(*extract.nodes[way.nodes[len(way.nodes) // 2]].position)
-    if place.country == country:
-        return place
-    return Place(
-        country=country, layers=tuple(layer for layer in atlas.country(country) if layer.kind == "country")
-    )
+def _place_of(way: OsmWay, extract: Extract, atlas: Atlas) -> Place:
+    return atlas.place(*extract.nodes[way.nodes[len(way.nodes) // 2]].position)
+
+
+def on_one_side(extract: Extract, atlas: Atlas, country: str) -> Extract:
+    """The map without the roads of lands where traffic keeps the other side: a SUMO network keeps one.
+
+    Args:
+        extract: the map.
+        atlas: the lands.
+        country: ISO 3166-1 code of the one whose side the network keeps; if nothing lies in it, the map's positions
+            are not trusted, and all is kept.
+    """
+    land = {ref: atlas.country_at(*node.position) for ref, node in extract.nodes.items()}
+    left, lands = country in LEFT_HAND, set(land.values())
+    beyond = {code for code in lands - {""} if (code in LEFT_HAND) is not left}
+    if country not in lands or not beyond:
+        return extract
+    other_side = {
+        code: tuple(way.way_id for way in extract.ways if any(land[ref] == code for ref in way.nodes))
+        for code in sorted(beyond)
+    }
+    kept = {ref: node for ref, node in extract.nodes.items() if land[ref] not in beyond}
+    return replace(extract.part(kept), other_side=other_side)

@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 from automotive_cosim.osm.access import ALWAYS, OF_THE_VEHICLE, timed
 from automotive_cosim.osm.barriers import Piece
-from automotive_cosim.osm.extract import TurnRestriction
+from automotive_cosim.osm.extract import Relation
 from automotive_cosim.osm.oneway import Directions
 from automotive_cosim.traffic.posted import clauses, is_understood
 
@@ -121,9 +121,7 @@ class _RoadGraph:
         return node not in self._pieces[piece].nodes[1:-1] or not self._may[piece].is_two_way
 
 
-def read_turns(
-    restrictions: Iterable[TurnRestriction], pieces: Sequence[Piece], may: Sequence[Directions]
-) -> BannedTurns:
+def read_turns(restrictions: Iterable[Relation], pieces: Sequence[Piece], may: Sequence[Directions]) -> BannedTurns:
     """The bans for cars that the restrictions of a map state.
 
     Args:
@@ -186,9 +184,7 @@ def _at_hours(usual: Sequence[str], conditional: str) -> dict[bool, str] | None:
     }
 
 
-def _bans(
-    relation: TurnRestriction, is_only: bool, network: _RoadGraph, turns: BannedTurns
-) -> Iterator[tuple[Ban, bool]]:
+def _bans(relation: Relation, is_only: bool, network: _RoadGraph, turns: BannedTurns) -> Iterator[tuple[Ban, bool]]:
     """The bans of one relation, and whether each is of a turn beside which every other one is barred; a relation
     with a member that is no road for cars bars nothing more."""
     froms, tos = (

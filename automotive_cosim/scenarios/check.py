@@ -123,17 +123,28 @@ def _place(scenario: Scenario, network: Network) -> Item:
     atlas, reference = Atlas(), GeoReference(network.map)
     ends = {edge for trip in scenario.ego.trips for edge in (trip.from_edge, trip.to_edge)} & network.edges.keys()
     places = [atlas.place(*reference.lon_lat(*network.edges[edge].shape_m[0])) for edge in sorted(ends)]
+    some = sorted(network.edges)[:: 1 + len(network.edges) // SAMPLED]
+    around = [atlas.place(*reference.lon_lat(*network.edges[edge].shape_m[0])) for edge in some]
+    side = "left" if network.map.left_hand else "right"
+    others = {place.country for place in (*places, *around) if place.law and place.law.driving_side != side}
     countries = sorted({place.country for place in places})
     lon_deg, lat_deg = middle(network.map)
     where = f"{lat_deg:.4f}, {lon_deg:.4f}, {' and '.join(filter(None, countries)) or 'no country'}"
     if scenario.country not in countries:
         return Item("place", False, f"{where}, but the scenario says {scenario.country}")
+    if others:
+        lands = " and ".join(sorted(others))
+        return Item("place", False, f"{where}, but traffic keeps {side} in the network, not in {lands}: crop it")
     if not any(_same_clock(scenario, place) for place in places):
         zones = ", ".join(sorted({place.time_zone for place in places}))
         return Item(
             "place", False, f"{where} has the time of {zones}, the scenario that of {scenario.start.tzinfo}"
         )
     return Item("place", True, f"{where}, {scenario.start.tzinfo}")
+
+
+SAMPLED = 200
+"""Edges of which the place is looked up."""
 
 
 def _same_clock(scenario: Scenario, place: Place) -> bool:

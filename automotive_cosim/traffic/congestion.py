@@ -188,6 +188,9 @@ class Route:
         self._cameras_m = sorted(
             start_m + place_m for start_m, edge in zip(starts_m, edges, strict=True) for place_m in edge.cameras_m
         )
+        self._signs = [
+            (start_m + edge.length_m, edge.sign) for start_m, edge in zip(starts_m, edges, strict=True) if edge.sign
+        ]
         self._rest = tuple(self.edge_ids[index:] for index in range(len(edges)))
         self._slow = flow.slow_edges()
         self._incidents = incidents
@@ -231,6 +234,8 @@ class Route:
         on_edge_m = max(0.0, leg.start_m + leg.edge.length_m - position_m)
         eta_s = on_edge_m / leg.speed_mps + leg.time_after_s
         free_s = on_edge_m / leg.edge.speed_mps + leg.free_after_s
+        next_sign = bisect_right(self._signs, position_m, key=lambda each: each[0])
+        sign_m, sign = self._signs[next_sign] if next_sign < len(self._signs) else (None, "")
         return make_ahead(
             left_m,
             eta_s,
@@ -248,6 +253,8 @@ class Route:
             _next_m(self._cameras_m, position_m),
             self._slow,
             self._incidents,
+            sign,
+            None if sign_m is None else sign_m - position_m,
         )
 
 

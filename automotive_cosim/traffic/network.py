@@ -5,7 +5,7 @@ SUMO knows lanes, speeds and shapes. Everything else from the map is in the edge
 
 | key | meaning |
 |---|---|
-| ``maxspeed`` | present: the limit is posted, else it was assumed; ``none``: there is no limit |
+| ``maxspeed`` | present: the limit is posted, else it was assumed; ``none``: there is no limit; also of a lane |
 | ``maxspeed:assumed`` | ``none``: no limit is posted, and the import assumed that there is none |
 | ``tunnel`` | anything except ``no``: in a tunnel |
 | ``lit`` | ``yes`` or ``no``: street lighting |
@@ -17,6 +17,7 @@ SUMO knows lanes, speeds and shapes. Everything else from the map is in the edge
 | ``restriction:conditional:EDGE`` | the same of the turn into an edge |
 | ``hazard`` | ``school_zone``: beside a school |
 | ``bicycle_road``, ``cyclestreet`` | ``yes``: a cycle street |
+| ``traffic_sign`` | ``stop`` or ``give_way``: the sign at the end of the edge |
 | ``speed_camera`` | positions of cameras, in metres from the start of the edge |
 
 The file is read element by element, several times as fast as by sumolib's reader and without its object per
@@ -56,12 +57,16 @@ CYCLE_STREET_KEYS = ("bicycle_road", "cyclestreet")
 FORM = "a complete SUMO network (build it again with netconvert)"
 """What the file should be, for errors."""
 
+SIGN = "traffic_sign"
 TIMED_ACCESS = "access:conditional"
 TIMED_TURN = "restriction:conditional:"
 """Before the id of the edge that the turn leads into."""
 
 EDGE_DEPTH, LANE_DEPTH = 2, 3
 """How deep edges and their lanes stand in the file."""
+
+SIGNED = "signed"
+"""What a lane's attributes have here of a limit of its own."""
 
 Shape = tuple[tuple[float, float], ...]
 Attributes: TypeAlias = dict[str, str]
@@ -114,9 +119,13 @@ class Edge:
     """Whether another of its lanes is for buses and not for cars."""
     cameras_m: tuple[float, ...] = ()
     """Positions of speed cameras, from its start."""
+    sign: str = ""
+    """The sign at its end, ``"stop"`` or ``"give_way"``; empty without one."""
     school_zone: bool = False
     timed_limits: tuple[TimedLimit, ...] = ()
     """Limits that are posted for certain hours."""
+    signed_lanes: frozenset[str] = frozenset()
+    """Lanes with a limit of their own on a sign."""
     timed_limit: TimedLimit | None = None
     """The one of them that is in force; ``limit_mps`` is the present limit."""
     timed_access: tuple[TimedAccess, ...] = ()
@@ -271,6 +280,8 @@ class NetworkReader:
                 self._lanes.append(attributes)
             elif name == "param":
                 self._params[attributes.get("key", "")] = attributes.get("value", "")
+        elif self._depth == LANE_DEPTH + 1 and self._edge and self._lanes and attributes.get("key") == "maxspeed":
+            self._lanes[-1][SIGNED] = attributes.get("value", "")
         elif self._depth == 1:
             if name != "net":
                 raise ScenarioError(f"{self.path} is not a SUMO network: its root is <{name}>, not <net>")
@@ -366,10 +377,8 @@ def root_of(path: Path) -> ET.Element:
 
 def _edge(edge: Attributes, lanes: list[Attributes], all_lanes: list[Attributes], params: Attributes) -> Edge:
     speed_mps = max(quantity(lane["speed"], SLOWEST_MPS) for lane in lanes)
-    unlimited = speed_mps >= NO_LIMIT_FROM_MPS and "none" in (
-        params.get("maxspeed"),
-        params.get("maxspeed:assumed"),
-    )
+    words = (params.get("maxspeed"), params.get("maxspeed:assumed"))
+    unlimited = speed_mps >= NO_LIMIT_FROM_MPS and "none" in words
     middle = lanes[len(lanes) // 2]
     return Edge(
         edge_id=intern(edge["id"]),
@@ -390,8 +399,10 @@ def _edge(edge: Attributes, lanes: list[Attributes], all_lanes: list[Attributes]
         shape_m=_shape(edge.get("shape") or middle["shape"]),
         bus_lane=any(map(_for_buses, all_lanes)),
         cameras_m=tuple(quantity(place_m) for place_m in params.get("speed_camera", "").split()),
+        sign=intern(params.get(SIGN, "")),
         school_zone=params.get("hazard") == "school_zone",
         timed_limits=timed_limits(params.get("maxspeed:conditional", ""))[0],
+        signed_lanes=frozenset(intern(lane["id"]) for lane in lanes if SIGNED in lane),
         timed_access=timed_access(params.get(TIMED_ACCESS, "")),
         timed_turns=tuple(
             (intern(key.removeprefix(TIMED_TURN)), timed_access(value))

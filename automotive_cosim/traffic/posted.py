@@ -6,16 +6,17 @@ The words are OpenStreetMap's (wiki pages "Key:maxspeed" and "Conditional restri
     maxspeed:conditional  40 @ (Mo-Fr 08:00-09:30,14:30-16:00; SH off; PH off)
     access:conditional    no @ (Mo-Fr 07:30-08:30)
 
-Conditions on weekdays, times of day, dates and months are understood, and ``wet`` and ``snow``, which the weather
-of the drive decides. ``SH off`` and ``PH off`` are accepted but ignored: there is no calendar of holidays, so every
-Monday is a school day. What holds under any other condition (axle load, daylight, ...) is omitted and reported.
+Conditions on weekdays, times of day, dates, months and weeks are understood, and ``wet`` and ``snow``, which the
+weather of the drive decides. Public and school holidays (``PH``, ``SH``) are left out of them: there is no calendar
+of holidays, so every Monday is a school day; an import lists them (``names_holidays``). What holds under any other
+condition (axle load, daylight, ...) is omitted and reported.
 """
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date, datetime, timedelta
 
 from automotive_cosim.contracts import KMH_PER_MPS, MPH_PER_MPS
@@ -36,11 +37,22 @@ WEATHERS = {"wet": "when wet", "snow": "in snow"}
 _CLAUSE = re.compile(r"([^@;]+)@\s*(\([^()]*\)|[^;()]+)\s*(?:;|$)")
 _SIGN = re.compile(r"(\d+(?:\.\d+)?)\s*(km/h|kmh|kph|mph)?", re.IGNORECASE)
 _DAY = "(?:Mo|Tu|We|Th|Fr|Sa|Su)"
-_HOLIDAYS = re.compile(r"(?:PH|SH)(?:\s*,\s*(?:PH|SH))*\s+off")
+_HOLIDAY = "(?:PH|SH)"
+_HOLIDAYS = re.compile(rf"{_HOLIDAY}(?:\s*,\s*{_HOLIDAY})*(?:\s+(?!{_DAY}).*)?|{_HOLIDAY}\s+{_DAY}.*")
+"""A rule for holidays alone."""
+_AND_HOLIDAYS = re.compile(rf"(?<=[a-z])\s*,\s*{_HOLIDAY}\b|\b{_HOLIDAY}\s*,\s*(?={_DAY})")
+"""Holidays among weekdays."""
 _DAYS_OFF = re.compile(rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)\s+off")
 _MONTH = f"(?:{'|'.join(_MONTHS)})"
-_DATES = rf"{_MONTH}(?: \d\d?)?(?:-(?:{_MONTH}(?: \d\d?)?|\d\d?))?"
-_RULE = re.compile(rf"(?P<dates>{_DATES})?:?\s*(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?")
+_OF_MONTH = r"\d\d?(?!\d|:\d)"
+"""A day of a month; before minutes, it is the hour."""
+_DATES = rf"{_MONTH}(?: {_OF_MONTH})?(?:-(?:{_MONTH}(?: {_OF_MONTH})?|{_OF_MONTH}))?"
+_WEEKS = r"\d\d?(?:-\d\d?(?:/\d\d?)?)?"
+_RULE = re.compile(
+    rf"(?:week (?P<weeks>{_WEEKS}(?:\s*,\s*{_WEEKS})*)\s*)?(?P<dates>{_DATES})?:?\s*"
+    rf"(?P<days>{_DAY}(?:[-,]\s*{_DAY})*)?\s*(?P<times>24/7|[\d:,\- ]+)?"
+)
+_DATES_OFF = re.compile(rf"(?P<dates>{_DATES}(?:\s*,\s*{_DATES})*)\s+off")
 _DAYS_ONE = re.compile(_DAY)
 _DASH = re.compile(r"\s*[-–]\s*")
 _NTH = re.compile(r"(?<=[a-z])\[(-1|[1-5])\]")
@@ -71,15 +83,14 @@ class Hours:
     """A key of ``WEATHERS`` if it holds in that weather only."""
     weeks: frozenset[int] = frozenset()
     """Which of these weekdays of a month, if not all: 1 is the first, -1 the last."""
+    iso_weeks: frozenset[int] = frozenset()
+    """The weeks of the year by ISO 8601, if not all."""
+    off: tuple[tuple[Day, Day], ...] = ()
+    """Parts of the year in which it does not hold."""
 
     def holds(self, local_time: datetime, weather: str = "") -> bool:
         """Whether it is in force at the local time, in a weather of ``WEATHERS`` or none of them."""
-        first_day, last_day = self.dates
-        today = (local_time.month, local_time.day)
-        in_season = (
-            first_day <= today <= last_day if first_day <= last_day else (today >= first_day or today <= last_day)
-        )
-        return in_season and self.weather in ("", weather) and self._holds_at(local_time)
+        return self.weather in ("", weather) and self._holds_at(local_time)
 
     def _holds_at(self, local_time: datetime) -> bool:
         minute, day = local_time.hour * 60 + local_time.minute, local_time.date()
@@ -93,10 +104,20 @@ class Hours:
         return False
 
     def _has(self, day: date) -> bool:
+        if not _is_within(day, self.dates) or any(_is_within(day, off) for off in self.off):
+            return False
         if day.isoweekday() not in self.days:
+            return False
+        if self.iso_weeks and day.isocalendar().week not in self.iso_weeks:
             return False
         is_last = (day + timedelta(days=7)).month != day.month
         return not self.weeks or (day.day - 1) // 7 + 1 in self.weeks or (is_last and -1 in self.weeks)
+
+
+def _is_within(day: date, dates: tuple[Day, Day]) -> bool:
+    """Whether a day is from the first of two dates to the last, which may be in the next year."""
+    (first, last), today = dates, (day.month, day.day)
+    return first <= today <= last if first <= last else today >= first or today <= last
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,7 +222,7 @@ def read_hours(condition: str) -> list[Hours]:
     Raises:
         ValueError: it is none on the clock, the calendar or the weather.
     """
-    condition, weather = _weather(_DASH.sub("-", condition))
+    condition, weather = _weather(_AND_HOLIDAYS.sub("", _DASH.sub("-", condition)))
     rules = [
         part
         for rule in map(str.strip, condition.split(";"))
@@ -209,12 +230,20 @@ def read_hours(condition: str) -> list[Hours]:
         if part and not _HOLIDAYS.fullmatch(part)
     ]
     off = [match["days"] for match in map(_DAYS_OFF.fullmatch, rules) if match]
-    rules = [rule for rule in rules if not _DAYS_OFF.fullmatch(rule)]
+    dates_off = [match["dates"] for match in map(_DATES_OFF.fullmatch, rules) if match]
+    rules = [rule for rule in rules if not (_DAYS_OFF.fullmatch(rule) or _DATES_OFF.fullmatch(rule))]
     if not rules and not weather:
         raise ValueError(condition)
     free = frozenset[int]().union(*map(_weekdays, off))
     rules = [each for rule in rules for each in _by_season(rule)]
-    return [_hours(rule, free, off, weather) for rule in rules or ["24/7"]]
+    read = [_hours(rule, free, [*off, *dates_off], weather) for rule in rules or ["24/7"]]
+    closed = tuple(_dates(season.strip()) for dates in dates_off for season in dates.split(","))
+    return [replace(hours, off=closed) for hours in read]
+
+
+def names_holidays(condition: str) -> bool:
+    """Whether a condition is about public or school holidays."""
+    return re.search(rf"\b{_HOLIDAY}\b", condition) is not None
 
 
 def _read_sign(sign: str) -> tuple[float | None, str]:
@@ -261,10 +290,23 @@ def _hours(rule: str, free: frozenset[int], off: Sequence[str], weather: str) ->
     times_said = re.sub(r"\s*,\s*", ", ", times)
     but = f"but {', '.join(off)}" if off else ""
     said = days.replace(",", ", ") + (nth[0] if nth else "")
-    words = " ".join(part for part in (dates, said, times_said, but, WEATHERS.get(weather, "")) if part)
+    of_year = f"week {match['weeks']}" if match["weeks"] else ""
+    words = " ".join(part for part in (of_year, dates, said, times_said, but, WEATHERS.get(weather, "")) if part)
     weekdays = _weekdays(days) - free
     weeks = frozenset((int(nth[1]),)) if nth else frozenset[int]()
-    return Hours(weekdays, spans, words, _dates(dates), weather, weeks)
+    return Hours(weekdays, spans, words, _dates(dates), weather, weeks, _iso_weeks(match["weeks"] or ""))
+
+
+def _iso_weeks(text: str) -> frozenset[int]:
+    """``10-20``, ``1-53/2``, ``1,3,5``."""
+    found: set[int] = set()
+    for part in filter(None, map(str.strip, text.split(","))):
+        span, _, step = part.partition("/")
+        first, _, last = span.partition("-")
+        if not (1 <= int(first) <= int(last or first) <= 53 and int(step or 1) > 0):
+            raise ValueError(text)
+        found.update(range(int(first), int(last or first) + 1, int(step or 1)))
+    return frozenset(found)
 
 
 def _dates(text: str) -> tuple[Day, Day]:

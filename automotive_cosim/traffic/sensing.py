@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable
 
-from automotive_cosim.contracts import STANDING_BELOW_MPS, Limit, RoadIncident
+from automotive_cosim.contracts import STANDING_BELOW_MPS, Limit, LimitSource, RoadIncident
 from automotive_cosim.traffic.congestion import Congestion, Route
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.instant import Lane, Light, Other, Seen
-from automotive_cosim.traffic.network import Edge, Network
+from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS, Edge, Network
 from automotive_cosim.traffic.sumo import LibSumo
 
 LEADER_RANGE_M = 200.0
@@ -150,8 +150,10 @@ class Sensor:
         sumo, edge = self._sumo, self._edge
         friction = sumo.friction(lane_id)
         if lane_id in edge.lane_ids:
-            limit_mps = None if edge.limit_mps is None else sumo.lane_speed(lane_id)
-            own = Limit(limit_mps, edge.limit_source)
+            lane_mps = sumo.lane_speed(lane_id)
+            has_none = edge.limit_mps is None and (not edge.signed_lanes or lane_mps >= NO_LIMIT_FROM_MPS)
+            source = LimitSource.POSTED if lane_id in edge.signed_lanes else edge.limit_source
+            own = Limit(None if has_none else lane_mps, source)
             return Lane(edge.lane_ids.index(lane_id), own, friction, edge.limit_hours)
         return Lane(sumo.lane_index(self._ego), edge.limit, friction, edge.limit_hours)
 

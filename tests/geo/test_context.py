@@ -140,6 +140,18 @@ def test_a_reduced_limit_no_lower_than_the_sign_is_left_out(locate: Locate) -> N
     assert "Reduced limit: 50 km/h" in locate(*PARIS, limit=Limit(70 / 3.6, LimitSource.POSTED)).text()
 
 
+def test_the_sign_ahead_is_named(locate: Locate, drive: Callable[..., DrivingState]) -> None:
+    for sign, away_m, line in (
+        ("stop", 120.4, "Sign ahead: stop in 120 m"),
+        ("give_way", 30.0, "Sign ahead: give way in 30 m"),
+        ("stop", 301.0, ""),
+        ("", None, ""),
+    ):
+        ahead = replace(drive().ahead, next_sign=sign, sign_distance_m=away_m)
+        text = locate(*PARIS, ahead=ahead).text()
+        assert (line in text) if line else "Sign ahead" not in text
+
+
 @pytest.mark.parametrize("place", EVERYWHERE)
 def test_lines_state_and_never_judge(
     locate: Locate, weather: Callable[..., Weather], place: tuple[float, float]

@@ -15,6 +15,14 @@ from automotive_cosim.osm.expected import expect
 from automotive_cosim.osm.oneway import directions
 from tests.laws import over
 
+NO_DIRECTION = (
+    *({"highway": f"{road}_link"} for road in ("motorway", "trunk", "primary", "secondary", "tertiary")),
+    *({"junction": value} for value in ("jughandle", "filter", "intersection", "yes")),
+    {"motorroad": "yes"},
+    {"dual_carriageway": "yes"},
+)
+"""What the wiki does not let imply one direction."""
+
 BOTH, WITH, AGAINST, NEITHER = (True, True), (True, False), (False, True), (False, False)
 
 
@@ -56,6 +64,16 @@ def test_a_list_lets_in_whom_any_of_its_values_lets_in(left: str, right: str) ->
         ({"access": "private", "motor_vehicle": "designated"}, BOTH),
         # keys about others say nothing about cars
         ({"hgv": "no", "bus": "designated", "bicycle": "no", "foot": "no", "motorcycle": "no"}, BOTH),
+        # roads for cars with passengers
+        *(({"hov": value}, NEITHER) for value in access.HOV_ONLY),
+        *(({"hov": value}, BOTH) for value in ("yes", "no", "lane")),
+        ({"hov": "designated", "motor_vehicle": "yes"}, BOTH),
+        ({"hov:forward": "designated"}, AGAINST),
+        ({"hov:lanes": "designated|designated"}, NEITHER),
+        ({"hov:lanes": "designated|no|no"}, BOTH),
+        ({"hov": "designated", "hov:conditional": "no @ (Sa,Su)"}, BOTH),
+        ({"hov:conditional": "designated @ (Mo-Fr 06:00-09:00)"}, BOTH),
+        ({"highway": "construction", "construction": "primary"}, NEITHER),
         ({"access": "no", "bus": "yes", "bicycle": "yes", "foot": "yes", "emergency": "yes"}, NEITHER),
         # lists
         ({"motor_vehicle": "agricultural;forestry"}, NEITHER),
@@ -95,7 +113,7 @@ def test_a_list_lets_in_whom_any_of_its_values_lets_in(left: str, right: str) ->
         ({"junction": "circular"}, WITH),
         ({"junction": "roundabout", "oneway": "-1"}, AGAINST),
         ({"highway": "motorway"}, WITH),
-        ({"highway": "motorway_link"}, WITH),
+        *((tags, BOTH) for tags in NO_DIRECTION),
         ({"highway": "motorway_link", "oneway": "no"}, BOTH),
         ({"highway": "trunk"}, BOTH),
     ],
@@ -222,3 +240,19 @@ def test_a_gate_without_a_word_is_passed_and_told(kind: str, tags: dict[str, str
     assert barriers.is_unclear_gate(tags)
     assert not barriers.is_unclear_gate(tags | {"access": "yes"})
     assert kind not in barriers.STOPPING | barriers.PASSABLE
+
+
+@over([
+    *((dict([tag.split("=")]), "") for tag in sorted(access.TOLD)),
+    *(({"hov": value}, "") for value in sorted(access.HOV_ONLY)),
+    ({"hov:conditional": "designated @ (Mo-Fr 06:00-09:00)"}, "no @ (Mo-Fr 06:00-09:00)"),
+    ({"hov": "designated", "hov:conditional": "no @ (Sa,Su)"}, "no @ (24/7); yes @ (Sa,Su)"),
+    ({"hov:conditional": "designated @ sunset-sunrise"}, ""),
+    ({"hov:lanes:conditional": "designated|| @ (Mo-Fr 06:00-09:00)"}, ""),
+    ({"highway": "construction", "construction": "primary", "opening_date": "2020-01-01"}, ""),
+])  # fmt: skip
+def test_what_is_not_for_every_car_is_told_or_closed_at_its_hours(tags: dict[str, str], hours: str) -> None:
+    assert access.at_hours(tags, "forward") == hours
+    listed = list(access.doubts(tags))
+    assert bool(listed) or hours
+    assert not listed or any("=" in tag for tag in listed)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import gzip
+import re
+import xml.etree.ElementTree as ET
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -9,8 +12,9 @@ from typing import NamedTuple
 
 import pytest
 
+from automotive_cosim.contracts import LimitSource
 from automotive_cosim.geo.place import shipped
-from automotive_cosim.osm import extract, network
+from automotive_cosim.osm import arrows, extract, network
 from automotive_cosim.osm.agreement import differences
 from automotive_cosim.osm.doubts import doubts
 from automotive_cosim.osm.extract import Extract
@@ -152,6 +156,7 @@ def test_lanes_of_buses_are_not_for_cars(build: Build) -> None:
         (one | {"lanes": "2", "busway:right": "lane"}, 1, True),
         (one | {"lanes": "2", "oneway:psv": "no"}, 1, False),
         (one | {"lanes": "2", "access:lanes": "yes|no"}, 1, False),
+        (one | {"lanes": "3", "hov:lanes": "designated|no|no"}, 2, False),
         (one | {"lanes": "2"}, 2, False),
     )
     for country in ("DE", "GB"):
@@ -353,3 +358,254 @@ def test_lanes_for_leaving_and_joining_are_told_and_are_no_difference(build: Bui
     wider = replace(world.roads[101], tags=world.roads[101].tags | {"lanes": "1"})
     wrong = differences(world.map, world.built, world.roads | {101: wider}, world.country)
     assert [str(each)[:24] for each in wrong] == ["way 101: lanes: 1 in the"]
+
+
+def told(world: World) -> str:
+    """What the import lists."""
+    return "\n".join(doubts(world.map, world.roads, world.built, world.country))
+
+
+def row_of_crossings(
+    arms: Sequence[dict[str, str]], signs: Sequence[dict[str, dict[str, str]]] = ()
+) -> tuple[Map, list[int]]:
+    """A street, way 100, with a crossing for each set of tags of its southern arm, which leads north; ``signs`` has
+    tags of nodes on each crossing: ``"s"`` on the southern arm, ``"n"`` on the northern, ``"x"`` in its middle.
+
+    Returns:
+        The map, and the ways of the southern arms.
+    """
+    made, ways = Map((8.70, 48.59)), []
+    for index in range(len(arms) + 2):
+        for row, y in (("a", -150.0), ("s", -8.0), ("x", 0.0), ("n", 8.0), ("b", 150.0)):
+            made.nodes[f"{row}{index}"] = (index * 150.0, y)
+    for row in "xab":
+        made.way(" ".join(f"{row}{index}" for index in range(len(arms) + 2)), highway="tertiary", name=row)
+    for index in (0, len(arms) + 1):
+        made.way(f"a{index} x{index} b{index}", highway="tertiary", name=f"end {index}")
+    for index, tags in enumerate(arms, start=1):
+        made.node_tags |= {f"{row}{index}": each for row, each in (signs[index - 1] if signs else {}).items()}
+        ways.append(100 + len(made.ways))
+        made.ways.append(([f"{row}{index}" for row in "asx"], {"highway": "tertiary"} | tags))
+        made.ways.append(([f"{row}{index}" for row in "xnb"], {"highway": "tertiary"}))
+    return made, ways
+
+
+ONE = {"oneway": "yes"}
+ARROWS = (
+    *({"turn:lanes": f"{value}|"} for value in sorted(arrows.KNOWN - {""})),
+    *({"turn:lanes": f"|{value}"} for value in sorted(arrows.KNOWN - {""})),
+    {"turn:lanes": "left|through;right"},
+    {"turn:lanes": "left;through|right"},
+    {"turn:lanes:forward": "left|through;right"},
+    {"turn:lanes": "left|through|right", "lanes": "3"},
+    {"turn:lanes": "left|through|right"},
+    {"turn:lanes": "left|left|right", "lanes": "3"},
+    {"turn:lanes": "left|sideways"},
+    {"turn:lanes": "through"},
+    {"turn": "left"},
+    {"turn": "right", "lanes": "1"},
+)
+
+
+POINTS = {"left": "lL", "sharp_left": "lL", "slight_left": "lLs", "through": "LsR", "slight_right": "sRr",
+          "right": "Rr", "sharp_right": "Rr"}  # fmt: skip
+"""SUMO's letters that an arrow may mean."""
+
+
+@pytest.mark.parametrize("country", ["DE", "GB"])
+def test_lanes_lead_where_arrows_point_or_the_list_names_the_way(build: Build, country: str) -> None:
+    made, ways = row_of_crossings([ONE | {"lanes": "2"} | tags for tags in ARROWS])
+    world = build(made, country)  # type: ignore[call-arg]
+    listed = {
+        int(number) for line in told(world).splitlines() if "turn" in line for number in NUMBERS.findall(line)
+    }
+    followed = 0
+    for way, tags in zip(ways, ARROWS, strict=True):
+        links = world.built.links.of[str(way)]
+        count = 1 + max(link.lane for link in links)
+        by_lane = [{link.direction for link in links if link.lane == lane} for lane in range(count)]
+        lanes = by_lane if country == "GB" else by_lane[::-1]
+        wanted = [set(lane.split(";")) for lane in next(iter(tags.values())).split("|")]
+        fits = len(wanted) == count and all(
+            words <= {"", "none"} or (words <= POINTS.keys() and lane and all(
+                any(letter in POINTS[word] for word in words) for letter in lane
+            ) and all(lane & set(POINTS[word]) for word in words))
+            for words, lane in zip(wanted, lanes, strict=True)
+        )  # fmt: skip
+        merges = any("merge" in word for words in wanted for word in words)
+        assert (way in listed) is not fits or (merges and way not in listed), (tags, links)
+        followed += fits
+    assert followed >= 8, "most that are possible"
+
+
+NUMBERS = re.compile(r"\b1\d\d\b")
+
+STATES = (
+    ({"s": {"highway": "stop"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "forward"}}, "s", ""),
+    ({"s": {"highway": "stop", "stop:direction": "forward"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "both"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "180"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "S"}}, "s", ""),
+    ({"s": {"highway": "stop", "direction": "backward"}}, "", "stop signs with no junction"),
+    ({"s": {"highway": "stop", "direction": "90"}}, "", "stop signs that face across the road"),
+    ({"s": {"highway": "stop", "direction": "up"}}, "", "stop signs with direction=up"),
+    ({"s": {"highway": "give_way"}}, "m", ""),
+    ({"s": {"highway": "give_way", "direction": "forward"}}, "m", ""),
+    ({"s": {"highway": "give_way"}, "n": {"highway": "stop"}}, "m", ""),
+    ({"s": {"highway": "stop", "stop": "minor"}}, "s", ""),
+    ({"s": {"highway": "stop", "stop": "all"}}, "w", ""),
+    ({"x": {"highway": "stop", "stop": "all"}}, "w", ""),
+    ({"x": {"highway": "stop"}}, "", "stop signs on a junction"),
+    ({"x": {"highway": "give_way"}}, "", "give-way signs on a junction"),
+    ({"x": {"highway": "mini_roundabout"}}, "=", ""),
+    ({"a": {"highway": "mini_roundabout"}}, "", ""),
+    ({}, "", ""),
+)
+"""Signs, SUMO's letter of the right of way from the south, and how those that are not followed are listed."""
+
+
+def test_right_of_way_is_as_signed_or_the_list_names_the_sign(build: Build) -> None:
+    made, ways = row_of_crossings([{} for _ in STATES], [signs for signs, _, _ in STATES])
+    world = build(made)
+    list_of = told(world)
+    numbers = {name: number for number, name in enumerate(made.nodes, start=1)}
+    for index, (way, (signs, state, listed)) in enumerate(zip(ways, STATES, strict=True), start=1):
+        links = [link for link in world.built.links.of[str(way)] if link.direction != "t"]
+        if state:
+            assert {link.state for link in links} == {state}, (signs, links)
+        if state in "sm" and state:
+            assert world.built.network.edges[str(way)].sign == {"s": "stop", "m": "give_way"}[state]
+        for row in signs:
+            named = re.search(rf"signs .*\b{numbers[f'{row}{index}']}\b", list_of)
+            assert bool(named) is bool(listed), (signs, list_of)
+            assert listed in list_of
+
+
+CAMERA = {"highway": "speed_camera"}
+BOTH_TAKEN, NOBODY, UNSAID = "both directions taken", "nobody drives", ""
+CAMERAS: tuple[tuple[dict[str, str], dict[str, str], str, str], ...] = (
+    ({}, {}, "+-", BOTH_TAKEN),
+    ({"direction": "forward"}, {}, "+", UNSAID),
+    ({"direction": "backward"}, {}, "-", UNSAID),
+    ({"direction": "both"}, {}, "+-", UNSAID),
+    ({"direction": "180"}, {}, "+", UNSAID),
+    ({"direction": "0"}, {}, "-", UNSAID),
+    ({"direction": "350°"}, {}, "-", UNSAID),
+    ({"direction": "N"}, {}, "-", UNSAID),
+    ({"direction": "SSE"}, {}, "+", UNSAID),
+    ({"direction": "90"}, {}, "+-", BOTH_TAKEN),
+    ({"direction": "W"}, {}, "+-", BOTH_TAKEN),
+    ({"direction": "up"}, {}, "+-", BOTH_TAKEN),
+    ({"direction": "0"}, ONE, "+", UNSAID),
+    ({}, ONE, "+", UNSAID),
+    ({"direction": "backward"}, ONE, "", NOBODY),
+)
+"""Tags of a camera and of its road, which leads north; the directions that it watches, and what is listed."""
+
+
+def test_a_camera_watches_whom_the_map_says(build: Build) -> None:
+    made = ladder([road for _, road, _, _ in CAMERAS], [CAMERA | tags for tags, _, _, _ in CAMERAS])
+    watched = {1: ("s1", "n1", "+"), 2: ("n2", "s2", "-")}
+    for index, (start, goal, _) in watched.items():
+        made.nodes[f"cam{index}"] = (index * 150.0 + 6, 60.0)
+        made.node_tags[f"cam{index}"] = {"man_made": "surveillance"}
+        members = (("device", f"cam{index}"), ("from", start), ("to", goal))
+        made.relations.append((members, {"type": "enforcement", "enforcement": "maxspeed"}))
+    world = build(made)
+    listed = told(world)
+    for index, (tags, road, ends, line) in enumerate(CAMERAS, start=1):
+        way = FIRST + index - 1
+        found = sorted(
+            ("-" if edge.edge_id.startswith("-") else "+")
+            for edge in world.built.edges
+            if way_of(edge.edge_id) == way
+            for _ in edge.cameras_m
+        )
+        assert found == sorted(ends + watched.get(index, ("", "", ""))[2]), (tags, road)
+        node = list(made.nodes).index(f"m{index}") + 1
+        lines = [text for text in listed.splitlines() if "camera" in text and re.search(rf"\b{node}\b", text)]
+        assert len(lines) == bool(line), (tags, lines)
+        assert all(line in text for text in lines)
+
+
+ONE_SIDED: tuple[tuple[dict[str, str], str], ...] = (
+    ({"barrier": "gate", "motor_vehicle:forward": "no"}, "-"),
+    ({"barrier": "gate", "motor_vehicle:backward": "no"}, "+"),
+    ({"barrier": "lift_gate", "access": "yes", "motorcar:backward": "private"}, "+"),
+    ({"barrier": "bollard", "motor_vehicle:forward": "yes"}, "+"),
+    ({"barrier": "entrance", "oneway": "yes"}, "+"),
+    ({"barrier": "entrance", "oneway": "-1"}, "-"),
+    ({"barrier": "entrance", "vehicle:forward": "no", "vehicle:backward": "no"}, ""),
+    ({"barrier": "entrance", "oneway": "no"}, "+-"),
+)
+"""Barriers in the middle of a road, and the directions in which cars pass."""
+
+
+def test_a_barrier_for_one_direction_closes_that_alone(build: Build) -> None:
+    world = build(ladder([{} for _ in ONE_SIDED], [tags for tags, _ in ONE_SIDED]))
+    for index, (tags, ends) in enumerate(ONE_SIDED):
+        way = FIRST + index
+        pieces = [edge.edge_id for edge in world.built.edges if way_of(edge.edge_id) == way]
+        north = max((edge for edge in pieces if edge.startswith("-")), key=len)
+        passed = "+" * world.reaches(str(way), 101) + "-" * world.reaches(north, 100)
+        assert passed == ends, tags
+    assert not list(differences(world.map, world.built, world.roads, world.country))
+
+
+def test_what_sumo_does_not_have_is_listed_by_its_value(build: Build) -> None:
+    calming = ("bump", "hump", "table", "cushion", "chicane", "choker", "island", "rumble_strip", "dip", "yes")
+    middle = [{"traffic_calming": value} for value in calming]
+    middle += [
+        {"highway": "traffic_signals", "traffic_signals:direction": end} for end in ("forward", "both", "up")
+    ]
+    world = build(ladder([{} for _ in middle], middle))
+    listed = told(world)
+    assert all(f"traffic_calming={value}: node" in listed for value in calming)
+    assert re.search("signals at no junction with signals, left out: nodes (\\d+, ){2}\\d+", listed)
+    assert "signals with traffic_signals:direction=up, for every direction: node" in listed
+
+
+LANE_LIMITS: tuple[tuple[dict[str, str], tuple[int | str, ...]], ...] = (
+    ({"lanes": "3", "maxspeed:lanes": "||70"}, ("-", "-", 70)),
+    ({"lanes": "3", "maxspeed:lanes": "100|80|"}, (100, 80, "-")),
+    ({"lanes": "3", "maxspeed": "90", "maxspeed:lanes": "||70"}, (90, 90, 70)),
+    ({"lanes": "2", "maxspeed": "60", "maxspeed:lanes": "100|80"}, (100, 80)),
+    ({"lanes": "2", "maxspeed:lanes:forward": "50|30"}, (50, 30)),
+    ({"lanes": "2", "maxspeed:lanes": "50 mph|30 mph"}, (80, 48)),
+    ({"lanes": "2", "maxspeed:lanes": "none|80", "highway": "trunk"}, ("none", 80)),
+    ({"lanes": "2", "maxspeed:lanes": "walk|fast"}, (7, "-")),
+    ({"lanes": "2", "maxspeed:lanes": "|"}, ("-", "-")),
+    ({"lanes": "2", "maxspeed:lanes": "100|80|60"}, (100, 100)),
+    ({"lanes": "2", "maxspeed": "50", "maxspeed:lanes": "||60"}, (60, 60)),
+    ({"lanes": "2", "maxspeed:lanes": "||60"}, ("-", "-")),
+)
+"""Tags of a one-way road and the limit on the sign of each lane from the left; ``-`` without one."""
+
+
+@pytest.mark.parametrize("country", ["DE", "GB"])
+def test_each_lane_has_the_limit_of_its_own_sign(build: Build, tmp_path: Path, country: str) -> None:
+    world = build(ladder([ONE | tags for tags, _ in LANE_LIMITS]), country)  # type: ignore[call-arg]
+    net = ET.fromstring(gzip.decompress((tmp_path / "town.net.xml.gz").read_bytes()))
+    lanes = {lane.get("id", ""): float(lane.get("speed", "")) for lane in net.iter("lane")}
+    for index, (tags, signs) in enumerate(LANE_LIMITS):
+        edge = world.built.network.edges[str(FIRST + index)]
+        left_first = edge.lane_ids if country == "GB" else edge.lane_ids[::-1]
+        whole = edge.limit_source is LimitSource.POSTED
+        for lane, sign in zip(left_first, signs, strict=True):
+            assert (whole or lane in edge.signed_lanes) is (sign != "-"), tags
+            if sign != "-":
+                assert round(lanes[lane] * 3.6) == (142 if sign == "none" else sign), tags
+        assert edge.speed_mps == max(lanes[lane] for lane in left_first)
+    assert not list(differences(world.map, world.built, world.roads, world.country))
+    listed = set(re.findall(r"(?<=: )maxspeed:lanes=[^:,]*|^maxspeed:lanes=[^:,]*", told(world), re.MULTILINE))
+    for tags, signs in LANE_LIMITS:
+        parts = tags.get("maxspeed:lanes", "").split("|")
+        odd = "fast" in parts or (len(parts) != len(signs) and "maxspeed:lanes" in tags)
+        assert (f"maxspeed:lanes={tags.get('maxspeed:lanes')}" in listed) is odd, tags
+
+
+def test_signs_at_what_netconvert_has_not_cost_no_map(build: Build, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(network, "patches", lambda *_: {"--edge-files": '<edges><edge id="99#0"/></edges>'})
+    made, _ = row_of_crossings([{}], [{"s": {"highway": "stop"}}])
+    assert "stop signs at junctions where netconvert gives right of way otherwise" in told(build(made))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -85,6 +86,10 @@ def test_the_route_tells_how_far_the_camera_is(built: Built) -> None:
     assert route.ahead(0, 0.0, None).camera_distance_m == at_m
     assert route.ahead(0, at_m - 1.0, None).camera_distance_m == pytest.approx(1.0)
     assert route.ahead(0, at_m + 1.0, None).camera_distance_m is None
+    signed = replace(built.network, edges=built.network.edges | {edge.edge_id: replace(edge, sign="stop")})
+    ahead = Route([edge.edge_id], signed, Free()).ahead(0, 10.0, None)
+    assert (ahead.next_sign, ahead.sign_distance_m) == ("stop", pytest.approx(edge.length_m - 10.0))
+    assert route.ahead(0, 10.0, None).next_sign == ""
 
 
 def test_a_crop_holds_what_lies_within(formats: dict[str, Path]) -> None:

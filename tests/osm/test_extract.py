@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import bz2
 import gzip
 import json
 import re
@@ -48,6 +49,24 @@ def _as_json(path: Path, *, with_positions: bool) -> bytes:
             way: dict[str, object] = {"type": "way", "id": item.id, "tags": tags, "nodes": refs}
             elements.append(way | ({"geometry": [positions[ref] for ref in refs]} if with_positions else {}))
     return json.dumps({"version": 0.6, "generator": "Overpass API", "elements": elements}).encode()
+
+
+@pytest.mark.parametrize("version", ["1", "1.0"])
+@pytest.mark.parametrize("ending", ["", ".gz", ".bz2"])
+def test_files_that_say_version_1_are_read(
+    version: str, ending: str, formats: dict[str, Path], tmp_path: Path
+) -> None:
+    data = formats[""].read_bytes().replace(b'<osm version="0.6"', f'<osm version="{version}"'.encode())
+    file = tmp_path / f"map.osm{ending}"
+    file.write_bytes({"": bytes, ".gz": gzip.compress, ".bz2": bz2.compress}[ending](data))
+    assert extract.read(file) == extract.read(formats[""])
+
+
+def test_ways_may_carry_their_nodes(formats: dict[str, Path], tmp_path: Path) -> None:
+    file = tmp_path / "geom.osm"
+    inner = b'<nd ref="1" lat="48.3" lon="1.6"/><nd ref="2" lat="48.31" lon="1.6"/>'
+    file.write_bytes(OSM % (b'<way id="5">' + inner + b'<tag k="highway" v="primary"/></way>'))
+    assert [node.position for node in extract.read(file).nodes.values()] == [(1.6, 48.3), (1.6, 48.31)]
 
 
 @pytest.mark.parametrize("with_positions", [False, True])
@@ -113,6 +132,12 @@ def test_a_way_clipped_by_the_extract_keeps_its_longest_stretch(tmp_path: Path) 
         (b'{"version": 0.6}', "no OSM elements"),
         (b'{"version": 0.6, "elements": [', "truncated"),
         (b'[{"type": "Feature"}]', "no OSM elements"),
+        (b'{"elements": [], "remark": "runtime error: Query timed out in \\"query\\""}', "the server stopped"),
+        (b'{"elements": [{"type": "count", "id": 0, "tags": {"total": "5"}}]}', "only counts elements"),
+        (OSM % b'<count id="0"><tag k="total" v="5"/></count>', "only counts elements"),
+        (OSM % b"<remark> runtime error: Query timed out </remark>", "the server stopped"),
+        (OSM % b"<remark> runtime error: Query run out of memory </remark>", "the server stopped"),
+        (OSM % b"<remark> considered </remark>", "no roads for cars"),
         (b'{"elements": [{"type": "way", "id": 1, "tags": {"highway": "primary"}}]}', "without its nodes"),
         (b'{"elements": [{"type": "node", "id": 1, "lat": 99, "lon": 2}]}', "without a position"),
         (OSM % b"", "no roads for cars"),

@@ -24,10 +24,12 @@ from automotive_cosim.osm.report import ImportReport
 from automotive_cosim.osm.roads import describe
 from automotive_cosim.osm.settings import ImportOptions
 from automotive_cosim.scenarios import load
+from automotive_cosim.scenarios.check import _place
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import Edge, read_network
 from automotive_cosim.traffic.stability import HALTED_SHARE_LIMIT, measure
+from tests.osm.maps import Map
 
 Imported = tuple[Path, ImportReport]
 
@@ -356,3 +358,25 @@ def test_western_paris_is_imported_and_flows_with_a_seed_nobody_tried(
     run = measure(scenario, observe_s=600, seed=12345)
     assert run.halted_share_max < HALTED_SHARE_LIMIT
     assert run.vehicles_mean > 50
+
+
+def test_a_map_over_the_180th_meridian_is_refused_with_the_cure(
+    make_village: Callable[..., Map], tmp_path: Path
+) -> None:
+    made = make_village((179.99, -17.0))
+    made.nodes |= {"far": (3000.0, 0.0)}
+    text = re.sub(r'lon="(18[0-9.]+)"', lambda lon: f'lon="{float(lon[1]) - 360:.7f}"', made.xml())
+    source = tmp_path / "fiji.osm"
+    source.write_text(text, encoding="utf-8")
+    with pytest.raises(ImportMapError, match=r"180th meridian.*--bbox 0,-90,180,90"):
+        import_map(source, tmp_path / "out")
+
+
+def test_check_finds_a_network_on_the_wrong_side(imported: Imported) -> None:
+    scenario = load(imported[0])
+    network = network_of(scenario)
+    assert _place(scenario, network).ok
+    mirrored = replace(network, map=replace(network.map, left_hand=True))
+    found = _place(scenario, mirrored)
+    assert not found.ok
+    assert "traffic keeps left in the network, not in FR" in found.detail

@@ -61,6 +61,12 @@ def test_how_many(tags: dict[str, str], forward: int | None, backward: int | Non
             {f"bus:lanes:{end}": "yes|designated" for end in ("forward", "backward")},
         ),
         (ONE | {"lanes": "2", "motor_vehicle:lanes": "no|yes"}, {"vehicle:lanes": "no|yes"}),
+        (ONE | {"lanes": "3", "hov:lanes": "designated|no|no"}, {"vehicle:lanes": "no|yes|yes"}),
+        (ONE | {"lanes": "2", "hov:lanes": "yes|no"}, {"vehicle:lanes": "yes|yes"}),
+        (
+            ONE | {"lanes": "3", "hov:lanes": "designated||", "vehicle:lanes": "yes|yes|no"},
+            {"vehicle:lanes": "no|yes|no"},
+        ),
         (ONE | {"lanes": "2", "access:lanes": "destination|psv"}, {"vehicle:lanes": "yes|no"}),
         (
             ONE | {"lanes": "2", "vehicle:lanes": "no|yes", "motorcar:lanes": "yes|yes"},

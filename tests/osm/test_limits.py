@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import re
 import string
+from dataclasses import replace
 from itertools import product
 
 import pytest
@@ -14,9 +15,9 @@ from hypothesis import strategies as st
 from automotive_cosim.geo.place import Atlas, Place, shipped
 from automotive_cosim.osm.assumed import assumed_sign
 from automotive_cosim.osm.country import LEFT_HAND, LIMITS, WORLD, assumed_limit_kmh
-from automotive_cosim.osm.extract import ROAD_CLASSES
+from automotive_cosim.osm.extract import ROAD_CLASSES, Extract, Node, OsmWay, Position
 from automotive_cosim.osm.limits import CAR_KEYS, NO_UNIT, ZONE_KEYS, built_up_of, doubts, kmh_of, stated_limits
-from automotive_cosim.osm.roads import MappedRoad
+from automotive_cosim.osm.roads import MappedRoad, describe, on_one_side
 from tests.laws import over
 
 NETCONVERT_READS = re.compile(r"none|\d+(\.\d+)?( mph)?")
@@ -123,12 +124,17 @@ def test_value_unit_and_zone(zone: str, key: str, value: str) -> None:
         ({"maxspeed:advisory": "40"}, None, None),
         ({"maxspeed:practical": "40"}, None, None),
         ({"minspeed": "60"}, None, None),
-        # lanes: the highest, where there is no limit of the road
+        # lanes: the highest, if each has a sign; an empty part has that of the road
         ({"maxspeed:lanes": "100|80|60"}, "100", "100"),
         ({"maxspeed:lanes": "100|none"}, "none", "none"),
-        ({"maxspeed:lanes": "100||60"}, "100", "100"),
+        ({"maxspeed:lanes": "100||60"}, None, None),
+        ({"maxspeed": "80", "maxspeed:lanes": "100||60"}, "100", "100"),
+        ({"maxspeed": "100", "maxspeed:lanes": "||70"}, "100", "100"),
+        ({"maxspeed:lanes": "||"}, None, None),
+        ({"maxspeed": "80", "maxspeed:lanes": "|"}, "80", "80"),
+        ({"maxspeed": "DE:zone30", "maxspeed:lanes": "20|"}, "30", "30"),
         ({"maxspeed:lanes:forward": "80|60"}, "80", None),
-        ({"maxspeed": "90", "maxspeed:lanes": "100|80"}, "90", "90"),
+        ({"maxspeed": "90", "maxspeed:lanes": "100|80"}, "100", "100"),
         # conditions: a limit of their own, at their hours
         ({"maxspeed": "50", "maxspeed:conditional": "30 @ (Mo-Fr 07:00-17:00)"}, "50", "50"),
         ({"maxspeed:conditional": "30 @ wet"}, None, None),
@@ -387,3 +393,38 @@ def test_countries_are_codes_and_differ_in_the_side() -> None:
     assert all(re.fullmatch("[A-Z]{2}", code) for code in LEFT_HAND | set(LIMITS))
     assert {"GB", "JP", "AU", "ZA", "IN"} <= LEFT_HAND
     assert not {"FR", "DE", "US", "CH", "SE"} & LEFT_HAND
+
+
+LANDS = (
+    ("CN", "HK", (114.06, 22.60), (114.17, 22.40)),
+    ("MO", "CN", (113.55, 22.19), (113.50, 22.28)),
+    ("LA", "TH", (102.62, 17.97), (102.75, 17.80)),
+    ("US", "CA", (-83.06, 42.35), (-83.00, 42.28)),
+    ("DE", "FR", (7.83, 48.57), (7.74, 48.58)),
+    ("CH", "FR", (6.14, 46.20), (6.10, 46.26)),
+)
+"""Two lands, and a place in each."""
+
+
+@over(LANDS)
+def test_each_road_is_under_the_law_of_its_land(
+    here: str, there: str, place: tuple[float, float], beyond: tuple[float, float]
+) -> None:
+    nodes = {
+        number: Node(Position(lon + step / 1000, lat), {})
+        for number, ((lon, lat), step) in enumerate(product((place, beyond), range(2)))
+    }
+    ways = tuple(OsmWay(way, {"highway": "primary"}, (2 * way, 2 * way + 1)) for way in range(2))
+    extract = Extract(ways, nodes, ())
+    roads = describe(extract, shipped(), here)
+    assert [roads[way].country for way in range(2)] == [here, there]
+    assert roads[1].assumed == describe(extract, shipped(), there)[1].assumed
+    kept = on_one_side(extract, shipped(), here)
+    same_side = (here in LEFT_HAND) is (there in LEFT_HAND)
+    assert [way.way_id for way in kept.ways] == ([0, 1] if same_side else [0])
+    assert kept.other_side == ({} if same_side else {there: (1,)})
+    across = OsmWay(2, {"highway": "primary"}, (0, 1, 2, 3))
+    assert on_one_side(replace(extract, ways=(across,)), shipped(), here).ways[0].nodes == (
+        across.nodes if same_side else (0, 1)
+    ), "cut where the side changes"
+    assert {road.country for road in describe(extract, shipped(), "JP").values()} == {"JP"}, "not where it says"

@@ -159,6 +159,7 @@ def test_what_is_no_whole_map_is_told_and_leaves_nothing(
         ("http://127.0.0.1:9/", "1,48,1.1,48.1", "cannot be reached"),
         ("http://127.0.0.1:9/", "1,48,1,48.1", "is not an area on earth"),
         ("http://127.0.0.1:9/", "1,48,nan,49", "is not an area on earth"),
+        ("http://127.0.0.1:9/", "179,-17,-179,-16", r"over the 180th meridian.*: 179,-17,180,-16 or -180,"),
         ("http://127.0.0.1:9/", "1,48,2", "is not an area on earth"),
         ("http://127.0.0.1:9/", "1,48,2,91", "is not an area on earth"),
     ],

@@ -18,6 +18,7 @@ from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.posted import in_force, is_open, sign_mps, timed_access, timed_limits
+from tests.laws import over
 
 Edit = Callable[[Path], None]
 Variant = Callable[[Edit], Scenario]
@@ -65,6 +66,13 @@ def test_what_is_no_sign(sign: str) -> None:
         ("110 @ Apr-Oct", ["110 km/h Apr-Oct"]),
         ("80 @ (Nov 15-Mar 15 20:00-06:00)", ["80 km/h Nov 15-Mar 15 20:00-06:00"]),
         ("80 @ (Nov 40-Mar)", []),
+        ("30 @ (May-Sep 09:00-18:00)", ["30 km/h May-Sep 09:00-18:00"]),
+        ("30 @ (May-Sep: 09:00-18:00)", ["30 km/h May-Sep 09:00-18:00"]),
+        ("30 @ (week 10-20 Mo-Fr 08:00-18:00)", ["30 km/h week 10-20 Mo-Fr 08:00-18:00"]),
+        ("30 @ (week 60)", []),
+        ("30 @ (Sa,Su,PH 10:00-12:00)", ["30 km/h Sa, Su 10:00-12:00"]),
+        ("30 @ (PH 10:00-12:00)", []),
+        ("30 @ (Mo-Fr 08:00-16:00; Jul-Aug off)", ["30 km/h Mo-Fr 08:00-16:00 but Jul-Aug"]),
         ("60 @ (weight>7.5)", []),
         ("20 mph @ children_present", []),
         ("30 @ (sunset-sunrise)", []),
@@ -115,6 +123,44 @@ def test_a_span_past_midnight_belongs_to_the_day_it_begins_on() -> None:
     ]
     assert not in_force(limits, at(5, "03:00")), "Thursday's night is not meant"
     assert not in_force(limits, at(6, "06:00"))
+
+
+CLOCK = (
+    # a season before a time, with and without a colon
+    ("May-Sep 09:00-18:00", "2026-07-01T12:00 2026-09-30T17:59", "2026-11-01T12:00 2026-07-01T08:59"),
+    ("May-Sep: 09:00-18:00", "2026-07-01T12:00 2026-09-30T17:59", "2026-11-01T12:00 2026-07-01T08:59"),
+    ("Nov-Mar 22:00-06:00", "2026-12-01T23:00 2026-04-01T05:00", "2026-11-01T05:00 2026-07-01T23:00"),
+    ("Nov 9:00-10:00", "2026-11-09T09:30", "2026-11-09T11:00 2026-12-01T09:30"),
+    # the night of the last day belongs to that day, and the night before the first does not
+    ("Apr 01-Oct 31 22:00-06:00", "2026-11-01T02:00 2026-04-01T22:00", "2026-04-01T02:00 2026-11-01T22:00"),
+    ("Apr-Oct 22:00-06:00", "2026-11-01T02:00", "2026-04-01T02:00"),
+    ("Dec 31 22:00-06:00", "2027-01-01T02:00", "2026-12-31T02:00 2027-01-01T22:00"),
+    ("Feb 22:00-06:00", "2026-03-01T05:59 2028-02-29T23:00", "2026-02-01T05:59"),
+    ("Fr[1] 22:00-06:00", "2026-08-08T02:00", "2026-08-07T02:00 2026-08-15T02:00"),
+    # over New Year
+    ("Dec 24-Jan 02 10:00-12:00", "2026-12-24T10:00 2027-01-02T11:59", "2026-12-23T11:00 2027-01-03T11:00"),
+    ("Dec 24-Jan 02: 22:00-06:00", "2027-01-03T05:00", "2026-12-24T05:00"),
+    ("Nov 15-Mar 15", "2026-11-15T00:00 2026-03-15T23:59", "2026-03-16T00:00 2026-11-14T23:59"),
+    # weeks of the year
+    ("week 1-10 Mo-Fr 08:00-18:00", "2026-01-02T09:00 2026-03-06T09:00", "2026-03-09T09:00 2026-01-03T09:00"),
+    ("week 53", "2027-01-03T12:00 2026-12-28T12:00", "2027-01-04T12:00"),
+    ("week 1-53/2", "2026-01-12T12:00", "2026-01-05T12:00"),
+    # parts of the year in which it does not hold
+    ("Mo-Fr 08:00-16:00; Jul-Aug off", "2026-06-30T09:00", "2026-07-01T09:00 2026-08-31T09:00"),
+    ("22:00-06:00; Dec 24-Jan 02 off", "2026-12-24T05:00 2027-01-03T22:00", "2026-12-24T22:00 2027-01-03T05:00"),
+    # holidays have no calendar
+    ("Sa,Su,PH 08:00-20:00", "2026-12-26T09:00", "2026-12-25T09:00"),
+)
+"""Conditions, instants at which they hold, and at which they do not."""
+
+
+@over(CLOCK)
+def test_seasons_weeks_and_nights(condition: str, holds: str, not_then: str) -> None:
+    limits, unread = timed_limits(f"30 @ ({condition})")
+    assert not unread
+    for instants, wanted in ((holds, True), (not_then, False)):
+        for instant in map(datetime.fromisoformat, instants.split()):
+            assert (in_force(limits, instant) is not None) is wanted, instant
 
 
 def test_a_week_as_a_whole_is_what_the_days_say() -> None:
