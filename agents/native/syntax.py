@@ -17,8 +17,6 @@ from automotive_cosim.cockpit.actions import grammar, to_json
 from automotive_cosim.contracts import UNCALLED, ActionType, Direction, Json
 from automotive_cosim.errors import ActionError
 
-LONGEST = 20_000
-"""Characters at the end of an answer in which to look for calls."""
 Verbs = Mapping[str, Verb]
 
 
@@ -90,7 +88,7 @@ class Labelled:
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``. Points are read in the forms of all versions, whatever the prompt shows."""
-        text = ended(text[-LONGEST:])
+        text = ended(text)
         marks = list(_LABEL.finditer(text))
         tail = text[marks[-1].end() if marks else 0 :].strip().strip("`").strip()
         calls = [(found[1], _keywords(found[2])) for found in _WHOLE_CALL.finditer(tail)]
@@ -219,7 +217,7 @@ class ToolCalls:
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``."""
-        calls = [call for value in objects(ended(text[-LONGEST:])) if (call := _tool_call(value, verbs))]
+        calls = [call for value in objects(ended(text)) if (call := _tool_call(value, verbs))]
         if not calls:
             raise ActionError('the answer has no <tool_call>{"name": ..., "arguments": {...}}</tool_call>')
         return calls
@@ -326,7 +324,7 @@ class Code:
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``."""
-        said = ended(text[-LONGEST:])
+        said = ended(text)
         blocks = re.findall(r"```(?:python|code)?\s*\n(.*?)(?:```|\Z)", said, re.DOTALL)
         source = blocks[-1] if blocks else "\n".join(_CODE_LINE.findall(said))
         try:

@@ -13,12 +13,13 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.models.base import ChatMessage, ModelReply
+from automotive_cosim.models.base import ChatMessage, ModelReply, ToolCall
 
 MOST_TOKENS = 10**9
 """No question or answer has more."""
@@ -97,7 +98,8 @@ class Chat:
             tokens_in + cached if cached > tokens_in else tokens_in,  # some gateways leave the cached ones out
             _count(usage.get("completion_tokens")),
             finish=str(choice.get("finish_reason") or "stop"),
-            reasoning=_text(message.get("reasoning_content") or message.get("reasoning")),
+            reasoning=_text(message.get("reasoning_content") or message.get("reasoning"))
+            or _text(message.get("content"), is_thought=True),
             tokens_reasoning=_detail(usage, "completion_tokens_details", "reasoning_tokens"),
             tokens_cached=cached,
         )
@@ -127,11 +129,12 @@ class ChatTools(Chat):
         plain = Chat.read(self, told)
         message = _first(told, "choices").get("message") or {}
         calls = [
-            {"name": str(each.get("name") or ""), "arguments": _loaded(each.get("arguments"))}
+            {"name": str(each["name"]), "arguments": _loaded(each.get("arguments"))} | _back(each, CALL_BACK)
             for each in _named(message.get("tool_calls"))
         ]
         say = _text(message.get("content")) or _text(message.get("refusal"))
-        return replace(plain, text=json.dumps({"say": say, "calls": calls}, ensure_ascii=False))
+        text = {"say": say, "calls": calls} | (_back(message, TURN_BACK) if calls else {})
+        return replace(plain, text=json.dumps(text, ensure_ascii=False))
 
     def _message(self, message: ChatMessage) -> Json:
         if message.call_id:
@@ -140,14 +143,10 @@ class ChatTools(Chat):
         if not message.calls:
             return told
         calls = [
-            {
-                "id": call.id,
-                "type": "function",
-                "function": {"name": call.name, "arguments": _dumped(call.arguments)},
-            }
+            {"id": call.id, "type": "function", "function": _called(call), **(call.back or {})}
             for call in message.calls
         ]
-        return told | {"content": message.text or None, "tool_calls": calls}
+        return told | {"content": message.text or None, "tool_calls": calls} | (message.back or {})
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +188,7 @@ class OpenAI:
         for item in _objects(told["output"]):
             match item.get("type"):
                 case "reasoning":
-                    reasoning += _text(item.get("summary"))
+                    reasoning += _text(item.get("summary")) or _text(item.get("content"), is_thought=True)
                 case "message":
                     say += "".join(
                         str(part.get("text") or part.get("refusal") or "") for part in item.get("content") or ()
@@ -407,15 +406,31 @@ def _loaded(arguments: object) -> object:
         return str(arguments)
 
 
-def _dumped(arguments: object) -> str:
-    return arguments if isinstance(arguments, str) else json.dumps(arguments, ensure_ascii=False)
+def _called(call: ToolCall) -> Json:
+    """A call as its server takes it back, which need not be as the model wrote it: a name of certain characters, and
+    an object."""
+    given = call.arguments if isinstance(call.arguments, dict) else {"unreadable": str(call.arguments)}
+    name = re.sub(r"[^\w-]", "_", call.name, flags=re.ASCII)[:64] or "unnamed"
+    return {"name": name, "arguments": json.dumps(given, ensure_ascii=False)}
+
+
+CALL_BACK, TURN_BACK = ("extra_content",), ("reasoning_content", "reasoning_details")
+"""Fields that a server gives with a call and with a turn of calls, and refuses the next question without (Gemini;
+DeepSeek, Kimi, OpenRouter)."""
+
+
+def _back(told: Json, names: Sequence[str]) -> Json:
+    found = {name: told[name] for name in names if told.get(name)}
+    return {"back": found} if found else {}
 
 
 def _named(calls: object) -> list[Json]:
-    """The functions of an answer's calls; some servers leave their frame out."""
+    """The functions of an answer's calls, with what their frame has besides; some servers leave the frame out."""
     listed = _objects(calls) if isinstance(calls, list) else []
-    functions = (each.get("function", each) for each in listed)
-    return [each for each in functions if isinstance(each, dict) and each.get("name")]
+    functions = (
+        {**each, **function} for each in listed if isinstance(function := each.get("function", each), dict)
+    )
+    return [each for each in functions if each.get("name")]
 
 
 def _tool_calls(calls: object) -> str:
@@ -442,14 +457,26 @@ def _detail(usage: Json, group: str, name: str) -> int:
     return _count(details.get(name)) if isinstance(details, dict) else 0
 
 
-def _text(content: object) -> str:
-    """A string, or the text parts of a list; nothing else counts as text."""
+def _text(content: object, *, is_thought: bool = False) -> str:
+    """A string, or the text parts of a list; nothing else counts as text.
+
+    Args:
+        content: of an answer.
+        is_thought: whether the thoughts among the parts are wanted, instead of the words.
+    """
     if isinstance(content, str):
-        return content
-    if isinstance(content, list):
-        parts = (part.get("text") if isinstance(part, dict) else part for part in content)
-        return "".join(part for part in parts if isinstance(part, str))
-    return ""
+        return "" if is_thought else content
+    found = ""
+    for part in content if isinstance(content, list) else ():
+        told = part if isinstance(part, dict) else {"text": part}
+        thinks = told.get("thought") is True or bool(_THOUGHT.search(str(told.get("type"))))
+        if thinks == is_thought:
+            text = told.get("text") or (told.get("thinking") or told.get("reasoning") if thinks else "")
+            found += _text(text)
+    return found
+
+
+_THOUGHT = re.compile("think|thought|reason")
 
 
 def _base64(picture: bytes) -> str:

@@ -219,8 +219,8 @@ class Remote:
         self._sleep = sleep
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
-        """Asks, and repeats the question after a transient failure, each time after a longer pause, or after the one
-        that the server asks for.
+        """Asks, and repeats the question after a transient failure, each time after a longer pause, or after that
+        which the server asks for.
 
         Raises:
             ModelError: refused, or every attempt failed.
