@@ -58,8 +58,8 @@ def read(text: str, *, is_cut: bool = False) -> ParsedAnswer:
 
     Args:
         text: the answer.
-        is_cut: whether it was cut off at its longest. Then only a whole action after its label counts: any other may
-            be a thought or half of one.
+        is_cut: whether it was cut off at its longest. Then only a whole action after its label counts: any other
+            may be a thought or half of one.
 
     Raises:
         ActionError: it has no action, or a malformed one; the message says which.

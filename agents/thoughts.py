@@ -1,7 +1,8 @@
 """What a model thinks before it answers, which its server may leave in the answer. Thoughts are nobody's actions.
 
-Forms in use: tags (``<think>``, ``<thinking>``, ``<seed:think>``, ``[THINK]``, ``<|START_THINKING|>``, ...), channels
-(gpt-oss, Gemma), and sentences (Granite, Apriel). The first mark may stand in the prompt, the last be cut off.
+Forms in use: tags (``<think>``, ``<thinking>``, ``<seed:think>``, ``[THINK]``, ``<|START_THINKING|>``, ...),
+channels (gpt-oss, Gemma), and sentences (Granite, Apriel). The first mark may stand in the prompt, the last be cut
+off.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ _MARK = re.compile(rf"(?P<end>{_END})|(?:{_BEGIN})", re.IGNORECASE | re.MULTILIN
 _CHANNEL = re.compile(
     r"<\|channel\|?>\s*(?:analysis|thought)\b(?:\s*<\|message\|>)?"  # gpt-oss; Gemma
     r"(?P<thought>.*?)(?P<end><\|end\|>|<channel\|>|(?=<\|start\|>|<\|channel\|?>|<\|call\|>|<\|return\|>)|\Z)"
-    r"|\Aanalysis(?=[^\s\w]|[A-Z])(?P<bare>.*?)(?:(?P<said>assistant(?:final|commentary))|\Z)",  # without its tokens
+    r"|\Aanalysis(?=[^\s\w]|[A-Z])(?P<bare>.*?)(?:(?P<said>assistant(?:final|commentary))|\Z)",  # its tokens eaten
     re.DOTALL,
 )
 _CONTROL = re.compile(r"<\|\w+\|>(?:assistant|final)?")

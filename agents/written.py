@@ -23,7 +23,7 @@ from automotive_cosim.contracts import Json
 
 NAMES = ("name", "tool_name", "toolName", "function_name", "function", "tool", "recipient_name")
 ARGUMENTS = ("arguments", "parameters", "args", "input", "tool_input", "kwargs")
-Call = tuple[str, object]
+WrittenCall = tuple[str, object]
 _NAME = r"(?:functions\.|default_api\.)?(?P<name>[A-Za-z_][\w.-]*?)"
 _MARKED = (
     r"(?:<[|\uff5c]?(?:\w+:)?(?!\w*(?:respon|result|output))\w*(?:tool|function)\w*[|\uff5c]?>"
@@ -59,7 +59,7 @@ _BRACED = re.compile(rf"\bcall:{_NAME}(?P<braced>\{{.*?\}})(?=\s*<)", re.DOTALL)
 _QUOTES = re.compile(r'<escape>|<\|"\|>')
 
 
-def written(text: str, schemas: Mapping[str, Json]) -> list[Call]:
+def written(text: str, schemas: Mapping[str, Json]) -> list[WrittenCall]:
     """Name and arguments of each call in an answer's words, in their order.
 
     Args:
@@ -68,7 +68,7 @@ def written(text: str, schemas: Mapping[str, Json]) -> list[Call]:
             is one only of these functions.
     """
     text = text.replace("\uff5cDSML\uff5c", "")
-    calls: list[Call] = []
+    calls: list[WrittenCall] = []
     read = 0
     for at, end, found in sorted(_placed(text, schemas), key=lambda each: (each[0], -each[1])):
         if found and at >= read:
@@ -77,7 +77,7 @@ def written(text: str, schemas: Mapping[str, Json]) -> list[Call]:
     return calls or _alone(text, schemas)
 
 
-def _placed(text: str, schemas: Mapping[str, Json]) -> Iterator[tuple[int, int, list[Call]]]:
+def _placed(text: str, schemas: Mapping[str, Json]) -> Iterator[tuple[int, int, list[WrittenCall]]]:
     """Calls that have marks, with where they begin and end."""
     for mark in _TAGGED.finditer(text):
         name = mark["name"] or mark["glm"]
@@ -100,7 +100,7 @@ def _placed(text: str, schemas: Mapping[str, Json]) -> Iterator[tuple[int, int, 
         yield mark.start(), values[-1][1] if values else mark.end(), calls
 
 
-def _alone(text: str, schemas: Mapping[str, Json]) -> list[Call]:
+def _alone(text: str, schemas: Mapping[str, Json]) -> list[WrittenCall]:
     """Calls of known functions that are the end of an answer, on lines of their own or in a block."""
     mark = _BLOCK.search(text.strip())
     lines = (mark[1] or mark[2] or "") if mark else text.strip()
@@ -126,7 +126,7 @@ def _values(text: str, at: int, most: int = 100) -> list[tuple[Any, int]]:
     return found
 
 
-def _called(value: object, schemas: Mapping[str, Json]) -> Iterator[Call]:
+def _called(value: object, schemas: Mapping[str, Json]) -> Iterator[WrittenCall]:
     """The calls in a value of JSON."""
     if isinstance(value, list):
         for each in value:
@@ -150,7 +150,7 @@ def _parameters(body: str, schema: Json) -> Iterator[tuple[str, object]]:
 
 def _value(text: str, schema: Json) -> object:
     """What a text in a tag says, by its schema."""
-    told = re.sub(r"\A\n|\n\Z", "", text)
+    told = text[1:-1] if text[:1] == text[-1:] == "\n" and len(text) > 1 else text
     plain = told.strip()
     is_text = schema.get("type") == "string"
     if is_text and plain[:1] != '"':
@@ -162,16 +162,16 @@ def _value(text: str, schema: Json) -> object:
     return told
 
 
-def _python(lines: str) -> list[Call]:
+def _python(lines: str) -> list[WrittenCall]:
     """Calls in Python's notation with named constants; none if anything else is there."""
-    calls: list[Call] = []
+    calls: list[WrittenCall] = []
     try:
         for statement in ast.parse(lines.strip()).body:
             each = statement.value if isinstance(statement, ast.Expr) else None
             for call in each.elts if isinstance(each, ast.List | ast.Tuple) else [each]:
                 match call:
                     case ast.Call(ast.Name("print"), [ast.Call() as inner], []):
-                        call = inner  # noqa: PLW2901
+                        call = inner
                 match call:
                     case ast.Call(function, [], words):
                         given = {word.arg: ast.literal_eval(word.value) for word in words if word.arg}

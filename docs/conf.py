@@ -19,6 +19,7 @@ from typer.main import get_command
 from typer.testing import CliRunner
 
 from automotive_cosim import __version__, scenarios, schemas
+from automotive_cosim.agents import FORMATS
 from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
@@ -47,6 +48,7 @@ extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphin
 INCLUDED = (
     "conditions",
     "functions",
+    "native_formats",
     "leaderboard",
     "readme",
     "spaces",
@@ -93,6 +95,8 @@ def setup(sphinx: Sphinx) -> None:
     for name in ("plan", "scenario"):
         _fields(name)
     _write("functions.md", "```text", _printed("show", "functions"), "```")
+    forms = [(f"`{name}`", each.models, each.grid.told, each.declines) for name, each in FORMATS.items()]
+    _table("native_formats.md", ("`format`", "models", "coordinates", "declines with"), forms)
 
 
 def _write(page: str, *lines: str) -> None:

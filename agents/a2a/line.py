@@ -129,8 +129,8 @@ class AgentLine:
     def _answer(self, task: Task) -> tuple[tuple[Any, ...], Json]:
         """What a task says that it had not said before, once, with the metadata.
 
-        Artifacts are its result, and a status message tells only what they do not. An open task has those of earlier
-        answers, too.
+        Artifacts are its result, and a status message tells only what they do not. An open task has those of its
+        earlier answers, too.
         """
         metadata, artifacts, status = _metadata(task), list[Any](), list[Any]()
         for each in task.artifacts:

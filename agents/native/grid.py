@@ -11,6 +11,11 @@ from typing import Protocol
 class Grid(Protocol):
     """The coordinates of a format."""
 
+    @property
+    def told(self) -> str:
+        """What they are, in words."""
+        ...
+
     def span(self, width: int, height: int) -> tuple[int, int]:
         """The coordinates of the lower right corner of a picture of that size."""
         ...
@@ -19,6 +24,8 @@ class Grid(Protocol):
 @dataclass(frozen=True, slots=True)
 class Pixels:
     """Pixels of the picture as it is sent."""
+
+    told = "pixels"
 
     def span(self, width: int, height: int) -> tuple[int, int]:
         """See ``Grid``."""
@@ -31,6 +38,11 @@ class Share:
 
     whole: int
     """999 or 1000."""
+
+    @property
+    def told(self) -> str:
+        """See ``Grid``."""
+        return f"0 to {self.whole}"
 
     def span(self, width: int, height: int) -> tuple[int, int]:
         """See ``Grid``."""
@@ -48,6 +60,11 @@ class Resized:
     factor: int
     least_px: int
     most_px: int
+
+    @property
+    def told(self) -> str:
+        """See ``Grid``."""
+        return f"pixels, resized to multiples of {self.factor}"
 
     def span(self, width: int, height: int) -> tuple[int, int]:
         """See ``Grid``."""

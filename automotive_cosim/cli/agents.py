@@ -31,6 +31,21 @@ def list_agents(as_json: AsJson = False) -> None:
     typer.echo(f"models: {', '.join(MODELS)}")
 
 
+@app.command("formats")
+def list_formats(as_json: AsJson = False) -> None:
+    """List the native formats: their models, coordinates and words, with version, date and source of the words."""
+    from automotive_cosim.agents import FORMATS
+
+    if as_json:
+        print_json({"formats": {name: form.as_json() for name, form in FORMATS.items()}})
+        return
+    for name, form in FORMATS.items():
+        declines = f"; declines with {form.declines}" if form.declines else ""
+        typer.echo(f"{name}: {form.models}; {form.grid.told}{declines}")
+        for words in form.words:
+            typer.echo(f"    {', '.join(words.verbs)}\n        {words.version}; {words.date}, {words.source}")
+
+
 @app.command()
 def show(name: str, as_json: AsJson = False) -> None:
     """Show an agent's inputs and actions and, if it uses a model, its prompt."""

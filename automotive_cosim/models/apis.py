@@ -407,8 +407,8 @@ def _loaded(arguments: object) -> object:
 
 
 def _called(call: ToolCall) -> Json:
-    """A call as its server takes it back, which need not be as the model wrote it: with a name of certain characters
-    and an object."""
+    """A call as its server takes it back, which need not be as the model wrote it: a name of certain characters, an
+    object."""
     given = call.arguments if isinstance(call.arguments, dict) else {"unreadable": str(call.arguments)}
     name = re.sub(r"[^\w-]", "_", call.name, flags=re.ASCII)[:64] or "unnamed"
     return {"name": name, "arguments": json.dumps(given, ensure_ascii=False)}
