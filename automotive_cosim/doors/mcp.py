@@ -86,7 +86,7 @@ class CockpitServer(MCPServer[Any]):
 
     async def list_tools(self) -> list[Tool]:
         """The tools, whose schemas say so."""
-        tools = await super().list_tools()
+        tools: list[Tool] = await super().list_tools()
         for tool in tools:
             tool.input_schema = tool.input_schema | {"additionalProperties": False}
         return tools

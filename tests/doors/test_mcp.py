@@ -3,8 +3,8 @@
 import base64
 import json
 import os
-import socket
 import re
+import socket
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import closing
