@@ -7,7 +7,6 @@ marks it. Any other test that loads libsumo or runs one of SUMO's programs fails
 import gc
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
@@ -16,6 +15,7 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from multiprocessing import forkserver
 from pathlib import Path
 from typing import Any
 from zlib import crc32
@@ -35,9 +35,12 @@ from automotive_cosim.contracts import (
     VehicleState,
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
-from automotive_cosim.traffic import remote
+from automotive_cosim.tasking.own_files import VARIABLE
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.tasks.folder import add_folder
 from automotive_cosim.traffic.fork import Simulations
-from tests import preloaded
+from tests import farm, preloaded
+from tests.farm import NO_LIBSUMO
 
 PROXIES = [f"{kind}_proxy" for kind in ("http", "https", "all")]
 for _name in (
@@ -50,15 +53,18 @@ for _name in (
 typer.main.get_command = cache(typer.main.get_command)
 
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
-NO_LIBSUMO = Path(__file__).parent / "no_libsumo"
-"""What the children of a test find in the place of libsumo."""
-TRAFFIC = Path(__file__).parent / "traffic"
+ABOUT_PROCESSES = {"test_faults", "test_confinement"}
+"""Modules whose simulations start as programs start them."""
 _forbidden = False
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--turn", metavar="I/N", help="of the tests marked `sumo`, `slow` or `long`, run the I-th of N parts"
+        "--prove",
+        metavar="I/N",
+        nargs="?",
+        const="1/1",
+        help="run the tests marked `proof` instead, the I-th of N parts",
     )
 
 
@@ -66,21 +72,24 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if "sumo" in getattr(item, "fixturenames", ()):
             item.add_marker("sumo")
-    if config.option.turn:
-        part, parts = map(int, config.option.turn.split("/"))
-        if not 1 <= part <= parts:
-            raise pytest.UsageError(f"--turn is {config.option.turn}; give a part from 1 to {parts}")
-        left = [item for item in items if (turn := _turn(item)) and crc32(turn.encode()) % parts != part - 1]
-        config.hook.pytest_deselected(items=left)
-        items[:] = [item for item in items if item not in set(left)]
+    part, parts = map(int, (config.option.prove or "0/1").split("/"))
+    if not 0 <= part <= parts:
+        raise pytest.UsageError(
+            f"--prove is {config.option.prove}; give a part from 1 to {parts}, such as 1/{parts}"
+        )
+
+    def is_wanted(item: pytest.Item) -> bool:
+        is_proof = item.get_closest_marker("proof") is not None
+        return is_proof and crc32(item.nodeid.encode()) % parts == part - 1 if part else not is_proof
+
+    config.hook.pytest_deselected(items=[item for item in items if not is_wanted(item)])
+    items[:] = [item for item in items if is_wanted(item)]
     items.sort(key=lambda item: item.get_closest_marker("long") is None)  # else a worker waits for one at the end
 
 
-def _turn(item: pytest.Item) -> str:
-    """What takes turns together: a long test alone, the others of a file, which share what they prepare."""
-    if item.get_closest_marker("long"):
-        return item.nodeid
-    return str(item.path.name) if item.get_closest_marker("sumo") or item.get_closest_marker("slow") else ""
+def pytest_sessionstart(session: pytest.Session) -> None:
+    if session.config.getoption("numprocesses", None) and preloaded.POSSIBLE:
+        session.config.add_cleanup(farm.Farm().close)
 
 
 def pytest_collection_finish() -> None:
@@ -92,34 +101,36 @@ def pytest_collection_finish() -> None:
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     if item.get_closest_marker("sumo"):
         with pytest.MonkeyPatch.context() as patch:
-            if preloaded.POSSIBLE and TRAFFIC not in item.path.parents:
-                patch.setattr(remote, "_popen", _popen)
+            if preloaded.POSSIBLE and item.path.stem not in ABOUT_PROCESSES:
+                _ready()
+                farm.use(patch.setattr)
             return (yield)
     with _without_sumo():
         return (yield)
 
 
 @cache
-def _preloaded() -> preloaded.Preloaded:
-    return preloaded.Preloaded()
-
-
-def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> preloaded.Process:
-    return _preloaded().start(connection, complaints, alarm_s)
+def _ready() -> None:
+    """Starts what simulations and the workers of evaluations are forked from."""
+    preloaded.Preloaded()
+    forkserver.set_forkserver_preload(["tests.readied"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(Path(__file__).parents[1]), prepend=os.pathsep)
+        forkserver.ensure_running()
 
 
 @contextmanager
 def _without_sumo() -> Iterator[None]:
     global _forbidden
     path = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(NO_LIBSUMO), path)))
-    sys.path.insert(0, str(NO_LIBSUMO))  # which multiprocessing hands on
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (NO_LIBSUMO, path)))
+    sys.path.insert(0, NO_LIBSUMO)  # which multiprocessing hands on
     _forbidden = True
     try:
         yield
     finally:
         _forbidden = False
-        sys.path.remove(str(NO_LIBSUMO))
+        sys.path.remove(NO_LIBSUMO)
         if path is None:
             del os.environ["PYTHONPATH"]
         else:
@@ -314,6 +325,19 @@ def cli(
 
     yield run
     signal.signal(signal.SIGTERM, terminated)
+
+
+@pytest.fixture
+def own_tasks(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
+    """Adds a folder of tasks to the catalogue of this process; workers add that which ``--tasks-from`` names."""
+    shipped = dict(CATALOGUE._tasks)
+    monkeypatch.setenv(VARIABLE, "")
+
+    def add(folder: Path) -> None:
+        monkeypatch.setattr(CATALOGUE, "_tasks", {**shipped})
+        add_folder(CATALOGUE, folder)
+
+    return add
 
 
 @pytest.fixture

@@ -1,11 +1,10 @@
-"""The table of formats: for each family of models its words (``words.toml``), its coordinates and its form.
+"""The table of formats: for each family of models its words (``words.txt``), its coordinates and its form.
 
 A swipe is the finger's movement; a scroll shows what lies in its direction.
 """
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict, dataclass, replace
 from functools import cache
@@ -161,33 +160,43 @@ _MEANT: Mapping[Meaning, frozenset[ActionType]] = {
 
 @cache
 def vocabularies() -> Mapping[str, Vocabulary]:
-    """Every family's words, by its name in ``words.toml``."""
-    told = tomllib.loads((files("automotive_cosim.agents.native") / "words.toml").read_text(encoding="utf-8"))
-    return MappingProxyType(
-        {
-            name: Vocabulary(each["version"], each["date"], each["source"], dict(_verbs(each["words"])))
-            for name, each in told.items()
-        }
-    )
+    """Every family's words, by its name in ``words.txt``."""
+    text = (files("automotive_cosim.agents.native") / "words.txt").read_text(encoding="utf-8")
+    found = {}
+    for head, *lines in (block.splitlines() for block in text.strip().split("\n\n")[1:]):
+        name, version, date, source = head.split(" | ")
+        found[name] = Vocabulary(version, date, source, dict(entry for line in lines for entry in _verbs(line)))
+    return MappingProxyType(found)
 
 
-def _verbs(lines: str) -> Iterator[tuple[str, Verb]]:
-    for name, meaning, *marks in filter(None, map(str.split, lines.splitlines())):
-        given: dict[str, Any] = dict(mark.split("=", 1) for mark in marks if "=" in mark)
-        given |= {key: tuple(given[key].split(",")) for key in ("at", "to", "ways") if key in given}
-        verb = Verb(Meaning(meaning), **given, point_optional="optional" in marks, unasked=name[0] == "~")
-        yield name.removeprefix("~"), verb
+def _verbs(line: str) -> Iterator[tuple[str, Verb]]:
+    spec, _, names = line.rpartition(": ")
+    meaning, *marks = spec.split()
+    given: dict[str, Any] = dict(mark.split("=", 1) for mark in marks if "=" in mark)
+    given |= {key: tuple(given[key].split(",")) for key in ("at", "to", "ways") if key in given}
+    verb = Verb(Meaning(meaning), **given, point_optional="optional" in marks)
+    for name in names.split():
+        yield name.removeprefix("~"), replace(verb, unasked=name[0] == "~")
 
 
 def _format(
     models: str, syntax: Syntax, grid: Grid, *names: str, api: ProviderApi | None = None, car: bool = False
 ) -> Format:
     words = tuple(vocabularies()[name] for name in names)
-    verbs = {CAR: Verb(Meaning.CAR)} if car or api else {}
-    for each in reversed(words):
-        verbs |= each.verbs
-    order = {name: verbs[name] for each in words for name in each.verbs}
-    return Format(models, syntax, grid, words, order | verbs, api)
+    verbs: dict[str, Verb] = {}
+    for each in words:
+        verbs = {**verbs, **each.verbs, **verbs}
+    return Format(models, syntax, grid, words, verbs | ({CAR: Verb(Meaning.CAR)} if car or api else {}), api)
+
+
+def _boxed(form: Format) -> Format:
+    """The same words with points as the first UI-TARS names them."""
+    named = {"point": "start_box", "start_point": "start_box", "end_point": "end_box"}
+    verbs = {
+        name: replace(verb, at=tuple(map(named.__getitem__, verb.at)), to=tuple(map(named.__getitem__, verb.to)))
+        for name, verb in form.verbs.items()
+    }
+    return replace(form, verbs=verbs)
 
 
 _SCREEN_ALONE = frozenset(UNCALLED) - {ActionType.QUERY, ActionType.ESTIMATE_POSITION}
@@ -236,14 +245,14 @@ FORMATS: Mapping[str, Format] = {
         "Qwen2.5-VL", ToolCalls(preamble=""), QWEN25_GRID, "qwen-2.5", _COMPUTER, car=True
     ),
     "qwen3-vl": _format("Qwen3-VL, Qwen3.5", ToolCalls(), Share(999), "qwen-3", "qwen-answer", _COMPUTER, car=True),
-    "ui-tars-1.0": _format(
-        "UI-TARS 1.0, Doubao 1.5", Labelled("<|box_start|>({x},{y})<|box_end|>"), Share(1000), "ui-tars-1.0"
+    "ui-tars-1.0": _boxed(
+        _format("UI-TARS 1.0, Doubao 1.5", Labelled("<|box_start|>({x},{y})<|box_end|>"), Share(1000), "ui-tars")
     ),
     "ui-tars-1.5": _format(
-        "UI-TARS 1.5", Labelled(_POINT), Resized(28, 100 * 28 * 28, 16_384 * 28 * 28), "ui-tars-1.5"
+        "UI-TARS 1.5", Labelled(_POINT), Resized(28, 100 * 28 * 28, 16_384 * 28 * 28), "ui-tars"
     ),
     "ui-tars-2": _format(
-        "UI-TARS 2, Seed 1.6 and later", Labelled(_POINT, is_tagged=True), Share(1000), "ui-tars-1.5"
+        "UI-TARS 2, Seed 1.6 and later", Labelled(_POINT, is_tagged=True), Share(1000), "ui-tars"
     ),
 }  # fmt: skip
 """The formats by name."""

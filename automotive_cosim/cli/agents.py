@@ -41,7 +41,7 @@ def list_formats(as_json: AsJson = False) -> None:
         return
     for name, form in FORMATS.items():
         declines = f"; declines with {form.declines}" if form.declines else ""
-        typer.echo(f"{name}: {form.models}; {form.grid.told}{declines}")
+        typer.echo(f"{name}: {form.models}; {form.grid.told}{declines}; has no {', '.join(form.lacks)}")
         for words in form.words:
             typer.echo(f"    {', '.join(words.verbs)}\n        {words.version}; {words.date}, {words.source}")
 
@@ -61,16 +61,14 @@ def show(name: str, as_json: AsJson = False) -> None:
         actions = sorted(PROFILES[name].actions) if name in PROFILES else []
     prompt = ""
     if name in MODELLED:
-        prompt = files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8")
+        file = "standard" if name in PROFILES else name
+        prompt = files("automotive_cosim.agents").joinpath("prompts", f"{file}.md").read_text("utf-8")
     if as_json:
         print_json({"name": name, "channels": channels, "actions": actions, "prompt": prompt})
         return
     typer.echo(f"{name}: gets {', '.join(channels) or 'only the goal'}")
     if name == NativeAgent.name:
-        typer.echo("its model gets the screenshot alone\n")
-        for form, each in FORMATS.items():
-            typer.echo(f"{form}: {', '.join(each.verbs)}\n    has no {', '.join(each.lacks)}")
-        typer.echo()
+        typer.echo("its model gets the screenshot alone; `automotive-cosim agents formats` has its words\n")
     elif actions:
         typer.echo(f"actions: {', '.join(actions)}\n")
     typer.echo(prompt, nl=False)

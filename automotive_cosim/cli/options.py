@@ -15,7 +15,7 @@ import typer
 from annotated_types import Ge, Le
 
 from automotive_cosim.cli.derived import number_in
-from automotive_cosim.cli.terminal import escaped
+from automotive_cosim.cli.terminal import escaped, print_alone
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Option
 
@@ -38,13 +38,13 @@ TasksFrom = Annotated[
     Path | None,
     typer.Option(
         "--tasks-from",
-        help="A folder of your own tasks, in addition to the catalogue.",
+        help="A folder of your own tasks, beside the catalogue; other commands read AUTOMOTIVE_COSIM_TASKS.",
         callback=_use_tasks_from,
         is_eager=True,
         show_default=False,
     ),
 ]
-"""For every command that names tasks; its callback handles the value, so the command ignores it."""
+"""For commands that run or prove tasks; others read ``AUTOMOTIVE_COSIM_TASKS``. Its callback handles the value."""
 
 
 TASKS_HELP = (
@@ -79,8 +79,8 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and 
 
 
 def print_json(values: object) -> None:
-    """Prints the one JSON object of ``--json``."""
-    typer.echo(escaped(json.dumps(values, ensure_ascii=False)))
+    """Prints the JSON of ``--json``; nothing else prints any."""
+    print_alone(escaped(json.dumps(values, ensure_ascii=False)))
 
 
 MOST_SEED = 2**31 - 1
@@ -139,8 +139,6 @@ class DriveChanges:
     """End drives after this many simulated minutes."""
     errands: bool = False
     """On drives, people aboard also ask for things, near what safety asks for."""
-    coarse: bool = False
-    """On drives, SUMO runs in steps of a second: quicker, and the traffic is another."""
 
 
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.")]

@@ -30,7 +30,6 @@ from automotive_cosim.formats.toml import dotted, read_toml
 from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, EpisodeJob, Limits, TrialJob, digest
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
@@ -39,8 +38,6 @@ from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
-PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
-"""Values of a plan by the name of the preset: the authors' newer edition allows ten steps."""
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
 SPARE_TRAFFIC = (1_000_001, 1_000_002)
@@ -190,7 +187,7 @@ class Plan(EvaluationSettings):
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
         every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives(), *self._single())
-        jobs = {job.id: job for job in every if self.split in (BOTH, job.split)}
+        jobs = {job.id: job for job in every if self.split == BOTH or self.split == job.split}
         return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
 
     def episodes(self) -> tuple[EpisodeJob, ...]:
@@ -370,7 +367,7 @@ def read_plan(path: Path) -> dict[str, Any]:
         UserError: it cannot be read, is not TOML, or has a wrong or surplus field.
     """
     document = read_toml(path)
-    document = replace(document, table=with_files(plan_values(document.table, str(path))))
+    document = replace(document, table=with_files(document.table))
     document.read(Plan)
     return document.table
 
@@ -386,25 +383,13 @@ def with_files(values: dict[str, Any]) -> dict[str, Any]:
     return values | {"prompt": [resolved(each) if isinstance(each, str) else each for each in given]}
 
 
-def with_preset(values: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """The values of a plan, with those of a preset in place of its own.
-
-    Raises:
-        UnknownNameError: there is no such preset.
-    """
-    if name not in PRESETS:
-        raise UnknownNameError("preset", name, PRESETS)
-    preset = PRESETS[name]
-    return {**values, **preset, "limits": {**values.get("limits", {}), **preset["limits"]}}
-
-
 def make_plan(values: Mapping[str, Any]) -> Plan:
     """A plan from plain values, as in TOML or the manifest.
 
     Raises:
         UserError: a field is unknown, missing, empty or of the wrong type.
     """
-    plan = checked(Plan, plan_values(values, "the plan"), lambda steps: ("the plan", dotted(steps)))
+    plan = checked(Plan, values, lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:
         raise UserError('the plan has no agent; give agents = ["asurada"] in the file, or --agents asurada')
     given = {entry.name: getattr(plan, entry.name) for entry in fields(plan)}

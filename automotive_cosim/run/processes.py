@@ -5,7 +5,6 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import sys
 import threading
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
@@ -22,7 +21,7 @@ from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage, telling
 
 if TYPE_CHECKING:
-    from multiprocessing.context import ForkServerContext, SpawnContext
+    from multiprocessing.context import ForkServerContext
 
 PRELOADED = ["automotive_cosim.agents", "pydantic"]
 """What workers have from the process that they are forked from: most of what they import, but nothing that depends
@@ -111,11 +110,8 @@ class _Process(Generic[J, R]):
             end_all(lambda: strangers(self._known), ORPHANS_S)
 
 
-def _context() -> SpawnContext | ForkServerContext:
-    """On Linux workers are forked from a process that has imported most of the package, and start in a third of the
-    time; elsewhere each imports all."""
-    if sys.platform != "linux":
-        return multiprocessing.get_context("spawn")
+def _context() -> ForkServerContext:
+    """Workers are forked from a process that has imported most of the package, and start in a third of the time."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(PRELOADED)
     return context

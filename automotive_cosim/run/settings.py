@@ -113,8 +113,6 @@ class PlanSettings:
 
     plan: Path | None = None
     """TOML file with the plan; options override it."""
-    preset: str | None = None
-    """A set of limits: 2026 is ten steps, as in the authors' newer edition."""
     out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
     """Results folder; an existing one is resumed."""
     dry_run: bool = False
@@ -145,5 +143,3 @@ class BenchSettings:
     """A scenario's name or folder, any .sumocfg or .net.xml(.gz)."""
     steps: Annotated[int, Ge(100), Le(10**6)] = 2000
     """SUMO steps to measure after the warm-up."""
-    peers: bool = False
-    """Also compare with sumo-rl, which must be installed: a second of traffic, and a new episode."""

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Protocol
 
 from automotive_cosim.contracts import Answer, DrivingState, RoadRequest, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.traffic.base import Advance, Event
 from automotive_cosim.traffic.ego import Driver
 from automotive_cosim.traffic.instant import Instant
-
-Call = int | RoadRequest
-"""One call of a drive, for replays: a number of steps or a request."""
 
 
 class Stepper(Protocol):
@@ -90,11 +87,3 @@ class EgoDrive:
     def shapes(self) -> RoadShapes:
         """See ``Traffic.shapes``."""
         return self._road.shapes()
-
-    def replay(self, calls: Sequence[Call], beat: Callable[[], None] | None = None) -> None:
-        """Repeats the calls of an equal drive."""
-        for call in calls:
-            if isinstance(call, int):
-                self.advance(call * self._road.step_s, beat)
-            else:
-                self.request(call)

@@ -263,13 +263,11 @@ def test_hours_are_first_and_last(hours: str) -> None:
     assert "is not FIRST-LAST" in str(ran.exception)
 
 
-def test_only_a_calibrations_folder_is_replaced(tmp_path: Path) -> None:
+def test_no_folder_is_replaced(tmp_path: Path) -> None:
     folder = tmp_path / "mine"
     shutil.copytree(scenarios.load("grid").folder, folder)
     with pytest.raises(UserError, match="exists"):
-        calibrate(
-            scenarios.load("grid"), COUNTS, folder, CalibrationOptions(), lambda _said, _share: None, force=True
-        )
+        calibrate(scenarios.load("grid"), COUNTS, folder, CalibrationOptions(), lambda _said, _share: None)
     assert not (folder / RECORD).exists()
 
 

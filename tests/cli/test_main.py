@@ -3,12 +3,10 @@ import subprocess
 import sys
 
 import pytest
-from PIL import Image
 from typer.main import get_command
 
 from automotive_cosim import __version__
 from automotive_cosim.agents import AGENTS
-from automotive_cosim.cli.former import COMMANDS, OPTIONS
 from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.tasking.sets import Suite
@@ -72,23 +70,6 @@ def test_a_task_is_shown_with_its_words_and_halves(task, cli):
     assert text.count("  won by    ") == len(CATALOGUE[task].halves)
 
 
-@pytest.mark.sumo
-@pytest.mark.parametrize("task", ["hvac_fan_max", "road_over_the_line"])
-def test_a_picture_shows_the_reference_solution(cli, tmp_path, task):
-    path = tmp_path / "task.png"
-    assert f"{path} shows the reference solution" in cli("tasks", "show", task, "--picture", str(path)).out
-    with Image.open(path) as picture:
-        lines = sum(-(-(len(CATALOGUE[task].half(half).moves) + 2) // 3) for half in CATALOGUE[task].halves)
-        assert picture.width > 3 * 640
-        assert picture.height >= lines * 360
-
-
-def test_a_picture_that_cannot_be_written_is_refused_at_once(cli, tmp_path):
-    ran = cli("tasks", "show", "hvac_fan_max", "--picture", str(tmp_path / "task.txt"))
-    assert (ran.code, ran.out) == (2, "")
-    assert "name it .webp, .png, .jpg" in ran.err
-
-
 @pytest.mark.parametrize(
     ("error", "code"),
     [(TriggerNotReachedError("the light\nwas red"), 3), (KeyboardInterrupt(), 130)],
@@ -119,18 +100,6 @@ def test_every_command_that_lists_or_reports_does_so_as_json(cli, command):
     told = cli(*command, "--help").out
     is_group = "COMMAND" in told.split("Options")[0]
     assert ("--json" in told) is (command not in OTHERS and not is_group)
-
-
-@pytest.mark.parametrize("former", [*COMMANDS, *(" ".join(words) for words in OPTIONS)])
-def test_a_former_name_is_answered_with_the_present_one(cli, former):
-    ran = cli(*former.split(), "anything")
-    assert (ran.code, ran.out, ran.err.count("\n")) == (2, "", 1)
-    assert ran.err.startswith("error: ")
-    if former in COMMANDS:
-        assert ran.err == f"error: `{former}` is now `{COMMANDS[former]}`\n"
-        *command, last = COMMANDS[former].split()
-        assert tuple(command if last.startswith("--") else [*command, last]) in set(every_command())
-        assert tuple(former.split()) not in set(every_command())
 
 
 def test_every_command_stands_under_a_heading():

@@ -97,7 +97,6 @@ def test_a_terminal_that_knows_ascii_alone_gets_the_whole_record(tmp_path):
     assert (tmp_path / "out" / "summary.html").is_file()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(program, tmp_path):
     (tmp_path / "gymnasium.py").write_text(
         "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n"
@@ -135,7 +134,6 @@ def long_run(program, tmp_path, until):
     return process
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 @pytest.mark.parametrize("to_group", [True, False], ids=["as a terminal does", "to the program alone"])
 def test_ctrl_c_keeps_what_was_recorded_and_ends_every_process(long_run, tmp_path, to_group, until, session):
     (os.killpg if to_group else os.kill)(long_run.pid, signal.SIGINT)

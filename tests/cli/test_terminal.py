@@ -26,7 +26,7 @@ import automotive_cosim.cli
 from automotive_cosim import scenarios
 from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.live import Live, LongWait
-from automotive_cosim.cli.main import CLOSED_PIPE
+from automotive_cosim.cli.main import CLOSED_PIPE, app
 from automotive_cosim.cli.terminal import Plain, escaped
 from automotive_cosim.formats.plain import plain
 from automotive_cosim_main import LOADING
@@ -126,6 +126,32 @@ def test_every_command_writes_through_our_console() -> None:
                 assert "Console" not in [name.name for name in node.names], path.name
 
 
+def test_every_command_prints_its_json_through_what_keeps_it_alone() -> None:
+    package = Path(automotive_cosim.cli.__file__).parent
+    for path in package.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("print", "typer.echo"):
+                assert "dumps(" not in ast.unparse(node), f"{path.relative_to(package)} prints JSON itself"
+
+
+def _chatter(**named: object) -> object:
+    print("CHATTER of Python", flush=True)
+    os.write(1, b"CHATTER of a compiled library\n")
+    subprocess.run(["echo", "CHATTER of a program"], check=True)
+    return app(**named)
+
+
+def test_json_stands_alone_whatever_else_prints(cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    """``main`` runs all commands alike."""
+    monkeypatch.setattr("automotive_cosim.cli.main.app", _chatter)
+    asked = cli("agents", "list", "--json")
+    assert json.loads(asked.out)["agents"]
+    assert asked.err.count("CHATTER") == 3
+    for words in (("agents", "list"), ("agents", "list", "--json", "--help")):
+        told = cli(*words)
+        assert (told.out.count("CHATTER"), told.err) == (3, "")
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("closed", [">&-", "<&-", "2>&-", "<&- >&- 2>&-"])
 def test_a_command_does_its_work_without_the_streams_that_it_lacks(tmp_path: Path, closed: str) -> None:
@@ -149,7 +175,6 @@ def test_a_reader_that_has_had_enough_is_no_failed_check() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(os.name != "posix", reason="names of files are text on Windows")
 @pytest.mark.parametrize("name", ["gr\u00f6\u00dfe", "gr\udcf6"])
 def test_a_name_of_any_letters_ends_without_a_traceback(tmp_path: Path, name: str) -> None:
     surroundings = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}

@@ -49,7 +49,6 @@ def evaluate(tmp_path, on_path):
     return run
 
 
-@pytest.mark.skipif(os.name == "nt", reason="a script for bash")
 def test_the_script_evaluates_an_agents_repository_and_fails_if_it_gets_worse(evaluate, tmp_path):
     first = evaluate("checkout", "checkout/plan.toml", "first")
     assert first.returncode == 0, first.stderr
@@ -89,7 +88,6 @@ def test_the_examples_seeds_say_each_word_that_its_agent_knows():
     assert all(any([each for each in known if each in goal] == [word] for goal in said) for word in known)
 
 
-@pytest.mark.skipif(os.name == "nt", reason="a script for bash")
 def test_a_refused_second_start_names_the_scripts_argument_and_keeps_the_reports(evaluate, tmp_path):
     (tmp_path / "out").mkdir()
     kept = [tmp_path / "out" / name for name in ("compare.xml", "compare.md")]
@@ -102,7 +100,6 @@ def test_a_refused_second_start_names_the_scripts_argument_and_keeps_the_reports
     assert [each.read_text(encoding="utf-8") for each in kept] == ["earlier", "earlier"]
 
 
-@pytest.mark.skipif(os.name == "nt", reason="a script for bash")
 @pytest.mark.parametrize(("code", "ends", "is_kept"), [(0, 0, True), (1, 0, True), (2, 0, False), (3, 3, True)])
 def test_the_action_takes_a_base_that_cannot_be_evaluated_for_no_baseline(tmp_path, code, ends, is_kept):
     steps = yaml.safe_load(SCRIPT.with_name("action.yml").read_text(encoding="utf-8"))["runs"]["steps"]
@@ -124,7 +121,6 @@ def test_the_action_takes_a_base_that_cannot_be_evaluated_for_no_baseline(tmp_pa
     assert (tmp_path / "base").is_dir() == is_kept
 
 
-@pytest.mark.skipif(os.name == "nt", reason="a script for bash")
 def test_the_script_says_how_it_is_called(evaluate):
     ran = evaluate("checkout")
     assert ran.returncode == 2

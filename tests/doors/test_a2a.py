@@ -11,7 +11,6 @@ import threading
 import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -31,13 +30,9 @@ from automotive_cosim.doors.guard import MOST_BYTES
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.meter import Spent
 from automotive_cosim.run.plan import Plan
-from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.settings import Budget, Pictures
-from automotive_cosim.run.stage import JobStage
-from automotive_cosim.run.worker import run_job
 from automotive_cosim.traffic.fork import Simulations
+from tests.here import Here
 from tests.laws import over
 from tests.remote_agent import DONE, FAN, RemoteAgent, served
 
@@ -60,42 +55,6 @@ def assessing(run: Callable[..., object] = run_plan) -> Iterator[str]:
         finally:
             server.should_exit = True
             thread.join()
-
-
-@dataclass
-class Here:
-    """Runs trials in this process, on warm traffic that is there already: an executor, and its one worker."""
-
-    simulations: Simulations
-    fork_server: ForkServer
-    folder: Path = Path()
-    job: Any = None
-    count: int = 1
-    is_ready: bool = True
-    stage: JobStage = field(default_factory=JobStage)
-
-    @property
-    def handles(self) -> list[Any]:
-        return [0]
-
-    def metered(self, budget: Budget, before: Spent) -> Any:
-        return Processes().metered(budget, before)
-
-    def start(self, opener: Any, folder: Path) -> Any:
-        self.folder = folder
-        return self
-
-    def wait(self, handles: Any, timeout_s: float) -> Any:
-        return handles
-
-    def give(self, job: Any) -> None:
-        self.job = job
-
-    def answer(self) -> Any:
-        return run_job(self.job, self.folder, Pictures.NONE, self.simulations, self.fork_server)
-
-    def end(self, *, at_once: bool) -> None:
-        pass
 
 
 async def ask(url: str, part: Any, version: str = "1.0") -> list[Any]:

@@ -80,8 +80,8 @@ PLAN = 'agents = ["oracle"]\nseeds = [0, 1]\nrepeats = 2\n[limits]\nsteps = 5\ns
 ACTIONS = '{"action_type": "click", "x": 3, "y": 4}\n{"action_type": "wait", "seconds": 2}\n'
 COUNTS = "site,hour,vehicles_per_hour,edge\n" + "".join(f"a,{hour},{100 + hour},e\n" for hour in range(24))
 ROW = {"id": "a", "task": "hvac_fan_max", "half": "first", "pair": "", "dimension": "explicit_control",
-       "module": "hvac", "scenario": "grid", "agent": "oracle", "model": "none", "geo": "full", "seed": 0,
-       "repeat": 0}  # fmt: skip
+       "module": "hvac", "scenario": "grid", "agent": "oracle", "model": "none", "conditions": {"geo": "full"},
+       "seed": 0, "repeat": 0}  # fmt: skip
 ANSWER = {"text": "a", "tokens_in": 1, "tokens_out": 1, "cost_usd": 0.0}
 ROAD = (
     {"format": 1},

@@ -113,14 +113,10 @@ def _stand_in(folder: Path, script: str, monkeypatch: pytest.MonkeyPatch) -> Non
 STEP = 'print(\'<step time="1.00" running="1" halting="0" waiting="0" inserted="1"/>\', flush=True)'
 
 
-SCRIPTS = pytest.mark.skipif(
-    sys.platform == "win32", reason="the stand-in is a script with a first line of its own"
-)
 TOLD = pytest.mark.skipif(not processor_time.PROC.is_dir(), reason="no processor time is told")
 BUSY, ASLEEP = "while True: pass", "time.sleep(600)"
 
 
-@SCRIPTS
 @pytest.mark.parametrize(
     ("script", "limit"),
     [
@@ -141,7 +137,6 @@ def test_a_sumo_that_hangs_is_ended(
         measure(load(imported[0]), observe_s=60)
 
 
-@SCRIPTS
 @TOLD
 def test_a_sumo_that_gets_no_processor_does_not_hang(
     imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
@@ -154,7 +149,6 @@ def test_a_sumo_that_gets_no_processor_does_not_hang(
     assert not measure(load(imported[0]), observe_s=60).vehicles_max
 
 
-@SCRIPTS
 @pytest.mark.parametrize(
     ("script", "limit"),
     [(ASLEEP, "LOADING_LIMIT_S"), (f"{STEP}\n{ASLEEP}", "SILENCE_LIMIT_S")],
@@ -171,7 +165,6 @@ def test_where_no_processor_time_is_told_wall_time_counts(
         measure(load(imported[0]), observe_s=60)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="there are no such signals")
 def test_a_sumo_that_is_killed_is_told_from_one_that_refuses(
     imported: Imported, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

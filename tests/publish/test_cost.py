@@ -85,7 +85,6 @@ def test_a_larger_file_may_take_more(tmp_path):
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(sys.platform == "win32", reason="has no limits")
 @pytest.mark.parametrize(("what", "given"), [(spins, (100.0,)), (ends, ())])
 def test_a_call_that_takes_too_long_or_ends_its_process_is_refused(tmp_path, monkeypatch, what, given):
     monkeypatch.setattr(limited, "FREE_S", 1)
@@ -180,7 +179,6 @@ def test_an_episode_that_stands_twice_is_found_in_a_bundle_and_in_a_folder(folde
     assert any("again, which was judged before" in str(problem) for problem in verify(folder).problems)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="has no pipes with a name")
 def test_what_is_not_a_regular_file_is_refused_unopened(folder, tmp_path):
     os.mkfifo(tmp_path / "pipe")
     for path in (tmp_path / "pipe", Path("/dev/zero"), tmp_path):
@@ -195,7 +193,6 @@ def test_what_is_not_a_regular_file_is_refused_unopened(folder, tmp_path):
         verify(folder)
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
 def test_a_link_is_not_published(folder, tmp_path):
     path = trace_file(folder, judged(folder).id)
     path.rename(tmp_path / "elsewhere.gz")

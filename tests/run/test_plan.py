@@ -6,7 +6,7 @@ import pytest
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.run.jobs import Limits
-from automotive_cosim.run.plan import choose, make_plan, read_plan, with_preset
+from automotive_cosim.run.plan import choose, make_plan, read_plan
 from automotive_cosim.tasking.sets import Split, Suite
 from automotive_cosim.tasking.split import split_of
 from automotive_cosim.tasking.task import Subset
@@ -39,15 +39,6 @@ def test_subsets_part_the_catalogue():
     assert all(
         {CATALOGUE[task].subset for task in part} == {name} for name, part in zip(Subset, parts, strict=True)
     )
-
-
-def test_a_preset_sets_its_limits_and_leaves_the_others():
-    values = {"agents": ["t3a"], "limits": {"steps": 30, "sim_s": 60.0}}
-    plan = make_plan(with_preset(values, "2026"))
-    assert (plan.limits.steps, plan.limits.sim_s) == (10, 60.0)
-    assert values["limits"] == {"steps": 30, "sim_s": 60.0}
-    with pytest.raises(UnknownNameError, match="no preset named '2025'"):
-        with_preset(values, "2025")
 
 
 def test_a_suite_bounds_words_but_not_ids():
@@ -202,19 +193,9 @@ def test_a_file_says_what_the_options_say(tmp_path):
     assert make_plan(made.as_json()) == made
 
 
-def test_a_plan_of_an_earlier_version_is_read_unless_it_has_another_mode(tmp_path):
-    path = tmp_path / "plan.toml"
-    path.write_text('agents = ["t3a"]\nmodes = ["prompted"]\n')
-    assert make_plan(read_plan(path)) == plan(agents=["t3a"])
-    for modes in ('["monitoring"]', '["prompted", "monitoring"]', '"promted"', "[]"):
-        path.write_text(f'agents = ["t3a"]\nmodes = {modes}\n')
-        with pytest.raises(UserError, match=r"plan.toml has an older format: its modes .* drives have replaced"):
-            read_plan(path)
-
-
-def test_ids_stay_as_they_were_when_there_were_modes():
+def test_ids_stay_as_they_were():
     """A stored row is found by its id."""
-    held_out = plan(agents=["t3a"], tasks=["hvac_fan_max"], held_out=True, latency=[3.0])
+    held_out = plan(agents=["t3a"], tasks=["hvac_fan_max"], held_out=True, latency_s=[3.0])
     ids = [job.id for one in (plan(tasks=["hvac_fan_max"]), held_out) for job in one.jobs()]
     assert ids == [
         "hvac_fan_max-first-oracle-none-full-s0-r0-own-07d4e4c6",

@@ -613,21 +613,8 @@ def test_the_command(two_ways: Draw, tmp_path: Path) -> None:
 def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
     """Each row is what its own study says; a second network may have trips with nothing to decide."""
     names = ",".join(str(two_ways(more=more)) for more in ("", MORE_TRIPS))
-    words = [
-        "suite",
-        "--scenarios",
-        names,
-        "--departures",
-        "0",
-        "--seeds",
-        "0",
-        "--per-drive",
-        "1",
-        "--workers",
-        "1",
-        "--warm-ups",
-        "0,30",
-    ]
+    words = ["reroute", "--scenario", names, "--departures", "0", "--seeds", "0", "--per-drive", "1"]
+    words += ["--warm-up", "0,30", "--policies", "never,always,best"]
     text, error = invoke(*words, "--replicates", "1", "--out", str(tmp_path / "suite"), "--json")
     assert error is None, text
     told = json.loads(text.strip().splitlines()[-1])["networks"]

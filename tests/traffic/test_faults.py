@@ -19,9 +19,9 @@ from automotive_cosim.errors import NoRoomError, ScenarioError, SetupError, Traf
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.fork import CAN_FORK, Forked, Simulations
-from automotive_cosim.traffic.in_process import InProcess
+from automotive_cosim.traffic.fork import Forked, Simulations
 from automotive_cosim.traffic.options import Setup
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 
@@ -72,17 +72,12 @@ def test_a_killed_drive_is_named_and_the_next_departs(forked: Forked, hurried: E
 
 
 @linux
-@pytest.mark.parametrize("by_replay", [False, True])
-def test_a_warm_process_that_died_between_drives_costs_a_reload(
-    grid: Scenario, hurried: EgoPlan, by_replay: bool
-) -> None:
+def test_a_warm_process_that_died_between_drives_costs_a_reload(grid: Scenario, hurried: EgoPlan) -> None:
     short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
-    with closing(Forked(short, seed=1, by_replay=by_replay)) as simulation:
+    with closing(Forked(short, seed=1)) as simulation:
         with closing(simulation.depart(hurried)) as traffic:
             expected = traffic.advance(5.0)
         for _ in range(2):
-            if simulation._source._warm is None:  # by replay, a drive takes it
-                simulation._source._warm = simulation._source._ready()
             os.kill(simulation._source._warm.pid, signal.SIGKILL)
             assert gone([simulation._source._warm.pid])
             assert simulation.memory_bytes == 0
@@ -265,7 +260,12 @@ def test_the_pool_keeps_the_latest(grid: Scenario, hurried: EgoPlan) -> None:
     pool.close()
 
 
-@pytest.mark.skipif(not CAN_FORK, reason="elsewhere each place is warmed up")
+def test_where_nothing_can_be_forked_it_says_what_to_use(grid: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "darwin")
+    with pytest.raises(SetupError, match="on Windows use WSL, on macOS a container"):
+        Forked(grid)
+
+
 def test_of_one_traffic_at_two_places_the_pool_gives_up_one_first(grid: Scenario) -> None:
     elsewhere = open_scenario("grid", origin=(-3.7, 40.4))
     assert Setup(elsewhere).traffic != Setup(grid).traffic, "its weather is drawn"
@@ -465,12 +465,19 @@ def test_a_function_that_sumo_lost_is_named(monkeypatch: pytest.MonkeyPatch) -> 
         sumo.load_library()
 
 
-def test_missing_system_libraries_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "libsumo.py").write_text("raise ImportError('libGL.so.1: cannot open shared object file')")
+def test_missing_system_libraries_are_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """And what the library prints when it is imported is not shown."""
+    library = (
+        "print('Warning! pyarrow is installed')\nraise ImportError('libGL.so.1: cannot open shared object file')"
+    )
+    (tmp_path / "libsumo.py").write_text(library)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "libsumo", raising=False)
     with pytest.raises(SetupError, match=r"libGL\.so\.1.*apt-get install libgl1 libx11-6"):
         sumo.load_library()
+    assert capfd.readouterr() == ("", "")
 
 
 def test_the_callers_environment_stays(grid: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
