@@ -37,6 +37,8 @@ WIDE = str.maketrans("\uff5b\uff5d\uff1a", "{}:")
 """Braces and the colon of full width as ASCII."""
 WIDE_COMMA = re.compile(r"""(?<=["'\u201d\u2019\del}\]])\s*\uff0c\s*(?=["'\u201c\u2018])""")
 """A comma of full width between a value and the name that follows it; others stay as they are."""
+FORM = {"situation", "plan", "action"}
+"""Keys of an answer that is one object."""
 LABELS = re.compile(
     r"^[\s*_#>-]*(situation|reason|thought|plan|action|lesson)[*_]*\s*[:\uff1a][*_]*", re.IGNORECASE | re.M
 )
@@ -115,7 +117,7 @@ def _object(text: str) -> Json | None:
         told = json.loads(text)
     except (ValueError, RecursionError):
         return None
-    return told if isinstance(told, dict) and told.keys() == {"situation", "plan", "action"} else None
+    return told if isinstance(told, dict) and told.keys() == FORM else None
 
 
 def ended(text: str) -> str:
@@ -139,6 +141,8 @@ def _answers(text: str, *, is_cut: bool) -> Iterator[Json]:
     """Objects with an ``action_type``, from the end: after the last label first, then anywhere; as written first,
     then repaired."""
     label = max((mark.end() for mark in LABELS.finditer(text) if mark[1].lower() == "action"), default=None)
+    if is_cut:
+        yield from (told["action"] for told in _written(text) if told.keys() == FORM)
     for part in filter(None, ("" if label is None else text[label:], "" if is_cut else text)):
         for found in (_written,) if is_cut else (_written, _repaired):
             yield from reversed([inner for value in found(part) for inner in _with_type(value)])

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import io
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 from PIL import Image
 
 from automotive_cosim.agents import AgentSettings, Caller, model_of
 from automotive_cosim.agents.caller import heard
-from automotive_cosim.errors import ModelError
+from automotive_cosim.errors import ActionError, ModelError
 from automotive_cosim.models.base import CHARACTERS_PER_TOKEN, ChatMessage, ChatModel, ModelReply, ToolCall
 from automotive_cosim.models.local import Local
 from automotive_cosim.run.forecast import asks, longest_question, pictures_of
@@ -72,8 +73,9 @@ def misfit(model: ChatModel, tokens: int, picture: bytes | None, *, calls: bool 
     system = [ChatMessage("system", "You operate a car.")] if calls else []
     reply, refused = _tried(model, [*system, ChatMessage("user", room + (CALLED if calls else ASKED), pictures)])
     if reply is not None and calls:
-        called = heard(reply, {})
-        asked = called if called.calls else ChatMessage("assistant", "", calls=(WAIT,))
+        asked = ChatMessage("assistant", "", calls=(WAIT,))
+        with suppress(ActionError):
+            asked = called if (called := heard(reply, {})).calls else asked
         results = [ChatMessage("tool", "ok", call_id=call.id) for call in asked.calls]
         results[-1] = replace(results[-1], text=f"ok\n\n{room}{ASKED}")
         _, refused = _tried(model, [*system, ChatMessage("user", CALLED, pictures), asked, *results])

@@ -110,7 +110,9 @@ def test_a_tag_of_thoughts_without_any_is_none():
 def test_of_an_answer_that_was_cut_off_only_a_whole_action_after_its_label_counts(text):
     with pytest.raises(ActionError, match="no JSON object"):
         read(text.replace('Action: {"action_type": "em', '{"action_type": "em'), is_cut=True)
-    assert to_json(read(f"Action: {json.dumps(HOME)}\n\nNow I wait, as", is_cut=True).action) == HOME
+    whole = json.dumps({"situation": "a", "plan": "b", "action": HOME})
+    for said in (f"Action: {json.dumps(HOME)}\n\nNow I wait, as", whole, f"{whole}\nNow I"):
+        assert to_json(read(said, is_cut=True).action) == HOME
 
 
 def test_punctuation_of_full_width_is_read_and_texts_keep_theirs():

@@ -333,11 +333,16 @@ def test_a_malformed_answer_is_tried_again(server, body):
         ("a\ud800b", "a?b"),
         ([{"type": "text", "text": "a"}, {"type": "text", "text": "b"}], "ab"),
         (["a", {"type": "text", "text": None}, None], "a"),
+        ([{"type": "thinking", "thinking": [{"type": "text", "text": "Hm."}]}, {"type": "text", "text": "b"}], "b"),
+        ([{"type": "reasoning", "text": "Hm."}, {"type": "redacted_thinking", "data": "x"}], ""),
+        ([{"text": "Hm.", "thought": True}, {"text": "b"}], "b"),
     ],
 )
 def test_an_answer_without_text_is_an_empty_one(server, content, text):
     server.behaviours = [lambda handler: send(handler, 200, completion(content))]
-    assert model().chat(ASK).text == text
+    reply = model().chat(ASK)
+    assert reply.text == text
+    assert (reply.reasoning == "Hm.") == ("Hm." in str(content))
 
 
 @pytest.mark.parametrize(

@@ -71,7 +71,7 @@ class Calls(Model):
         return ModelReply(self.text)
 
 
-@pytest.mark.parametrize("text", ["OK", '{"say": "", "calls": [{"name": "wait", "arguments": {}}]}'])
+@pytest.mark.parametrize("text", ["OK", "<think>Hm.", '{"say": "", "calls": [{"name": "wait", "arguments": {}}]}'])
 def test_one_that_calls_is_asked_a_second_question_with_a_result_in_it(text):
     model = Calls(text)
     assert fit.misfit(model, 2000, PICTURE, calls=True) == ""
