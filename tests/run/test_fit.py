@@ -8,7 +8,7 @@ from automotive_cosim.errors import ModelError
 from automotive_cosim.models import ModelReply
 from automotive_cosim.models.base import estimated_tokens
 from automotive_cosim.run import fit
-from automotive_cosim.run.forecast import longest_question
+from automotive_cosim.run.forecast import longest_question, pictures_of
 from automotive_cosim.run.plan import make_plan
 
 PICTURE = b"a picture"
@@ -88,6 +88,12 @@ def test_each_model_is_asked_once_for_all_trials_alike_and_the_stand_in_never(mo
     values = {"agents": ["t3a", "caller"], "models": ["rules", "nowhere/m"], "tasks": ["hvac_fan_max"]}
     assert list(fit.misfits(make_plan(values | {"scenarios": ["grid"], "seeds": [0, 1]}).jobs())) == []
     assert sorted(asked) == [("nowhere/m", False), ("nowhere/m", True)]
+
+
+@pytest.mark.parametrize(("see", "count"), [("both", 1), ("picture", 1), ("tree", 0), ("nothing", 0)])
+def test_what_an_agent_is_not_shown_is_no_part_of_the_question(see, count):
+    plan = {"agents": ["caller"], "tasks": ["hvac_fan_max"], "scenarios": ["grid"], "see": [see]}
+    assert pictures_of(make_plan(plan | {"interface": ["functions"]}).jobs()[0]) == count
 
 
 def test_a_longer_prompt_makes_longer_questions():
