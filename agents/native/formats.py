@@ -98,16 +98,9 @@ class Format:
     @property
     def declines(self) -> str:
         """The words with which it says that nothing can or should be done."""
-        ends = [
-            (name, verb) for name, verb in self.verbs.items() if verb.meaning is Meaning.END and not verb.unasked
-        ]
-        told = [
-            name if verb.means == "failure" else f"{name}({self.syntax.failure})"
-            for name, verb in ends
-            if verb.means != "success"
-        ]
-        told += [name for name in (CAR, ActionType.STATUS) if name in self.verbs and name not in dict(ends)]
-        return ", ".join(told)
+        ends = (Meaning.END, Meaning.CAR)
+        told = [name for name, verb in self.verbs.items() if verb.meaning in ends and not verb.unasked]
+        return ", ".join(name for name in told if name in (CAR, "status") or self.verbs[name].may_decline)
 
     def as_json(self) -> Json:
         """What is listed of it."""
@@ -165,18 +158,18 @@ def vocabularies() -> Mapping[str, Vocabulary]:
     found = {}
     for head, *lines in (block.splitlines() for block in text.strip().split("\n\n")[1:]):
         name, version, date, source = head.split(" | ")
-        found[name] = Vocabulary(version, date, source, dict(entry for line in lines for entry in _verbs(line)))
+        found[name] = Vocabulary(version, date, source, dict(_verbs(";".join(lines))))
     return MappingProxyType(found)
 
 
-def _verbs(line: str) -> Iterator[tuple[str, Verb]]:
-    spec, _, names = line.rpartition(": ")
-    meaning, *marks = spec.split()
-    given: dict[str, Any] = dict(mark.split("=", 1) for mark in marks if "=" in mark)
-    given |= {key: tuple(given[key].split(",")) for key in ("at", "to", "ways") if key in given}
-    verb = Verb(Meaning(meaning), **given, point_optional="optional" in marks)
-    for name in names.split():
-        yield name.removeprefix("~"), replace(verb, unasked=name[0] == "~")
+def _verbs(text: str) -> Iterator[tuple[str, Verb]]:
+    for spec, _, names in (each.rpartition(": ") for each in text.split(";")):
+        meaning, *marks = spec.split()
+        given: dict[str, Any] = dict(mark.split("=", 1) for mark in marks if "=" in mark)
+        given |= {key: tuple(given[key].split(",")) for key in ("at", "to", "ways") if key in given}
+        verb = Verb(Meaning(meaning), **given, point_optional="optional" in marks)
+        for name in names.split():
+            yield name.removeprefix("~"), replace(verb, unasked=name[0] == "~")
 
 
 def _format(
@@ -238,7 +231,7 @@ FORMATS: Mapping[str, Format] = {
     "holo-1.5": _format("Holo1, Holo1.5", Objects("action", _HOLO), QWEN25_GRID, "holo"),
     "holo-2": _format("Holo2", Objects("action", _HOLO), Share(1000), "holo"),
     "json": Format("any model", JsonSyntax(), Pixels(), (), _PLAIN),
-    "mai-ui": _format("MAI-UI", ToolCalls(preamble=_THINKING, failure="fail"), Share(999), "mai-ui", car=True),
+    "mai-ui": _format("MAI-UI", ToolCalls(preamble=_THINKING), Share(999), "mai-ui", car=True),
     "openai": _format("OpenAI's computer use", Calls(), Pixels(), "openai", api=OpenAI(_FUNCTIONS)),
     "opencua": _format("OpenCUA", Code(), Resized(28, 3136, 12_845_056), "opencua"),
     "qwen2.5-vl": _format(

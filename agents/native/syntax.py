@@ -30,11 +30,6 @@ class Syntax(Protocol):
         """What an answer that was cut off has at least, so that its calls are none of its thoughts."""
         ...
 
-    @property
-    def failure(self) -> str:
-        """Its status for what cannot be done."""
-        ...
-
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """The calls in an answer, in order.
 
@@ -103,7 +98,6 @@ class Labelled:
     is_tagged: bool = False
     """Whether the prompt asks for tags; both forms are read."""
     whole: re.Pattern[str] = re.compile(r"action\s*[:\uff1a].*\(.*\)|</function>", re.IGNORECASE | re.DOTALL)
-    failure: str = ""
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``. Points are read in the forms of all versions, whatever the prompt shows."""
@@ -111,7 +105,7 @@ class Labelled:
         marks = list(_LABEL.finditer(text))
         tagged = [(name, given) for name, given in written(text, {}) if isinstance(given, dict)]
         if tagged and "<function" in text:
-            plain = [(name, {key: _lines_broken(each) for key, each in given.items()}) for name, given in tagged]
+            plain = [(name, {key: str(each).replace("\\n", "\n") for key, each in given.items()}) for name, given in tagged]
             return [GuiCall(name, _named(given, verbs.get(name))) for name, given in plain]
         if not marks and _THOUGHT.search(text):
             raise ActionError(LOST)
@@ -154,10 +148,6 @@ class Labelled:
             given = "".join(f"<parameter={name}>{text}</parameter>\n" for name, text in said.items())
             return f"<seed:tool_call>\n<function={call.name}>\n{given}</function>\n</seed:tool_call>"
         return f"{call.name}({', '.join(f'{name}={text!r}' for name, text in said.items())})"
-
-
-def _lines_broken(value: object) -> object:
-    return value.replace("\\n", "\n") if isinstance(value, str) else value
 
 
 def _keywords(text: str) -> Json:
@@ -253,7 +243,6 @@ class ToolCalls:
     function: str = "mobile_use"
     preamble: str = "Thought: {thought}\nAction: {thought}\n"
     """What stands before the calls, with ``{thought}``."""
-    failure: str = "failure"
     whole: re.Pattern[str] = re.compile(r"</tool_call>")
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
@@ -358,7 +347,6 @@ class Objects:
     """Name of the key with the action's name."""
     form: str
     """Of an answer, with ``{thought}`` and ``{action}``, both as JSON where its first character is a brace."""
-    failure: str = "infeasible"
     whole: re.Pattern[str] = re.compile(r"action\W.*\}|\(.*\)", re.IGNORECASE | re.DOTALL)
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
@@ -423,7 +411,6 @@ _ORDER: Mapping[str, tuple[str, ...]] = {
 class Code:
     """``## Action``, ``## Code`` with lines of pyautogui: OpenCUA."""
 
-    failure: str = "failure"
     whole: re.Pattern[str] = re.compile(r"```.*```", re.DOTALL)
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
@@ -540,7 +527,6 @@ def _lines(call: GuiCall) -> Iterator[str]:
 class Calls:
     """Calls that came over an API of their own: OpenAI, Anthropic, Gemini (``models.apis``)."""
 
-    failure: str = ""
     whole: re.Pattern[str] = re.compile(r'"calls": \[\{')
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
@@ -597,7 +583,6 @@ _BUTTONS: Mapping[str, str] = {"right": "right_click", "back": "go_back", "forwa
 class JsonSyntax:
     """``Situation``, ``Plan``, ``Action: {"action_type": ...}``: as this project's other agents answer."""
 
-    failure: str = "infeasible"
     whole: re.Pattern[str] = re.compile(r"^action\W.*\}", re.IGNORECASE | re.DOTALL | re.MULTILINE)
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:

@@ -107,6 +107,11 @@ class Verb:
     unasked: bool = False
     """Whether the word is read if a model says it, but not offered."""
 
+    @property
+    def may_decline(self) -> bool:
+        """Whether it can end with a status other than success."""
+        return self.meaning is Meaning.END and self.means != "success"
+
     def arguments(self) -> tuple[str, ...]:
         """Names of its arguments."""
         switches = (switch.partition(":")[0] for switch in (self.enter, self.clear))
