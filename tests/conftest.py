@@ -11,12 +11,13 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
 from multiprocessing import forkserver
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from zlib import crc32
 
@@ -35,6 +36,7 @@ from automotive_cosim.contracts import (
     VehicleState,
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
+from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasks import CATALOGUE
 from automotive_cosim.tasks.folder import add_folder
@@ -53,7 +55,7 @@ for _name in (
 typer.main.get_command = cache(typer.main.get_command)
 
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
-ABOUT_PROCESSES = {"test_faults", "test_confinement"}
+ABOUT_PROCESSES = {"test_faults", "test_confinement", "test_vetting"}
 """Modules whose simulations start as programs start them."""
 _forbidden = False
 
@@ -70,8 +72,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     for item in items:
-        if "sumo" in getattr(item, "fixturenames", ()):
-            item.add_marker("sumo")
+        for name in {"sumo", "proof"}.intersection(getattr(item, "fixturenames", ())):
+            item.add_marker(name)
     part, parts = map(int, (config.option.prove or "0/1").split("/"))
     if not 0 <= part <= parts:
         raise pytest.UsageError(
@@ -155,6 +157,11 @@ sys.addaudithook(_refuse_sumo)
 @pytest.fixture(scope="session")
 def sumo() -> None:
     """Asked for by every fixture that starts SUMO, or returns what does."""
+
+
+@pytest.fixture(scope="session")
+def proof() -> None:
+    """Asked for by every fixture that serves proofs, whose tests it marks."""
 
 
 PARIS = "Place: Paris, France\nSpeed limit here: 50 km/h (posted on Avenue Foch)"
@@ -299,6 +306,13 @@ def session() -> Callable[[int], list[str]]:
     return found
 
 
+@pytest.fixture(scope="session")
+def fork_server() -> Iterator[ForkServer]:
+    """Starts the agents' processes of all tests of a worker."""
+    with closing(ForkServer()) as shared:
+        yield shared
+
+
 @dataclass
 class Ran:
     code: int
@@ -308,9 +322,11 @@ class Ran:
 
 @pytest.fixture
 def cli(
-    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path, fork_server: ForkServer
 ) -> Iterator[Callable[..., Ran]]:
     """Runs ``automotive-cosim`` in an empty folder."""
+    lent = SimpleNamespace(start=fork_server.start, end=fork_server.end, close=lambda: None)
+    monkeypatch.setattr("automotive_cosim.run.outside.ForkServer", lambda: lent)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("AUTOMOTIVE_COSIM_DEBUG", raising=False)
     terminated = signal.getsignal(signal.SIGTERM)
@@ -342,8 +358,15 @@ def own_tasks(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
 
 @pytest.fixture
 def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
-    """``automotive-cosim run`` takes the warm simulations that all tests share, instead of its own."""
+    """``automotive-cosim run`` takes the warm simulations that all tests share, instead of its own, and its film,
+    which takes most of the time, is an empty file."""
     import_module("automotive_cosim.envs.pool")  # has simulations of its own, whichever test imports it first
+
+    def unfilmed(film: Any, result: object) -> None:
+        if film._path.parent.is_dir():
+            film._path.touch()
+
+    monkeypatch.setattr("automotive_cosim.report.film.Film.finished", unfilmed)
 
     class Lent:
         held = staticmethod(simulations.held)

@@ -1,10 +1,8 @@
-"""``automotive-cosim tasks``: lists, shows, exports and proves the catalogue."""
+"""``automotive-cosim tasks``: lists, shows and proves the catalogue."""
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -12,7 +10,6 @@ import typer
 from automotive_cosim.cli.options import AsJson, SuiteName, TaskNames, print_json
 from automotive_cosim.cli.validate import validate
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.formats.csvs import csv_text
 
 if TYPE_CHECKING:
     from automotive_cosim.tasking.task import Task
@@ -20,7 +17,7 @@ if TYPE_CHECKING:
 NOT_MEASURED = "not measured since the situation last changed"
 NOT_TRIED = "not measured since the half last changed"
 
-app = typer.Typer(help="List, show, export and prove tasks.", no_args_is_help=True)
+app = typer.Typer(help="List, show and prove tasks.", no_args_is_help=True)
 app.command("validate")(validate)
 
 
@@ -46,39 +43,6 @@ def list_(
             f"{task.id:<{width}}  {halves:<6}  {task.dimension:<18}  {level(hardest(task)):<23}  {ability}{steps}"
         )
     typer.echo(f"\n{_cells(chosen)}\n{_abilities(chosen)}{_instances(chosen)}")
-
-
-@app.command()
-def export(
-    path: Annotated[Path, typer.Argument(help="A .json or .csv file.", show_default=False)],
-    tasks: TaskNames = "all",
-    suite: SuiteName = "standard",
-) -> None:
-    """Write the catalogue to a file, one row per task."""
-    from automotive_cosim.errors import UserError
-    from automotive_cosim.run.difficulty import rated
-
-    rows = [rated(task) for task in _chosen(tasks, suite)]
-    if path.suffix == ".json":
-        text = json.dumps(rows, ensure_ascii=False, indent=1) + "\n"
-    elif path.suffix == ".csv":
-        text = csv_text(
-            rows[0],
-            (
-                [
-                    value if isinstance(value, str | int) else json.dumps(value, ensure_ascii=False)
-                    for value in row.values()
-                ]
-                for row in rows
-            ),
-        )
-    else:
-        raise UserError(f"{path} is neither .json nor .csv; give a name with one of these endings")
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UserError(f"cannot write {path}: {error.strerror}") from error
-    typer.echo(f"{counted(len(rows), 'task')} written to {path}")
 
 
 @app.command()

@@ -126,7 +126,6 @@ class PlannedJob(ABC, Generic[SetupT]):
 
     @property
     def warm_up_weight(self) -> float:
-        """See ``Job``."""
         return warm_up_s(self.scenario) / WARM_UP_S
 
     @property

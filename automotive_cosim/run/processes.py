@@ -48,11 +48,9 @@ class Processes:
         return served(Meter(budget, before))
 
     def start(self, opener: Opener[J, R], folder: Path) -> _Process[J, R]:
-        """See ``Executor.start``."""
         return _Process(opener, folder)
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
-        """See ``Executor.wait``."""
         return connection.wait(handles, timeout_s)
 
 

@@ -20,17 +20,11 @@ class Stepper(Protocol):
         """The instant after one step, and its events; the last has its end set."""
         ...
 
-    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
-        ...
+    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]: ...
 
-    def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
-        ...
+    def look(self) -> RoadSnapshot: ...
 
-    def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
-        ...
+    def shapes(self) -> RoadShapes: ...
 
 
 class EgoDrive:
@@ -73,17 +67,13 @@ class EgoDrive:
         return events if self.has_ended else events + driver.tick(self._now)
 
     def request(self, request: RoadRequest) -> Answer:
-        """See ``Traffic.request``."""
         return self._driver.request(request, self.state)
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
         return () if self._now.end is not None else self._road.alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
         return RoadSnapshot(self.state.time_s, (), ()) if self._now.end is not None else self._road.look()
 
     def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
         return self._road.shapes()

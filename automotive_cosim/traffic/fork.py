@@ -169,13 +169,11 @@ class RemoteTraffic:
         return self._process.pid
 
     def start(self, duration_s: float) -> None:
-        """See ``Traffic.start``."""
         if self._started_s is None:
             self._process.send("advance", duration_s)
             self._started_s = duration_s
 
     def advance(self, duration_s: float) -> Advance:
-        """See ``Traffic.advance``."""
         self.start(duration_s)
         assert duration_s == self._started_s, "another advance was started"
         self._started_s = None
@@ -185,19 +183,16 @@ class RemoteTraffic:
         return advance
 
     def request(self, request: RoadRequest) -> Answer:
-        """See ``Traffic.request``."""
         answer: Answer = self._process.call("request", request)
         kept = not answer.accepted or answer.reason == KEEPS_ROUTE
         self.is_steered = self.is_steered or not (isinstance(request, Reroute) and kept)
         return answer
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
         options: tuple[RouteOption, ...] = self._process.call("alternatives", age_s)
         return options
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
         return unpack_snapshot(self._process.call("look"))
 
     def shapes(self) -> RoadShapes:

@@ -64,7 +64,6 @@ class StagedVehicle(StagedIncident):
         self._since_s = incident.from_s
 
     def begin(self) -> str:
-        """See ``StagedIncident``."""
         incident = self._incident
         speed = f"{incident.speed_kmh / KMH_PER_MPS:.2f}"
         self._car = self._stage.car("scripted", incident.route, self._lane, incident.position_m, speed)
@@ -74,7 +73,6 @@ class StagedVehicle(StagedIncident):
         return ""
 
     def tick(self, local_time: datetime) -> str:
-        """See ``StagedIncident``."""
         sumo = self._stage.sumo
         if self._car in sumo.vehicle_ids():
             while self._left and self._left[0].at_s <= self._since_s:
@@ -137,7 +135,6 @@ class StagedBraking(StagedIncident):
         self._left_s = 0.0
 
     def tick(self, local_time: datetime) -> str:
-        """See ``StagedIncident``."""
         if self._left_s < 0:
             return ""
         if self._braking:
@@ -172,7 +169,6 @@ class StagedBraking(StagedIncident):
         return "the vehicle ahead brakes"
 
     def end(self) -> str:
-        """See ``StagedIncident``."""
         if self._braking:
             self._release()
         return ""
@@ -274,7 +270,6 @@ class StagedCutIn(StagedIncident):
         self._kept: _KeptInLane | None = None
 
     def tick(self, local_time: datetime) -> str:
-        """See ``StagedIncident``."""
         stage, incident = self._stage, self._incident
         if self._left_s is not None:
             if self._left_s > 1.0:
@@ -308,7 +303,6 @@ class StagedCutIn(StagedIncident):
         return "a vehicle cuts in ahead"
 
     def end(self) -> str:
-        """See ``StagedIncident``."""
         if self._car and (self._left_s is None or self._left_s > 0):
             self._release()
         if self._kept is not None:
@@ -333,7 +327,6 @@ class StagedCutOut(StagedIncident):
         self._kept: _KeptInLane | None = None
 
     def tick(self, local_time: datetime) -> str:
-        """See ``StagedIncident``."""
         if self._is_over:
             if self._kept is not None:
                 self._kept.tick()
@@ -395,7 +388,6 @@ class StagedCutOut(StagedIncident):
         return "the vehicle ahead cuts out before a standing car"
 
     def end(self) -> str:
-        """See ``StagedIncident``."""
         if self._standing and not self._is_over:
             with suppress(*self._stage.sumo.refusals):  # it may have left
                 self._release()
@@ -410,5 +402,4 @@ class StagedCutOut(StagedIncident):
         self._stage.sumo.vehicle.setSpeed(self._leader, -1.0)
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
-        """See ``StagedIncident``."""
         return self._standing if self._is_over else None

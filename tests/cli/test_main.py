@@ -88,7 +88,7 @@ def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
 
 OTHERS = {
     ("a2a",), ("mcp",), ("serve",), ("measures",), ("report",), ("show", "screens"), ("show", "schema"),
-    ("tasks", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
+    ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
     ("scenarios", "download"), ("publish", "bundle"), ("publish", "leaderboard"),
     ("export",),
 }  # fmt: skip

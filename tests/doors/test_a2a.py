@@ -10,7 +10,7 @@ import socket
 import threading
 import tomllib
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -79,14 +79,14 @@ def words_of(events: list[Any]) -> list[str]:
 
 @pytest.mark.slow
 def test_an_assessment_tells_its_progress_then_its_result(
-    tmp_path: Path, monkeypatch: Any, simulations: Simulations
+    tmp_path: Path, monkeypatch: Any, simulations: Simulations, fork_server: ForkServer
 ) -> None:
     def once(agent: RemoteAgent, message: Any, turn: int) -> list[Any]:
         agent.metadata = {"turn_metrics": {"prompt_tokens": 10, "completion_tokens": 1}}
         return [{"tool_calls": [FAN, DONE] if len(agent.heard) == 1 else [DONE]}]
 
     monkeypatch.chdir(tmp_path)
-    with closing(ForkServer()) as fork_server, served(RemoteAgent(once)) as remote:
+    with served(RemoteAgent(once)) as remote:
         here = Here(simulations, fork_server)
 
         def run(plan: Plan, folder: Path, executor: Any, tell: Any) -> None:

@@ -4,7 +4,7 @@ import os
 import sys
 import time
 from collections import Counter
-from contextlib import closing, nullcontext
+from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -17,7 +17,6 @@ from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_jobs, run_plan
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
-from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.kept import pictures, read_steps, read_trial
 from automotive_cosim.run.plan import make_plan
@@ -127,12 +126,6 @@ def trouble(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     yield tmp_path
     sys.modules.pop("trouble", None)
-
-
-@pytest.fixture(scope="module")
-def fork_server():
-    with closing(ForkServer()) as shared:
-        yield shared
 
 
 def tries(folder):
