@@ -28,7 +28,6 @@ class Pixels:
     told = "pixels"
 
     def span(self, width: int, height: int) -> tuple[int, int]:
-        """See ``Grid``."""
         return width, height
 
 
@@ -41,11 +40,9 @@ class Share:
 
     @property
     def told(self) -> str:
-        """See ``Grid``."""
         return f"0 to {self.whole}"
 
     def span(self, width: int, height: int) -> tuple[int, int]:
-        """See ``Grid``."""
         return self.whole, self.whole
 
 
@@ -63,11 +60,9 @@ class Resized:
 
     @property
     def told(self) -> str:
-        """See ``Grid``."""
         return f"pixels, resized to multiples of {self.factor}"
 
     def span(self, width: int, height: int) -> tuple[int, int]:
-        """See ``Grid``."""
 
         def multiples(scale: float, rounded: Callable[[float], int]) -> tuple[int, int]:
             across, down = (self.factor * max(1, rounded(side / scale / self.factor)) for side in (width, height))

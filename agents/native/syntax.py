@@ -118,12 +118,10 @@ class Labelled:
         return [GuiCall(name, _named(arguments, verbs.get(name))) for name, arguments in calls]
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         lines = "\n\n".join(self._call(call, verbs[call.name]) for call in calls)
         return f"<think>{thought}</think>\n{lines}" if self.is_tagged else f"Thought: {thought}\nAction: {lines}"
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
         lines = [
             f"{name}({', '.join(f'{each}={self._shown(each, verb)!r}' for each in verb.arguments())})"
             for name, verb in verbs.items()
@@ -258,7 +256,6 @@ class ToolCalls:
         return calls
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         values = [
             {"name": CAR, "arguments": dict(call.arguments)}
             if call.name == CAR
@@ -269,7 +266,6 @@ class ToolCalls:
         return self.preamble.format(thought=thought) + "\n".join(texts)
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
         touch = {name: verb for name, verb in verbs.items() if verb.meaning is not Meaning.CAR and not verb.unasked}
         properties: Json = {"action": {"type": "string", "enum": list(touch)}}
         for verb in touch.values():
@@ -362,13 +358,11 @@ class Objects:
         return calls or Labelled("").read(said, verbs)
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         told = [json.dumps({self.key: call.name, **call.arguments}, ensure_ascii=False) for call in calls]
         says = json.dumps(thought) if self.form.startswith("{") else thought
         return "\n".join(self.form.format(thought=says, action=each) for each in told)
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
         lines = [
             json.dumps({self.key: name} | {each: _shown(each, verb) for each in verb.arguments()})
             for name, verb in verbs.items()
@@ -414,7 +408,6 @@ class Code:
     whole: re.Pattern[str] = re.compile(r"```.*```", re.DOTALL)
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
-        """See ``Syntax``."""
         said = ended(text)
         blocks = re.findall(r"```(?:python|code)?\s*\n(.*?)(?:```|\Z)", said, re.DOTALL)
         source = blocks[-1] if blocks else "\n".join(_CODE_LINE.findall(said))
@@ -430,12 +423,10 @@ class Code:
         return calls
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         lines = "\n".join(line for call in calls for line in _lines(call))
         return f"## Action:\n{thought}\n\n## Code:\n```python\n{lines}\n```"
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
         lines = (
             line
             for name, verb in verbs.items()
@@ -542,7 +533,6 @@ class Calls:
         return calls or [GuiCall(END, {})]
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         told = [{"name": call.name, "arguments": dict(call.arguments)} for call in calls if call.name != END]
         return json.dumps({"say": thought, "calls": told}, ensure_ascii=False)
 
@@ -586,17 +576,14 @@ class JsonSyntax:
     whole: re.Pattern[str] = re.compile(r"^action\W.*\}", re.IGNORECASE | re.DOTALL | re.MULTILINE)
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
-        """See ``Syntax``."""
         action = answer.read(text).action
         return [GuiCall(str(action.action_type), to_json(action))]
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         lines = "\n".join(f"Action: {json.dumps(dict(call.arguments), ensure_ascii=False)}" for call in calls)
         return f"Situation: {thought}\nPlan: none\n{lines}"
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
         kinds = [ActionType(name) for name in verbs]
         return grammar(kinds).replace(POINT_TOO, "").replace('"index": <int>', '"x": <int>, "y": <int>')
 

@@ -68,15 +68,12 @@ class Chat:
     """Whether the server is told the form of the answer and holds the model to it."""
 
     def path(self, model: str) -> str:
-        """See ``ProviderApi``."""
         return "/chat/completions"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``ProviderApi``."""
         return {}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         named = {self.longest if name == "max_tokens" else name: value for name, value in limits.items()}
         told = {"model": model, "messages": [self._message(message) for message in messages]} | named
         form = messages[-1].form if self.is_guided else None
@@ -85,7 +82,6 @@ class Chat:
         return told
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         choice = _first(told, "choices")
         message = choice.get("message") or {}
         usage = told.get("usage") or {}
@@ -120,12 +116,10 @@ class ChatTools(Chat):
     """Each with name, description and parameters."""
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         tools = [{"type": "function", "function": tool} for tool in self.tools]
         return Chat.body(self, model, messages, limits) | {"tools": tools}
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         plain = Chat.read(self, told)
         message = _first(told, "choices").get("message") or {}
         calls = [
@@ -157,15 +151,12 @@ class OpenAI:
     """Further functions, each with name, description and parameters."""
 
     def path(self, model: str) -> str:
-        """See ``ProviderApi``."""
         return "/responses"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``ProviderApi``."""
         return {}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         named = {"max_output_tokens" if name == "max_tokens" else name: value for name, value in limits.items()}
         named.pop("seed", None)  # which this protocol does not have
         asked = [
@@ -182,7 +173,6 @@ class OpenAI:
         return {"model": model, "input": asked, "tools": tools} | named
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         say, calls, reasoning = "", list[Json](), ""
         _check(told)
         for item in _objects(told["output"]):
@@ -237,16 +227,13 @@ class Anthropic:
     """The beta header that the earlier tools require."""
 
     def path(self, model: str) -> str:
-        """See ``ProviderApi``."""
         return "/messages"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``ProviderApi``."""
         named = {"x-api-key": key, "anthropic-version": "2023-06-01"}
         return named | ({"anthropic-beta": self.beta} if self.beta else {})
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         asked = [
             {
                 "role": message.role,
@@ -277,7 +264,6 @@ class Anthropic:
         return {"model": model, "messages": asked, "tools": [computer, *functions], "max_tokens": 1024} | named
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         say, calls, reasoning = "", list[Json](), ""
         _check(told)
         for block in _objects(told["content"]):
@@ -304,15 +290,12 @@ class Gemini:
     functions: tuple[Json, ...] = ()
 
     def path(self, model: str) -> str:
-        """See ``ProviderApi``."""
         return f"/models/{model}:generateContent"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``ProviderApi``."""
         return {"x-goog-api-key": key}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         asked = [
             {
                 "role": "model" if message.role == "assistant" else "user",
@@ -333,7 +316,6 @@ class Gemini:
         return {"contents": asked, "tools": tools, "generationConfig": named}
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         blocked = (told.get("promptFeedback") or {}).get("blockReason")
         candidate = _first(told, "candidates") if not blocked else {"finishReason": blocked}
         say, calls, reasoning = "", list[Json](), ""
