@@ -380,21 +380,12 @@ def _shown(name: str, verb: Verb) -> object:
 
 # --- Python's pyautogui: OpenCUA ----------------------------------------------------------------------------
 
+_AT = "click doubleClick triple_click tripleClick rightClick middleClick moveTo dragTo".split()
 _ORDER: Mapping[str, tuple[str, ...]] = {
-    "click": ("x", "y"),
-    "doubleClick": ("x", "y"),
-    "triple_click": ("x", "y"),
-    "tripleClick": ("x", "y"),
-    "rightClick": ("x", "y"),
-    "middleClick": ("x", "y"),
-    "moveTo": ("x", "y"),
-    "dragTo": ("x", "y"),
-    "write": ("message",),
-    "typewrite": ("message",),
-    "press": ("keys",),
-    "hotkey": ("keys",),
-    "scroll": ("clicks", "x", "y"),
-    "hscroll": ("clicks", "x", "y"),
+    **dict.fromkeys(_AT, ("x", "y")),
+    **dict.fromkeys(("write", "typewrite"), ("message",)),
+    **dict.fromkeys(("press", "hotkey"), ("keys",)),
+    **dict.fromkeys(("scroll", "hscroll"), ("clicks", "x", "y")),
     "sleep": ("seconds",),
     "terminate": ("status",),
 }

@@ -204,15 +204,8 @@ class OpenAI:
 
 TOOLSET = "computer_toolset_20260801"
 """Its members are tools of their own, and it needs no size of the display."""
-NO_MEMBERS = (
-    "cursor_position",
-    "hold_key",
-    "left_mouse_down",
-    "left_mouse_up",
-    "middle_click",
-    "mouse_move",
-    "right_click",
-    "zoom",
+NO_MEMBERS = tuple(
+    "cursor_position hold_key left_mouse_down left_mouse_up middle_click mouse_move right_click zoom".split()
 )
 """Those that a touch screen does not have."""
 
@@ -336,13 +329,9 @@ class Gemini:
         return replace(found, reasoning=reasoning, tokens_reasoning=thoughts, tokens_cached=cached)
 
 
-_ENDS = {
-    "stop": "stop",
-    "end_turn": "stop",
-    "tool_use": "stop",
-    "max_tokens": "length",
-    "max_output_tokens": "length",
-}
+_ENDS = dict.fromkeys(("stop", "end_turn", "tool_use"), "stop") | dict.fromkeys(
+    ("max_tokens", "max_output_tokens"), "length"
+)
 """The providers' words for an answer that ended by itself or was cut off; any other word is kept."""
 
 
