@@ -105,7 +105,10 @@ class Labelled:
         marks = list(_LABEL.finditer(text))
         tagged = [(name, given) for name, given in written(text, {}) if isinstance(given, dict)]
         if tagged and "<function" in text:
-            plain = [(name, {key: str(each).replace("\\n", "\n") for key, each in given.items()}) for name, given in tagged]
+            plain = [
+                (name, {key: str(each).replace("\\n", "\n") for key, each in given.items()})
+                for name, given in tagged
+            ]
             return [GuiCall(name, _named(given, verbs.get(name))) for name, given in plain]
         if not marks and _THOUGHT.search(text):
             raise ActionError(LOST)
@@ -380,7 +383,7 @@ def _shown(name: str, verb: Verb) -> object:
 
 # --- Python's pyautogui: OpenCUA ----------------------------------------------------------------------------
 
-_AT = "click doubleClick triple_click tripleClick rightClick middleClick moveTo dragTo".split()
+_AT = ["click", "doubleClick", "triple_click", "tripleClick", "rightClick", "middleClick", "moveTo", "dragTo"]
 _ORDER: Mapping[str, tuple[str, ...]] = {
     **dict.fromkeys(_AT, ("x", "y")),
     **dict.fromkeys(("write", "typewrite"), ("message",)),

@@ -204,18 +204,10 @@ class OpenAI:
 
 TOOLSET = "computer_toolset_20260801"
 """Its members are tools of their own, and it needs no size of the display."""
-NO_MEMBERS = tuple(
-    [
-        "cursor_position",
-        "hold_key",
-        "left_mouse_down",
-        "left_mouse_up",
-        "middle_click",
-        "mouse_move",
-        "right_click",
-        "zoom",
-    ]
-)
+NO_MEMBERS = (
+    "cursor_position", "hold_key", "left_mouse_down", "left_mouse_up", "middle_click", "mouse_move", "right_click",
+    "zoom",
+)  # fmt: skip
 """Those that a touch screen does not have."""
 
 
