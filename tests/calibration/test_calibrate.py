@@ -210,7 +210,7 @@ def test_a_day_is_calibrated_hour_by_hour(sumo: None, tmp_path: Path, hours: ran
         assert sum(row.simulated for row in rows) == pytest.approx(counted, rel=0.1, abs=10), hour
     scenario = scenarios.load(target)
     assert scenario.start.hour == 8
-    assert read_configuration(scenario.config).begin_s == 8 * HOUR_S
+    assert read_configuration(scenario.config).begin_s == (8 - hours[0]) * HOUR_S
     page = write_page(target).read_text(encoding="utf-8")
     assert "Hour by hour" in page
     assert (target / "plots/day.svg").is_file()

@@ -163,7 +163,7 @@ TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
     (r"export", NOT_RUN, "needs a recorded drive; tests/exchange has one"),
     (r"eval .*--executor ray", NOT_RUN, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
-    (r"study reroute --scenario resco", NOT_RUN, "needs the scenario of others"),
+    (r"study reroute --scenario (resco|shipped,)", NOT_RUN, "needs networks of others"),
     (r"study (congestion|days|compare)", NOT_RUN, "takes minutes; tests/studies run them"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
     (r"run .*(--model '?replay/|--agent (my_agent:|caller --interface functions --see))", LAST, ""),
@@ -171,8 +171,6 @@ TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
     (r"run .*--task my_seat_warmer", LAST, ""),
     (r"run", NOT_RUN, "needs what only the reader has, or takes ten seconds in its own scenario; tests/cli run it"),
     (r"tasks validate", ("--gates", "start", "--seeds", "0"), "all gates take minutes; tests/proof tries them"),
-    (r"study reroute --scenario resco", NOT_RUN, "needs the scenario of others"),
-    (r"study (congestion|days|compare)", NOT_RUN, "takes minutes; tests/studies run them"),
     (r"replay", AS_IT_IS, ""),
     (r"", AS_IT_IS, ""),
 ]

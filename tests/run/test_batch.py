@@ -247,7 +247,7 @@ def test_a_trigger_out_of_reach_is_sought_once_for_all_contestants_and_never_aga
     task, far = CATALOGUE["system_local_units"], CATALOGUE["road_speed_80_in_50"].half("second").trigger
     second = replace(task.half("second"), trigger=replace(far, within_s=5.0))
     monkeypatch.setitem(CATALOGUE._tasks, task.id, replace(task, second=second))
-    here, there = Here(simulations, fork_server), {"tasks": [task.id]}
+    here, there = Here(simulations, fork_server), {"tasks": [task.id], "limits": {"steps": 2}}
     both = plan("no-op", "always-alert", **there)
     end = run_plan(both, tmp_path / "both", retries=5, executor=here)
     assert (end.planned, end.done, end.judged, end.ran, end.errors) == (4, 4, 2, 4, 2)

@@ -8,12 +8,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from automotive_cosim.traffic.in_process import InProcess
 
 from automotive_cosim.errors import NoRoomError, ScenarioError, UnknownNameError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 
