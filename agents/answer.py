@@ -15,6 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
 
+from automotive_cosim.agents.thoughts import spoken
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import Action, Json
 from automotive_cosim.errors import ActionError
@@ -36,6 +37,8 @@ WIDE = str.maketrans("\uff5b\uff5d\uff1a", "{}:")
 """Braces and the colon of full width as ASCII."""
 WIDE_COMMA = re.compile(r"""(?<=["'\u201d\u2019\del}\]])\s*\uff0c\s*(?=["'\u201c\u2018])""")
 """A comma of full width between a value and the name that follows it; others stay as they are."""
+FORM = {"situation", "plan", "action"}
+"""Keys of an answer that is one object."""
 LABELS = re.compile(
     r"^[\s*_#>-]*(situation|reason|thought|plan|action|lesson)[*_]*\s*[:\uff1a][*_]*", re.IGNORECASE | re.M
 )
@@ -52,8 +55,13 @@ class ParsedAnswer:
     """Whether it had the requested form."""
 
 
-def read(text: str) -> ParsedAnswer:
+def read(text: str, *, is_cut: bool = False) -> ParsedAnswer:
     """The answer's parts.
+
+    Args:
+        text: the answer.
+        is_cut: whether it was cut off at its longest. Then only a whole action after its label counts: any other
+            may be a thought or half of one.
 
     Raises:
         ActionError: it has no action, or a malformed one; the message says which.
@@ -67,7 +75,7 @@ def read(text: str) -> ParsedAnswer:
             return _answer(text, json.loads(strict[1]), strict=True)
         except (ValueError, RecursionError):
             pass
-    found = next(_answers(text[-LONGEST:]), None)
+    found = next(_answers(text, is_cut=is_cut), None)
     if found is None:
         raise ActionError("the answer has no JSON object with an action_type; end it with `Action: {...}`")
     return _answer(text, found, strict=False)
@@ -109,12 +117,16 @@ def _object(text: str) -> Json | None:
         told = json.loads(text)
     except (ValueError, RecursionError):
         return None
-    return told if isinstance(told, dict) and told.keys() == {"situation", "plan", "action"} else None
+    return told if isinstance(told, dict) and told.keys() == FORM else None
 
 
 def ended(text: str) -> str:
-    """The answer up to the token that ends it, which some servers leave in it."""
-    text = text.rpartition(FINAL)[2]
+    """The end of the answer, without thoughts, up to the token that ends it, which some servers leave in it.
+
+    Raises:
+        ActionError: it ended within its thoughts.
+    """
+    text = spoken(text)[-LONGEST:].rpartition(FINAL)[2]
     marks = list(END_TOKEN.finditer(text))
     first = next((mark.start() for mark in marks if text[: mark.start()].strip()), None)
     return END_TOKEN.sub("", text if first is None else text[:first])
@@ -125,12 +137,14 @@ def objects(text: str) -> Sequence[Json]:
     return _written(text) or _repaired(text)
 
 
-def _answers(text: str) -> Iterator[Json]:
+def _answers(text: str, *, is_cut: bool) -> Iterator[Json]:
     """Objects with an ``action_type``, from the end: after the last label first, then anywhere; as written first,
     then repaired."""
-    tail = text[max((mark.end() for mark in LABELS.finditer(text) if mark[1].lower() == "action"), default=0) :]
-    for part in (tail, text):
-        for found in (_written, _repaired):
+    label = max((mark.end() for mark in LABELS.finditer(text) if mark[1].lower() == "action"), default=None)
+    if is_cut:
+        yield from (told["action"] for told in _written(text) if told.keys() == FORM)
+    for part in filter(None, ("" if label is None else text[label:], "" if is_cut else text)):
+        for found in (_written,) if is_cut else (_written, _repaired):
             yield from reversed([inner for value in found(part) for inner in _with_type(value)])
 
 

@@ -2,7 +2,10 @@
 
     system: what to do     user: the wish and the situation
     assistant: calls       tool: what each of them set, or why not
-    ...                    user: the situation now
+    ...                    the last of them with the situation now
+
+The order is one that all servers take: a turn of the user before the first call, and none after a result. A picture
+of now stands in the user's turn, since results hold text alone.
 
 What it is told of the screen and the place are conditions (``--see``, ``--geo``); ``--interface`` says whether it
 calls the car's functions, the actions of a finger, or both.
@@ -11,16 +14,18 @@ calls the car's functions, the actions of a finger, or both.
 from __future__ import annotations
 
 import json
-import re
 from collections import deque
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 from automotive_cosim.agents import prompt
 from automotive_cosim.agents.asking import Asking
 from automotive_cosim.agents.base import StageName
 from automotive_cosim.agents.marks import png
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
-from automotive_cosim.contracts import UNCALLED, Action, Observation
+from automotive_cosim.agents.thoughts import spoken
+from automotive_cosim.agents.written import written
+from automotive_cosim.contracts import UNCALLED, Action, Json, Observation
 from automotive_cosim.errors import ActionError
 from automotive_cosim.formats.words import shown
 from automotive_cosim.interface.functions import Function, action_of, offered
@@ -33,8 +38,10 @@ REMEMBERED = 20
 """Answers with their results that a watch, which lasts for hundreds of turns, is told of."""
 WORDS = "Words without a call do nothing"
 """What it is told of them."""
-WRITTEN = re.compile(r"<tool_call>\s*(\{.*?\})\s*</tool_call>", re.DOTALL)
-"""A call as models write it where no server takes it out of the text."""
+NO_CALL = (
+    "the answer calls no function; words alone do nothing: call one by the tools, or write "
+    '<tool_call>{"name": ..., "arguments": {...}}</tool_call>'
+)
 
 
 def tools(settings: AgentSettings) -> tuple[Function, ...]:
@@ -57,7 +64,7 @@ class Caller:
         wanted = AgentProfile(self.name, frozenset(Channel), frozenset(UNCALLED), reflects=False)
         self._profile = wanted.under(settings)
         self._asking = Asking(chat_model, settings)
-        self._known = {function.name for function in tools(settings)}
+        self._known = {function.name: function.parameters for function in tools(settings)}
         self.stages = self._asking.stages
         self.reset("")
 
@@ -74,6 +81,7 @@ class Caller:
     def reset(self, goal: str) -> None:
         """Forgets the previous episode."""
         self._asking.reset()
+        self._wish = ChatMessage("user", "")
         self._told: list[tuple[ChatMessage, list[ChatMessage]]] = []
         self._left: deque[ToolCall] = deque()
         self._waiting: ToolCall | None = None
@@ -111,52 +119,64 @@ class Caller:
             pictures = (png(seen.screenshot),)
         now = self._situation(seen, bool(pictures))
         self._asking.note(StageName.PERCEIVE, seen, now)
-        reply, asked = self._asking.converse([*self._conversation(seen), ChatMessage("user", now, pictures)])
-        say, calls = _read(reply)
-        self._left.extend(
-            ToolCall(f"call{self._count + at:05d}", name, arguments) for at, (name, arguments) in enumerate(calls)
-        )
-        self._count += len(calls)
-        self._told.append((ChatMessage("assistant", say, calls=tuple(self._left)), []))
-        self._asking.note(StageName.INTERPRET, seen, say, reply, asked, len(pictures))
-        if not calls or len(calls) > MOST_CALLS:
-            self._left.clear()
-            self._told.pop()
-            wrong = f"the answer has {len(calls)} calls; at most {MOST_CALLS} are allowed"
-            told = f"{wrong if calls else 'the answer calls no function; words alone do nothing'}{reply.ending}"
-            self._asking.note(StageName.ACT, seen, told)
-            raise ActionError(told)
+        self._wish = replace(self._wish, text=self._wish.text if self._told else now, pictures=pictures)
+        reply, asked = self._asking.converse(list(self._conversation(seen, now)))
+        try:
+            told, wrong = heard(reply, self._known, self._count), ""
+        except ActionError as error:
+            told, wrong = ChatMessage("assistant", ""), f"{error}{reply.ending}"
+        self._asking.note(StageName.INTERPRET, seen, told.text, reply, asked, len(pictures))
+        if not wrong and not told.calls:
+            wrong = f"{NO_CALL}{reply.ending}"
+        if len(told.calls) > MOST_CALLS:
+            wrong = f"the answer has {len(told.calls)} calls; at most {MOST_CALLS} are allowed"
+        self._count += len(told.calls)
+        if wrong:
+            self._asking.note(StageName.ACT, seen, wrong)
+            raise ActionError(wrong)
+        self._left.extend(told.calls)
+        self._told.append((told, []))
 
-    def _conversation(self, seen: Observation) -> Iterator[ChatMessage]:
-        """What it is to do, and each earlier answer with its results."""
+    def _conversation(self, seen: Observation, now: str) -> Iterator[ChatMessage]:
+        """What it is to do, and each earlier answer with its results, the last of which tells the situation."""
         weigh = prompt.PLACE_COUNTS if Channel.CONTEXT in self.channels else ""
         name = "caller_watch" if seen.on_watch else "caller"
         yield ChatMessage("system", prompt.fill(name, {"weigh": weigh, "words": WORDS, "policy": seen.policy}))
+        yield self._wish
         for answer, results in self._told[-REMEMBERED:] if seen.on_watch else self._told:
             yield answer
-            known = {result.call_id for result in results}
-            yield from results
-            left = (call for call in answer.calls if call.id not in known)
-            yield from (ChatMessage("tool", "not done", call_id=call.id) for call in left)
+            known = {result.call_id: result for result in results}
+            for call in answer.calls:
+                result = known.get(call.id, ChatMessage("tool", "not done", call_id=call.id))
+                is_last = call is self._told[-1][0].calls[-1]
+                yield replace(result, text=f"{result.text}\n\n{now}") if is_last else result
 
     def _situation(self, seen: Observation, pictures: bool) -> str:
         return prompt.situation(self._profile, seen, pictures=pictures)
 
 
-def _read(reply: ModelReply) -> tuple[str, list[tuple[str, object]]]:
-    """Words and calls of an answer: those that its protocol has, else those that are written in the words."""
+def heard(reply: ModelReply, schemas: Mapping[str, Json], count: int = 0) -> ChatMessage:
+    """An answer as a turn of the conversation, with its calls: those that its protocol has, else those that are
+    written in the words.
+
+    Args:
+        reply: the answer.
+        schemas: of the parameters, by function.
+        count: of the calls before it.
+
+    Raises:
+        ActionError: it ended within its thoughts.
+    """
     try:
         told = json.loads(reply.text)
-        say, calls = str(told["say"]), [(str(call["name"]), call["arguments"]) for call in told["calls"]]
+        say, calls = str(told["say"]), [(str(call["name"]), call["arguments"], call) for call in told["calls"]]
     except (ValueError, LookupError, TypeError, RecursionError):
-        say, calls = reply.text, []
-    return say, calls or list(_written(say))
-
-
-def _written(say: str) -> Iterator[tuple[str, object]]:
-    for found in WRITTEN.findall(say):
-        try:
-            call = json.loads(found)
-            yield str(call["name"]), call.get("arguments") or {}
-        except (ValueError, LookupError, AttributeError, TypeError, RecursionError):
-            yield "", found
+        say, calls, told = reply.text, [], {}
+    if not calls:
+        say = spoken(say)
+        calls = [(name, given, {}) for name, given in written(say, schemas)]
+    made = (
+        ToolCall(f"call{count + at:05d}", name, given, frame.get("back"))
+        for at, (name, given, frame) in enumerate(calls)
+    )
+    return ChatMessage("assistant", say, calls=tuple(made), back=told.get("back"))

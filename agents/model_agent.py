@@ -14,6 +14,7 @@ from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import marked, png
 from automotive_cosim.agents.memory import Memory, Strategy, where, why
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
+from automotive_cosim.agents.thoughts import spoken
 from automotive_cosim.cockpit.actions import schema_of
 from automotive_cosim.contracts import Action, ActionType, Observation
 from automotive_cosim.contracts.given import PromptLength
@@ -150,7 +151,11 @@ class ModelAgent:
         shown = before is not None, after is not None
         text = prompt.look_back(last.seen, last.action, now, last.plan, shown)
         reply, asked = self._asking.ask(text, pictures)
-        lesson = one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
+        try:
+            said = spoken(reply.text)
+        except ActionError:
+            said = ""
+        lesson = one_line(answer.labelled(said, "lesson") or said)[:LONGEST_LESSON]
         self._asking.note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))
         return lesson
 
@@ -168,7 +173,7 @@ class ModelAgent:
         action = schema_of(self._profile.actions, None if seen.elements is None else brief.indices(seen.elements))
         reply, asked = self._asking.ask(text, pictures, answer.schema(action))
         try:
-            understood = answer.read(reply.text)
+            understood = answer.read(reply.text, is_cut=reply.is_cut)
             if understood.action.action_type not in self._profile.actions:
                 raise ActionError(
                     f"this agent has no action {understood.action.action_type}; choose one that the prompt names"

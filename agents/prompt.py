@@ -146,7 +146,7 @@ PICTURES = (
     "Two pictures come with this text: the screen as it is, and the same with each element framed and numbered. "
     "The numbers are the indices below."
 )
-PICTURE = "One picture comes with this text: the screen, as wide and high in pixels as x and y count."
+PICTURE = "One picture comes with this: the screen as it is now, as wide and high in pixels as x and y count."
 _HANDS: Mapping[Interface, str] = {
     Interface.TOUCH: "touch screen and safety functions",
     Interface.FUNCTIONS: "functions",

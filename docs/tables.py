@@ -15,6 +15,7 @@ from tempfile import TemporaryDirectory
 from typer.testing import CliRunner
 
 from automotive_cosim import schemas
+from automotive_cosim.agents import FORMATS
 from automotive_cosim.cli.main import app
 from automotive_cosim.drives.events import KINDS
 from automotive_cosim.drives.families import FAMILIES
@@ -155,6 +156,10 @@ MADE: Mapping[str, Callable[[], str]] = {
     "functions": lambda: f"```text\n{printed('show', 'functions')}\n```",
     "kinds": _kinds,
     "leaderboard": _leaderboard,
+    "native_formats": lambda: _table(
+        ("`format`", "models", "coordinates", "declines with"),
+        [(f"`{name}`", each.models, each.grid.told, each.declines) for name, each in FORMATS.items()],
+    ),
     "plan": lambda: _fields("plan"),
     "policy": lambda: _table(
         ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE]

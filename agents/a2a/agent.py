@@ -19,6 +19,7 @@ from automotive_cosim.agents.a2a.contract import (
 )
 from automotive_cosim.agents.base import Stage, StageName
 from automotive_cosim.agents.settings import AgentProfile, AgentSettings
+from automotive_cosim.agents.thoughts import spoken
 from automotive_cosim.cockpit.actions import TEXT_LIMIT
 from automotive_cosim.contracts import UNCALLED, Action, ActionType, Observation
 from automotive_cosim.errors import ActionError, AgentError, OutOfBudgetError, SetupError, install_hint
@@ -140,15 +141,19 @@ class A2AAgent:
         self._asked, self._results = answer.calls, {}
         if len(answer.calls) > MOST_CALLS:
             wrong = f"the answer has {len(answer.calls)} calls; at most {MOST_CALLS} are allowed"
-        elif not answer.calls and not answer.say:
-            wrong = "the answer has neither words nor a call"
-        elif not answer.calls:
-            action = Action(ActionType.ASK_DRIVER, text=" ".join(answer.say.split())[:TEXT_LIMIT])
-            self._note(StageName.ACT, seen, prompt.action_words(action, seen))
-            return action
-        else:
+        elif answer.calls:
             self._left.extend(answer.calls)
             return None
+        else:
+            try:
+                words = " ".join(spoken(answer.say).split())[:TEXT_LIMIT]
+                wrong = "the answer has neither words nor a call"
+            except ActionError as error:
+                words, wrong = "", str(error)
+            if words:
+                action = Action(ActionType.ASK_DRIVER, text=words)
+                self._note(StageName.ACT, seen, prompt.action_words(action, seen))
+                return action
         self._note(StageName.ACT, seen, wrong)
         raise ActionError(wrong)
 

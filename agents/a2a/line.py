@@ -75,6 +75,7 @@ class AgentLine:
         self._context = str(uuid.uuid4())
         self._is_new = True
         self._task = ""
+        self._heard: dict[str, tuple[Any, ...]] = {}
 
     def say(self, parts: Sequence[Any], source: str, limit_s: float) -> Said:
         """Sends a message and returns the answer.
@@ -118,14 +119,36 @@ class AgentLine:
             state = TaskState.Name(task.status.state).removeprefix("TASK_STATE_").lower()
             words = " ".join(map(str, _plain(task.status.message.parts)))
             raise AgentError(f"the agent at {self._address} calls its task {state}: {words[:TOLD]}")
+        answer, metadata = self._answer(task)
         asks_more = task.status.state == TaskState.TASK_STATE_INPUT_REQUIRED
         self._follow(task.context_id, task.id if asks_more else "")
-        metadata = _metadata(task)
-        parts: tuple[Any, ...] = ()
-        for each in (*task.artifacts, *([task.status.message] if task.status.HasField("message") else [])):
-            parts += _plain(each.parts)
-            metadata |= _metadata(each)
-        return Said(parts, metadata)
+        if not asks_more:
+            self._heard = {}
+        return Said(answer, metadata)
+
+    def _answer(self, task: Task) -> tuple[tuple[Any, ...], Json]:
+        """What a task says that it had not said before, once, with the metadata.
+
+        Artifacts are its result, and a status message tells only what they do not. An open task has those of its
+        earlier answers, too.
+        """
+        metadata, artifacts, status = _metadata(task), list[Any](), list[Any]()
+        for each in task.artifacts:
+            parts, before = _plain(each.parts), self._heard.get(each.artifact_id, ())
+            self._heard[each.artifact_id] = parts
+            if new := parts[len(before) :] if parts[: len(before)] == before else parts:
+                artifacts += _joined(new)
+                metadata |= _metadata(each)
+        message = task.status.message
+        if task.status.HasField("message") and self._heard.get(message.message_id) is None:
+            status += _plain(message.parts)
+            self._heard[message.message_id] = ()
+            metadata |= _metadata(message)
+        kinds = set(map(_kind, artifacts))
+        answer = [*artifacts, *(part for part in status if _kind(part) not in kinds)]
+        if not answer and task.artifacts:  # the same again, under the same name
+            answer = _joined(_plain(task.artifacts[-1].parts))
+        return tuple(answer), metadata
 
     def _follow(self, context: str, task: str) -> None:
         """Takes over the context that an agent gives its first answer; after that it cannot change."""
@@ -242,6 +265,24 @@ def _plain(parts: Iterable[Part]) -> tuple[Any, ...]:
         elif part.HasField("data"):
             found.append(MessageToDict(part.data))
     return tuple(found)
+
+
+def _joined(parts: Iterable[Any]) -> list[Any]:
+    """The parts of an artifact, whose texts are pieces of one."""
+    found: list[Any] = []
+    for part in parts:
+        if isinstance(part, str) and found and isinstance(found[-1], str):
+            found[-1] += part
+        else:
+            found.append(part)
+    return found
+
+
+def _kind(part: Any) -> str:
+    """Words, calls or anything else; blank words are the latter."""
+    if isinstance(part, str):
+        return "words" if part.strip() else ""
+    return "calls" if isinstance(part, dict) and part.keys() & {"tool_calls", "toolCalls"} else ""
 
 
 def _metadata(message: Any) -> Json:

@@ -11,15 +11,19 @@ from automotive_cosim.agents.lines import one_line
 from automotive_cosim.agents.marks import png
 from automotive_cosim.agents.native.formats import Format
 from automotive_cosim.agents.native.grid import GuiScreen
-from automotive_cosim.agents.native.verbs import GuiCall, Hand, actions
+from automotive_cosim.agents.native.syntax import END
+from automotive_cosim.agents.native.verbs import GuiCall, Hand
 from automotive_cosim.agents.settings import AgentSettings
-from automotive_cosim.contracts import Action, Observation
+from automotive_cosim.contracts import Action, FeedbackCode, Observation
 from automotive_cosim.errors import ActionError, UserError
 from automotive_cosim.interface.observe import Channel
 from automotive_cosim.models.base import ChatModel
 
 MOST_ACTIONS = 10
 """Most actions of one answer; each is a step."""
+FAILED = frozenset(
+    {FeedbackCode.NO_SUCH_ELEMENT, FeedbackCode.DISABLED, FeedbackCode.RESTRICTED, FeedbackCode.REFUSED}
+)
 REMEMBERED = 200
 """Characters of a step in the history, which is told in the format's own words."""
 
@@ -73,6 +77,8 @@ class NativeAgent:
             ModelError: the model does not answer.
         """
         self.stages.clear()
+        if self._form.stops_at_failure and observation.feedback.code in FAILED:
+            self._left.clear()
         if self._left:
             return self._next(observation)
         assert observation.screenshot is not None
@@ -83,8 +89,11 @@ class NativeAgent:
         reply, asked = self._asking.ask(text, (png(observation.screenshot),))
         hand = Hand(screen, observation.elements or (), self._last)
         try:
-            calls = self._form.syntax.read(reply.text, self._form.verbs)
-            found = [(action, call) for call in calls for action in actions(self._form.verbs, call, hand)]
+            if reply.is_cut and not self._form.syntax.whole.search(reply.text):
+                raise ActionError("the answer has no whole call")
+            found = self._form.acts(reply.text, hand)
+            if reply.ending and any(call.name == END for _, call in found):
+                raise ActionError("the answer has words alone, and was not finished")
             if len(found) > MOST_ACTIONS:
                 raise ActionError(f"the answer has {len(found)} actions; at most {MOST_ACTIONS} are allowed")
         except ActionError as error:

@@ -1,42 +1,71 @@
-"""The table of formats: for each model family its words, its coordinates and its form.
+"""The table of formats: for each family of models its words (``words.txt``), its coordinates and its form.
 
-Sources: bytedance/UI-TARS ``codes/ui_tars``; QwenLM/Qwen3-VL ``cookbooks``; X-PLUG/MobileAgent; Tongyi-MAI/MAI-UI
-``src/prompt.py``; xlang-ai/OpenCUA; the providers' own pages on computer use. A swipe is the finger's movement; a
-scroll shows what lies in its direction.
+A swipe is the finger's movement; a scroll shows what lies in its direction.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import asdict, dataclass, replace
+from functools import cache
+from importlib.resources import files
+from types import MappingProxyType
+from typing import Any
 from urllib.parse import parse_qsl, urlencode
 
 from automotive_cosim.agents.native.grid import Grid, Pixels, Resized, Share
 from automotive_cosim.agents.native.syntax import (
-    END,
     Calls,
     Code,
     JsonSyntax,
     Labelled,
+    Objects,
     Syntax,
     ToolCalls,
     car_function,
 )
-from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, KEYS, Meaning, Verb
-from automotive_cosim.contracts import UNCALLED, ActionType, GoalStatus
-from automotive_cosim.errors import UnknownNameError, UserError
+from automotive_cosim.agents.native.verbs import (
+    CAR,
+    CAR_ACTIONS,
+    KEYS,
+    TOUCHES,
+    GuiCall,
+    Hand,
+    Meaning,
+    Verb,
+    actions,
+    pointed,
+)
+from automotive_cosim.contracts import UNCALLED, Action, ActionType, GoalStatus, Json
+from automotive_cosim.errors import ActionError, UnknownNameError, UserError
 from automotive_cosim.models.apis import Anthropic, Gemini, OpenAI, ProviderApi
 
 QWEN25_GRID = Resized(28, 56 * 56, 12_845_056)
 
 
 @dataclass(frozen=True, slots=True)
+class Vocabulary:
+    """Words of a family, and where they were seen."""
+
+    version: str
+    """Of the models or their tool."""
+    date: str
+    """Of the source."""
+    source: str
+    verbs: Mapping[str, Verb]
+
+
+@dataclass(frozen=True, slots=True)
 class Format:
     """How a family of models answers."""
 
+    models: str
+    """Which they are."""
     syntax: Syntax
     grid: Grid
+    words: tuple[Vocabulary, ...]
     verbs: Mapping[str, Verb]
+    """All of these, by name; of two meanings, the first."""
     api: ProviderApi | None = None
     """The protocol of its endpoint; None for chat completions."""
 
@@ -56,16 +85,59 @@ class Format:
         return frozenset(found)
 
     @property
+    def stops_at_failure(self) -> bool:
+        """Whether its makers leave out what follows a failed action of the same answer."""
+        return isinstance(self.api, Anthropic)
+
+    @property
     def lacks(self) -> tuple[str, ...]:
         """The actions and statuses of the benchmark that it has no words for."""
         statuses = () if ActionType.SHOW_ALERT in self.actions else (str(GoalStatus.NOT_NEEDED),)
         return (*(str(kind) for kind in UNCALLED if kind not in self.actions), *statuses)
 
+    @property
+    def declines(self) -> str:
+        """The words with which it says that nothing can or should be done."""
+        ends = (Meaning.END, Meaning.CAR)
+        told = [name for name, verb in self.verbs.items() if verb.meaning in ends and not verb.unasked]
+        return ", ".join(name for name in told if name in (CAR, "status") or self.verbs[name].may_decline)
+
+    def as_json(self) -> Json:
+        """What is listed of it."""
+        words = [asdict(each) | {"verbs": [*each.verbs]} for each in self.words]
+        told = {"models": self.models, "coordinates": self.grid.told, "declines_with": self.declines}
+        return told | {"lacks": [*self.lacks], "words": words}
+
+    def acts(self, text: str, hand: Hand) -> list[tuple[Action, GuiCall]]:
+        """The actions of an answer, each with the call that asks for it.
+
+        Raises:
+            ActionError: it cannot be read, has a word that the format does not have, or asks for what the car does
+                not have.
+        """
+        found: list[tuple[Action, GuiCall]] = []
+        calls = self.syntax.read(text, self.verbs)
+        for call in calls:
+            if call.name not in self.verbs:
+                raise ActionError(_unknown(call.name, self))
+            for action in actions(self.verbs, call, hand):
+                found.append((action, call))
+                if action.x is not None and action.y is not None:
+                    hand = replace(hand, last=(action.x, action.y), has_touched=True)
+            if (pointer := pointed(self.verbs[call.name], call, hand)) is not None:
+                hand = replace(hand, last=pointer)
+        return found or [(Action(ActionType.WAIT, seconds=1), call) for call in calls[:1]]  # it only pointed
+
+
+def _unknown(name: str, form: Format) -> str:
+    """That a format does not have a word, and which do."""
+    told = str(UnknownNameError("action in this format", name[:40], [*form.verbs]))
+    known = [other for other, each in FORMATS.items() if name in each.verbs]
+    return f"{told}; ?format={' or '.join(known)} would know {name!r}" if known else told
+
 
 _MEANT: Mapping[Meaning, frozenset[ActionType]] = {
-    Meaning.TAP: frozenset({ActionType.CLICK}),
-    Meaning.DOUBLE_TAP: frozenset({ActionType.DOUBLE_TAP}),
-    Meaning.HOLD: frozenset({ActionType.LONG_PRESS}),
+    **{meaning: frozenset({action}) for meaning, action in TOUCHES.items()},
     Meaning.TYPE: frozenset({ActionType.INPUT_TEXT}),
     Meaning.SCROLL: frozenset({ActionType.SCROLL}),
     Meaning.FLICK: frozenset({ActionType.SWIPE}),
@@ -79,145 +151,103 @@ _MEANT: Mapping[Meaning, frozenset[ActionType]] = {
 }
 
 
-def _ui_tars(at: str, start: str, end: str) -> dict[str, Verb]:
-    return {
-        "click": Verb(Meaning.TAP, at=(at,)),
-        "left_double": Verb(Meaning.DOUBLE_TAP, at=(at,)),
-        "long_press": Verb(Meaning.HOLD, at=(at,)),
-        "type": Verb(Meaning.TYPE, text="content"),
-        "scroll": Verb(Meaning.SCROLL, at=(at,), direction="direction", point_optional=True),
-        "drag": Verb(Meaning.DRAG, at=(start,), to=(end,)),
-        "open_app": Verb(Meaning.OPEN, text="app_name"),
-        "press_home": Verb(Meaning.KEY, means="home"),
-        "press_back": Verb(Meaning.KEY, means="back"),
-        "wait": Verb(Meaning.WAIT),
-        "finished": Verb(Meaning.END, means="success"),
-        "call_user": Verb(Meaning.END, means="failure"),
-        # Words of its training for other devices; on a touch screen, the right button is a long press.
-        "left_single": Verb(Meaning.TAP, at=(at,), unasked=True),
-        "right_single": Verb(Meaning.HOLD, at=(at,), unasked=True),
-        "select": Verb(Meaning.DRAG, at=(start,), to=(end,), unasked=True),
-        "hotkey": Verb(Meaning.KEY, text="key", unasked=True),
-        "press": Verb(Meaning.KEY, text="key", unasked=True),
+@cache
+def vocabularies() -> Mapping[str, Vocabulary]:
+    """Every family's words, by its name in ``words.txt``."""
+    text = (files("automotive_cosim.agents.native") / "words.txt").read_text(encoding="utf-8")
+    found = {}
+    for head, *lines in (block.splitlines() for block in text.strip().split("\n\n")[1:]):
+        name, version, date, source = head.split(" | ")
+        found[name] = Vocabulary(version, date, source, dict(_verbs(";".join(lines))))
+    return MappingProxyType(found)
+
+
+def _verbs(text: str) -> Iterator[tuple[str, Verb]]:
+    for spec, _, names in (each.rpartition(": ") for each in text.split(";")):
+        meaning, *marks = spec.split()
+        given: dict[str, Any] = dict(mark.split("=", 1) for mark in marks if "=" in mark)
+        given |= {key: tuple(given[key].split(",")) for key in ("at", "to", "ways") if key in given}
+        verb = Verb(Meaning(meaning), **given, point_optional="optional" in marks)
+        for name in names.split():
+            yield name.removeprefix("~"), replace(verb, unasked=name[0] == "~")
+
+
+def _format(
+    models: str, syntax: Syntax, grid: Grid, *names: str, api: ProviderApi | None = None, car: bool = False
+) -> Format:
+    words = tuple(vocabularies()[name] for name in names)
+    verbs: dict[str, Verb] = {}
+    for each in words:
+        verbs = {**verbs, **each.verbs, **verbs}
+    return Format(models, syntax, grid, words, verbs | ({CAR: Verb(Meaning.CAR)} if car or api else {}), api)
+
+
+def _boxed(form: Format) -> Format:
+    """The same words with points as the first UI-TARS names them."""
+    named = {"point": "start_box", "start_point": "start_box", "end_point": "end_box"}
+    verbs = {
+        name: replace(verb, at=tuple(map(named.__getitem__, verb.at)), to=tuple(map(named.__getitem__, verb.to)))
+        for name, verb in form.verbs.items()
     }
+    return replace(form, verbs=verbs)
 
 
-_QWEN25: dict[str, Verb] = {
-    "click": Verb(Meaning.TAP, at=("coordinate",)),
-    "long_press": Verb(Meaning.HOLD, at=("coordinate",)),
-    "swipe": Verb(Meaning.DRAG, at=("coordinate",), to=("coordinate2",)),
-    "type": Verb(Meaning.TYPE, text="text"),
-    "system_button": Verb(Meaning.KEY, text="button"),
-    "key": Verb(Meaning.KEY, text="text"),
-    "open": Verb(Meaning.OPEN, text="text"),
-    "wait": Verb(Meaning.WAIT, seconds="time"),
-    "terminate": Verb(Meaning.END, text="status"),
-    CAR: Verb(Meaning.CAR),
-}
-_ANSWER: dict[str, Verb] = {"answer": Verb(Meaning.SAY, text="text")}
-_QWEN3: dict[str, Verb] = {name: verb for name, verb in _QWEN25.items() if name not in ("key", "open")} | _ANSWER
-_MAI_UI: dict[str, Verb] = {
-    "click": Verb(Meaning.TAP, at=("coordinate",)),
-    "double_click": Verb(Meaning.DOUBLE_TAP, at=("coordinate",)),
-    "long_press": Verb(Meaning.HOLD, at=("coordinate",)),
-    "type": Verb(Meaning.TYPE, text="text"),
-    "swipe": Verb(Meaning.FLICK, at=("coordinate",), direction="direction", point_optional=True),
-    "drag": Verb(Meaning.DRAG, at=("start_coordinate",), to=("end_coordinate",)),
-    "open": Verb(Meaning.OPEN, text="text"),
-    "system_button": Verb(Meaning.KEY, text="button"),
-    "wait": Verb(Meaning.WAIT),
-    "ask_user": Verb(Meaning.ASK, text="text"),
-    "answer": Verb(Meaning.SAY, text="text"),
-    "terminate": Verb(Meaning.END, text="status"),
-    CAR: Verb(Meaning.CAR),
-}
-_OPENCUA: dict[str, Verb] = {
-    "click": Verb(Meaning.TAP, at=("x", "y")),
-    "doubleClick": Verb(Meaning.DOUBLE_TAP, at=("x", "y")),
-    "triple_click": Verb(Meaning.DOUBLE_TAP, at=("x", "y")),
-    "dragTo": Verb(Meaning.DRAG, at=("from_x", "from_y"), to=("x", "y")),
-    "scroll": Verb(Meaning.SCROLL, at=("x", "y"), direction="direction", point_optional=True),
-    "write": Verb(Meaning.TYPE, text="message"),
-    "press": Verb(Meaning.KEY, text="keys"),
-    "hotkey": Verb(Meaning.KEY, text="keys"),
-    "sleep": Verb(Meaning.WAIT, seconds="seconds"),
-    "wait": Verb(Meaning.WAIT),
-    "terminate": Verb(Meaning.END, text="status"),
-}
-_OPENAI: dict[str, Verb] = {
-    "click": Verb(Meaning.TAP, at=("x", "y")),
-    "double_click": Verb(Meaning.DOUBLE_TAP, at=("x", "y")),
-    "drag": Verb(Meaning.DRAG, at=("from",), to=("to",)),
-    "scroll": Verb(Meaning.SCROLL, at=("x", "y"), direction="direction", point_optional=True),
-    "type": Verb(Meaning.TYPE, text="text"),
-    "keypress": Verb(Meaning.KEY, text="keys"),
-    "wait": Verb(Meaning.WAIT),
-    "screenshot": Verb(Meaning.WAIT),
-    END: Verb(Meaning.END, means="success"),
-    CAR: Verb(Meaning.CAR),
-}
-_ANTHROPIC: dict[str, Verb] = {
-    "left_click": Verb(Meaning.TAP, at=("coordinate",)),
-    "double_click": Verb(Meaning.DOUBLE_TAP, at=("coordinate",)),
-    "triple_click": Verb(Meaning.DOUBLE_TAP, at=("coordinate",)),
-    "left_click_drag": Verb(Meaning.DRAG, at=("start_coordinate",), to=("coordinate",)),
-    "scroll": Verb(Meaning.SCROLL, at=("coordinate",), direction="scroll_direction", point_optional=True),
-    "type": Verb(Meaning.TYPE, text="text"),
-    "key": Verb(Meaning.KEY, text="text"),
-    "wait": Verb(Meaning.WAIT, seconds="duration"),
-    "screenshot": Verb(Meaning.WAIT),
-    END: Verb(Meaning.END, means="success"),
-    CAR: Verb(Meaning.CAR),
-}
-_GEMINI: dict[str, Verb] = {
-    "click_at": Verb(Meaning.TAP, at=("x", "y")),
-    "type_text_at": Verb(Meaning.TYPE, at=("x", "y"), text="text"),
-    "scroll_document": Verb(Meaning.SCROLL, direction="direction"),
-    "scroll_at": Verb(Meaning.SCROLL, at=("x", "y"), direction="direction"),
-    "drag_and_drop": Verb(Meaning.DRAG, at=("x", "y"), to=("destination_x", "destination_y")),
-    "key_combination": Verb(Meaning.KEY, text="keys"),
-    "go_back": Verb(Meaning.KEY, means="back"),
-    "wait_5_seconds": Verb(Meaning.WAIT, seconds="seconds"),
-    END: Verb(Meaning.END, means="success"),
-    CAR: Verb(Meaning.CAR),
-}
 _SCREEN_ALONE = frozenset(UNCALLED) - {ActionType.QUERY, ActionType.ESTIMATE_POSITION}
 _PLAIN: dict[str, Verb] = {str(kind): Verb(Meaning.CAR) for kind in UNCALLED if kind in _SCREEN_ALONE}
-
 _FUNCTIONS = (car_function(),)
+_THINKING = "<thinking>\n{thought}\n</thinking>\n"
+_HOLO = '{{"note": "", "thought": {thought}, "action": {action}}}'
+_POINT = "<point>{x} {y}</point>"
+_COMPUTER = "qwen-computer"
+
+
+def _anthropic(models: str, *tool: str) -> Format:
+    return _format(models, Calls(), Pixels(), "anthropic", api=Anthropic(_FUNCTIONS, *tool))
+
 
 FORMATS: Mapping[str, Format] = {
-    "anthropic": Format(Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS)),
-    "anthropic-2025-01": Format(
-        Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS, "computer_20250124", "computer-use-2025-01-24")
+    "anthropic": _anthropic("Claude's computer use, its toolset of 2026"),
+    "anthropic-2025-01": _anthropic(
+        "Claude's computer use, tool of January 2025", "computer_20250124", "computer-use-2025-01-24"
     ),
-    "anthropic-2025-11": Format(
-        Calls(), Pixels(), _ANTHROPIC, Anthropic(_FUNCTIONS, "computer_20251124", "computer-use-2025-11-24")
+    "anthropic-2025-11": _anthropic(
+        "Claude's computer use, tool of November 2025", "computer_20251124", "computer-use-2025-11-24"
     ),
-    "gemini": Format(Calls(), Share(1000), _GEMINI, Gemini(_FUNCTIONS)),
-    "gui-owl": Format(
-        ToolCalls(preamble="<thinking>\n{thought}\n</thinking>\n<conclusion>\n{thought}\n</conclusion>\n"),
-        QWEN25_GRID,
-        _QWEN25 | _ANSWER,
+    "gemini": _format(
+        "Gemini's computer use", Calls(), Share(1000), "gemini-2.5", "gemini-3.5", api=Gemini(_FUNCTIONS)
     ),
-    "gui-owl-1.5": Format(
-        ToolCalls(), Share(1000), _QWEN25 | _ANSWER | {"interact": Verb(Meaning.ASK, text="text")}
+    "glm-4.5v": _format(
+        "GLM-4.5V and later, GLM-4.1V", Objects("action_type", "Memory: none\nReason: {thought}\nAction: {action}"),
+        Share(999), "glm", "glm-computer",
     ),
-    "json": Format(JsonSyntax(), Pixels(), _PLAIN),
-    "mai-ui": Format(ToolCalls(preamble="<thinking>\n{thought}\n</thinking>\n"), Share(999), _MAI_UI),
-    "openai": Format(Calls(), Pixels(), _OPENAI, OpenAI(_FUNCTIONS)),
-    "opencua": Format(Code(), Resized(28, 3136, 12_845_056), _OPENCUA),
-    "qwen2.5-vl": Format(ToolCalls(preamble=""), QWEN25_GRID, _QWEN25),
-    "qwen3-vl": Format(ToolCalls(), Share(999), _QWEN3),
-    "ui-tars-1.0": Format(
-        Labelled("<|box_start|>({x},{y})<|box_end|>"), Share(1000), _ui_tars("start_box", "start_box", "end_box")
+    "gui-owl": _format(
+        "GUI-Owl, Mobile-Agent-v3", ToolCalls(preamble=f"{_THINKING}<conclusion>\n{{thought}}\n</conclusion>\n"),
+        QWEN25_GRID, "qwen-2.5", "qwen-answer", _COMPUTER, car=True,
     ),
-    "ui-tars-1.5": Format(
-        Labelled("<point>{x} {y}</point>"),
-        Resized(28, 100 * 28 * 28, 16_384 * 28 * 28),
-        _ui_tars("point", "start_point", "end_point"),
+    "gui-owl-1.5": _format(
+        "GUI-Owl 1.5, Mobile-Agent-v3.5", ToolCalls(), Share(1000),
+        "qwen-2.5", "qwen-answer", "gui-owl-1.5", _COMPUTER, car=True,
     ),
-}
+    "holo-1.5": _format("Holo1, Holo1.5", Objects("action", _HOLO), QWEN25_GRID, "holo"),
+    "holo-2": _format("Holo2", Objects("action", _HOLO), Share(1000), "holo"),
+    "json": Format("any model", JsonSyntax(), Pixels(), (), _PLAIN),
+    "mai-ui": _format("MAI-UI", ToolCalls(preamble=_THINKING), Share(999), "mai-ui", car=True),
+    "openai": _format("OpenAI's computer use", Calls(), Pixels(), "openai", api=OpenAI(_FUNCTIONS)),
+    "opencua": _format("OpenCUA", Code(), Resized(28, 3136, 12_845_056), "opencua"),
+    "qwen2.5-vl": _format(
+        "Qwen2.5-VL", ToolCalls(preamble=""), QWEN25_GRID, "qwen-2.5", _COMPUTER, car=True
+    ),
+    "qwen3-vl": _format("Qwen3-VL, Qwen3.5", ToolCalls(), Share(999), "qwen-3", "qwen-answer", _COMPUTER, car=True),
+    "ui-tars-1.0": _boxed(
+        _format("UI-TARS 1.0, Doubao 1.5", Labelled("<|box_start|>({x},{y})<|box_end|>"), Share(1000), "ui-tars")
+    ),
+    "ui-tars-1.5": _format(
+        "UI-TARS 1.5", Labelled(_POINT), Resized(28, 100 * 28 * 28, 16_384 * 28 * 28), "ui-tars"
+    ),
+    "ui-tars-2": _format(
+        "UI-TARS 2, Seed 1.6 and later", Labelled(_POINT, is_tagged=True), Share(1000), "ui-tars"
+    ),
+}  # fmt: skip
 """The formats by name."""
 
 

@@ -11,6 +11,11 @@ from typing import Protocol
 class Grid(Protocol):
     """The coordinates of a format."""
 
+    @property
+    def told(self) -> str:
+        """What they are, in words."""
+        ...
+
     def span(self, width: int, height: int) -> tuple[int, int]:
         """The coordinates of the lower right corner of a picture of that size."""
         ...
@@ -20,8 +25,9 @@ class Grid(Protocol):
 class Pixels:
     """Pixels of the picture as it is sent."""
 
+    told = "pixels"
+
     def span(self, width: int, height: int) -> tuple[int, int]:
-        """See ``Grid``."""
         return width, height
 
 
@@ -32,8 +38,11 @@ class Share:
     whole: int
     """999 or 1000."""
 
+    @property
+    def told(self) -> str:
+        return f"0 to {self.whole}"
+
     def span(self, width: int, height: int) -> tuple[int, int]:
-        """See ``Grid``."""
         return self.whole, self.whole
 
 
@@ -49,8 +58,11 @@ class Resized:
     least_px: int
     most_px: int
 
+    @property
+    def told(self) -> str:
+        return f"pixels, resized to multiples of {self.factor}"
+
     def span(self, width: int, height: int) -> tuple[int, int]:
-        """See ``Grid``."""
 
         def multiples(scale: float, rounded: Callable[[float], int]) -> tuple[int, int]:
             across, down = (self.factor * max(1, rounded(side / scale / self.factor)) for side in (width, height))

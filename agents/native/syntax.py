@@ -13,17 +13,22 @@ from typing import Any, Protocol
 from automotive_cosim.agents import answer
 from automotive_cosim.agents.answer import ended, objects
 from automotive_cosim.agents.native.verbs import CAR, CAR_ACTIONS, GuiCall, Meaning, Verb
+from automotive_cosim.agents.thoughts import LOST, spoken
+from automotive_cosim.agents.written import written
 from automotive_cosim.cockpit.actions import grammar, to_json
 from automotive_cosim.contracts import UNCALLED, ActionType, Direction, Json
 from automotive_cosim.errors import ActionError
 
-LONGEST = 20_000
-"""Characters at the end of an answer in which to look for calls."""
 Verbs = Mapping[str, Verb]
 
 
 class Syntax(Protocol):
     """How a format writes calls."""
+
+    @property
+    def whole(self) -> re.Pattern[str]:
+        """What an answer that was cut off has at least, so that its calls are none of its thoughts."""
+        ...
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """The calls in an answer, in order.
@@ -48,15 +53,18 @@ def _sample(name: str, verb: Verb) -> str:
         return "up|down|left|right"
     if name == verb.seconds:
         return "seconds"
+    if name == verb.says:
+        return "..."
     if verb.meaning is Meaning.END:
-        return "success|failure"
+        return "complete|infeasible" if name == "goal_status" else "success|failure"
     return {Meaning.KEY: "home|back|enter", Meaning.OPEN: "name"}.get(verb.meaning, "...")
 
 
 # --- UI-TARS ------------------------------------------------------------------------------------------------
 
 _LABEL = re.compile(r"action\s*[:\uff1a]", re.IGNORECASE)
-_WHOLE_CALL = re.compile(r"^[ \t]*([a-z_]+)\((.*?)\)[ \t]*$", re.MULTILINE | re.DOTALL)
+_THOUGHT = re.compile(r"^\s*(?:thought|reflection|reason)\s*[:\uff1a]", re.IGNORECASE | re.MULTILINE)
+_WHOLE_CALL = re.compile(r"^[ \t]*([A-Za-z_]+)\((.*?)\)[ \t]*$", re.MULTILINE | re.DOTALL)
 """A call as the models are told to write it: on lines of its own, its parenthesis closed."""
 _CALL_BEGINS = re.compile(r"^[\s`*>-]*(?:<\w+>\s*)?([A-Za-z_]+)[ \t]*\(", re.MULTILINE)
 _ARGUMENT = re.compile(
@@ -83,15 +91,27 @@ _QUOTED_OR_WIDE = re.compile(
 
 @dataclass(frozen=True, slots=True)
 class Labelled:
-    """``Thought: ...``, ``Action: name(argument='...')``: UI-TARS."""
+    """``Thought: ...``, ``Action: name(argument='...')``: UI-TARS; or the same calls in Seed's tags."""
 
     point: str
     """Form of a point, with ``{x}`` and ``{y}``."""
+    is_tagged: bool = False
+    """Whether the prompt asks for tags; both forms are read."""
+    whole: re.Pattern[str] = re.compile(r"action\s*[:\uff1a].*\(.*\)|</function>", re.IGNORECASE | re.DOTALL)
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``. Points are read in the forms of all versions, whatever the prompt shows."""
-        text = ended(text[-LONGEST:])
+        text = ended(text)
         marks = list(_LABEL.finditer(text))
+        tagged = [(name, given) for name, given in written(text, {}) if isinstance(given, dict)]
+        if tagged and "<function" in text:
+            plain = [
+                (name, {key: str(each).replace("\\n", "\n") for key, each in given.items()})
+                for name, given in tagged
+            ]
+            return [GuiCall(name, _named(given, verbs.get(name))) for name, given in plain]
+        if not marks and _THOUGHT.search(text):
+            raise ActionError(LOST)
         tail = text[marks[-1].end() if marks else 0 :].strip().strip("`").strip()
         calls = [(found[1], _keywords(found[2])) for found in _WHOLE_CALL.finditer(tail)]
         if not calls or not all(name in verbs for name, _ in calls):
@@ -101,17 +121,19 @@ class Labelled:
         return [GuiCall(name, _named(arguments, verbs.get(name))) for name, arguments in calls]
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         lines = "\n\n".join(self._call(call, verbs[call.name]) for call in calls)
-        return f"Thought: {thought}\nAction: {lines}"
+        return f"<think>{thought}</think>\n{lines}" if self.is_tagged else f"Thought: {thought}\nAction: {lines}"
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
-        return "\n".join(
+        lines = [
             f"{name}({', '.join(f'{each}={self._shown(each, verb)!r}' for each in verb.arguments())})"
             for name, verb in verbs.items()
             if not verb.unasked
-        )
+        ]
+        if self.is_tagged:
+            form = self._call(GuiCall("NAME", {"ARGUMENT": "..."}), Verb(Meaning.WAIT))
+            lines += ["", f"Call one in this form:\n{form}"]
+        return "\n".join(lines)
 
     def _shown(self, name: str, verb: Verb) -> str:
         if name in verb.at + verb.to:
@@ -119,11 +141,14 @@ class Labelled:
         return _sample(name, verb)
 
     def _call(self, call: GuiCall, verb: Verb) -> str:
-        texts = []
-        for name, value in call.arguments.items():
-            said = self.point.format(x=value[0], y=value[1]) if name in verb.at + verb.to else str(value)
-            texts.append(f"{name}={said!r}")
-        return f"{call.name}({', '.join(texts)})"
+        said = {
+            name: self.point.format(x=value[0], y=value[1]) if name in verb.at + verb.to else str(value)
+            for name, value in call.arguments.items()
+        }
+        if self.is_tagged:
+            given = "".join(f"<parameter={name}>{text}</parameter>\n" for name, text in said.items())
+            return f"<seed:tool_call>\n<function={call.name}>\n{given}</function>\n</seed:tool_call>"
+        return f"{call.name}({', '.join(f'{name}={text!r}' for name, text in said.items())})"
 
 
 def _keywords(text: str) -> Json:
@@ -139,9 +164,10 @@ def _keywords(text: str) -> Json:
 
 def _loosely(tail: str, verbs: Verbs) -> list[tuple[str, Json]]:
     """Calls of known words that begin a line, whatever follows them; a parenthesis or quote may be missing."""
-    begun = [found for found in _CALL_BEGINS.finditer(tail) if found[1].lower() in verbs]
+    known = {name.lower(): name for name in verbs}
+    begun = [found for found in _CALL_BEGINS.finditer(tail) if found[1].lower() in known]
     return [
-        (mark[1].lower(), _arguments(tail[mark.end() : following.start() if following else len(tail)]))
+        (known[mark[1].lower()], _arguments(tail[mark.end() : following.start() if following else len(tail)]))
         for mark, following in zip_longest(begun, begun[1:])
     ]
 
@@ -187,6 +213,8 @@ def _named(given: Json, verb: Verb | None) -> Json:
         if way is not None:
             named[verb.direction] = way
             placed.remove(way)
+    if len(verb.at) == 2 and len(placed) == 2:
+        named |= dict(zip(verb.at, placed, strict=True))
     if len(verb.at) == 1 and verb.at[0] not in named:
         if placed:  # click(644, 364)
             named[verb.at[0]] = placed
@@ -216,16 +244,21 @@ class ToolCalls:
     function: str = "mobile_use"
     preamble: str = "Thought: {thought}\nAction: {thought}\n"
     """What stands before the calls, with ``{thought}``."""
+    whole: re.Pattern[str] = re.compile(r"</tool_call>")
 
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
-        """See ``Syntax``."""
-        calls = [call for value in objects(ended(text[-LONGEST:])) if (call := _tool_call(value, verbs))]
+        """See ``Syntax``. The same function in the tags of later Qwen is read, too."""
+        said = ended(text)
+        tagged = [
+            {"name": name, "arguments": given}
+            for name, given in (written(said, {}) if "<function=" in said else ())
+        ]
+        calls = [call for value in tagged or objects(said) if (call := _tool_call(value, verbs))]
         if not calls:
             raise ActionError('the answer has no <tool_call>{"name": ..., "arguments": {...}}</tool_call>')
         return calls
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         values = [
             {"name": CAR, "arguments": dict(call.arguments)}
             if call.name == CAR
@@ -236,7 +269,6 @@ class ToolCalls:
         return self.preamble.format(thought=thought) + "\n".join(texts)
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
         touch = {name: verb for name, verb in verbs.items() if verb.meaning is not Meaning.CAR and not verb.unasked}
         properties: Json = {"action": {"type": "string", "enum": list(touch)}}
         for verb in touch.values():
@@ -301,19 +333,62 @@ def _tool_call(value: Json, verbs: Verbs) -> GuiCall | None:
     )
 
 
+# --- an object that names its action: GLM, Holo ------------------------------------------------------------------
+
+_BOX_MARK = re.compile(r"<\|(?:begin|end)_of_box\|>|</?answer>")
+
+
+@dataclass(frozen=True, slots=True)
+class Objects:
+    """``{"action_type": "click", "box_2d": ...}`` after labels, or within ``{"thought": ..., "action": {...}}``."""
+
+    key: str
+    """Name of the key with the action's name."""
+    form: str
+    """Of an answer, with ``{thought}`` and ``{action}``, both as JSON where its first character is a brace."""
+    whole: re.Pattern[str] = re.compile(r"action\W.*\}|\(.*\)", re.IGNORECASE | re.DOTALL)
+
+    def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
+        """See ``Syntax``. The calls of these models' forms for a desktop are read, too."""
+        said = _BOX_MARK.sub("", ended(text))
+        calls = []
+        for value in objects(said):
+            inner = next((each for each in (value.get("action"), value) if isinstance(each, dict)), value)
+            if isinstance(inner.get(self.key), str):
+                calls.append(
+                    GuiCall(inner[self.key], {name: each for name, each in inner.items() if name != self.key})
+                )
+        return calls or Labelled("").read(said, verbs)
+
+    def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
+        told = [json.dumps({self.key: call.name, **call.arguments}, ensure_ascii=False) for call in calls]
+        says = json.dumps(thought) if self.form.startswith("{") else thought
+        return "\n".join(self.form.format(thought=says, action=each) for each in told)
+
+    def describe(self, verbs: Verbs, width: int, height: int) -> str:
+        lines = [
+            json.dumps({self.key: name} | {each: _shown(each, verb) for each in verb.arguments()})
+            for name, verb in verbs.items()
+            if not verb.unasked
+        ]
+        form = self.form.format(thought='"..."' if self.form.startswith("{") else "...", action="{...}")
+        return "\n".join([*lines, "", f"Answer in this form, x from 0 to {width}, y from 0 to {height}:", form])
+
+
+def _shown(name: str, verb: Verb) -> object:
+    if name in verb.at + verb.to:
+        return 0 if len(verb.at) == 2 else [["x_min", "y_min", "x_max", "y_max"]]
+    return False if name in (verb.enter.partition(":")[0], verb.clear.partition(":")[0]) else _sample(name, verb)
+
+
 # --- Python's pyautogui: OpenCUA ----------------------------------------------------------------------------
 
+_AT = ["click", "doubleClick", "triple_click", "tripleClick", "rightClick", "middleClick", "moveTo", "dragTo"]
 _ORDER: Mapping[str, tuple[str, ...]] = {
-    "click": ("x", "y"),
-    "doubleClick": ("x", "y"),
-    "triple_click": ("x", "y"),
-    "moveTo": ("x", "y"),
-    "dragTo": ("x", "y"),
-    "write": ("message",),
-    "press": ("keys",),
-    "hotkey": ("keys",),
-    "scroll": ("clicks", "x", "y"),
-    "hscroll": ("clicks", "x", "y"),
+    **dict.fromkeys(_AT, ("x", "y")),
+    **dict.fromkeys(("write", "typewrite"), ("message",)),
+    **dict.fromkeys(("press", "hotkey"), ("keys",)),
+    **dict.fromkeys(("scroll", "hscroll"), ("clicks", "x", "y")),
     "sleep": ("seconds",),
     "terminate": ("status",),
 }
@@ -324,9 +399,10 @@ _ORDER: Mapping[str, tuple[str, ...]] = {
 class Code:
     """``## Action``, ``## Code`` with lines of pyautogui: OpenCUA."""
 
+    whole: re.Pattern[str] = re.compile(r"```.*```", re.DOTALL)
+
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
-        """See ``Syntax``."""
-        said = ended(text[-LONGEST:])
+        said = ended(text)
         blocks = re.findall(r"```(?:python|code)?\s*\n(.*?)(?:```|\Z)", said, re.DOTALL)
         source = blocks[-1] if blocks else "\n".join(_CODE_LINE.findall(said))
         try:
@@ -341,15 +417,14 @@ class Code:
         return calls
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         lines = "\n".join(line for call in calls for line in _lines(call))
         return f"## Action:\n{thought}\n\n## Code:\n```python\n{lines}\n```"
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
         lines = (
             line
             for name, verb in verbs.items()
+            if not verb.unasked
             for line in _lines(GuiCall(name, {each: _Word(each) for each in verb.arguments()}))
         )
         return "\n".join(lines)
@@ -406,8 +481,8 @@ def _joined(calls: Iterator[GuiCall]) -> Iterator[GuiCall]:
         elif call.name == "dragTo":
             from_x, from_y = (start or {}).get("x"), (start or {}).get("y")
             yield GuiCall("dragTo", {"from_x": from_x, "from_y": from_y, "x": given.get("x"), "y": given.get("y")})
-        elif call.name == "click" and start is not None and not given:
-            yield GuiCall("click", start)
+        elif call.name.lower().endswith("click") and start is not None and not {"x", "y"} & given.keys():
+            yield GuiCall(call.name, given | start)
         else:
             yield GuiCall(call.name, given)
         start = None
@@ -437,6 +512,8 @@ def _lines(call: GuiCall) -> Iterator[str]:
 class Calls:
     """Calls that came over an API of their own: OpenAI, Anthropic, Gemini (``models.apis``)."""
 
+    whole: re.Pattern[str] = re.compile(r'"calls": \[\{')
+
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
         """See ``Syntax``. An answer in words alone ends the episode: that is how these models end it."""
         try:
@@ -445,12 +522,11 @@ class Calls:
             said = told["say"]
         except (ValueError, LookupError, TypeError, RecursionError) as error:
             raise ActionError(f"the answer is no list of calls: {error}") from error
-        if not calls and not said:
+        if not calls and not spoken(str(said)).strip():
             raise ActionError("the answer is empty; call a function, or say that you are done")
         return calls or [GuiCall(END, {})]
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         told = [{"name": call.name, "arguments": dict(call.arguments)} for call in calls if call.name != END]
         return json.dumps({"say": thought, "calls": told}, ensure_ascii=False)
 
@@ -466,19 +542,22 @@ END = "end"
 def _plainly(name: str, given: Json) -> GuiCall:
     """A call with its arguments as the table names them."""
     if name == "drag" and "path" in given:  # OpenAI
-        path = [[point["x"], point["y"]] for point in given["path"]]
+        path = [[*point.values()] if isinstance(point, dict) else list(point) for point in given["path"]]
         return GuiCall(name, {"from": path[0], "to": path[-1]})
     if name == "scroll" and "scroll_y" in given:  # OpenAI: a wheel's distance, down and right above zero
         across, down = given.pop("scroll_x", 0), given.pop("scroll_y")
         by_row = ("down" if down > 0 else "up") if abs(down) >= abs(across) else ("right" if across > 0 else "left")
         return GuiCall(name, given | {"direction": by_row})
-    if name == "type_text_at":  # Gemini presses enter unless told otherwise
-        enter = "\n" if given.pop("press_enter", True) else ""
-        given.pop("clear_before_typing", None)
-        return GuiCall(name, given | {"text": f"{given.get('text', '')}{enter}"})
-    if name == "wait_5_seconds":
-        return GuiCall(name, {"seconds": 5})
+    held = given.get("keys") if name not in ("keypress", "hotkey", "key_combination") else None
+    if held or (given.get("text") and name.endswith(("click", "drag", "scroll"))):
+        raise ActionError(f"{name} with keys held down: this car has no such keys")
+    if name in ("click", "double_click") and given.get("button") in _BUTTONS:
+        return GuiCall(_BUTTONS[given["button"]], given)
     return GuiCall(name, given)
+
+
+_BUTTONS: Mapping[str, str] = {"right": "right_click", "back": "go_back", "forward": "go_forward"}
+"""OpenAI's buttons of a mouse other than the left, as words of their own."""
 
 
 # --- this project's own JSON --------------------------------------------------------------------------------
@@ -488,18 +567,17 @@ def _plainly(name: str, given: Json) -> GuiCall:
 class JsonSyntax:
     """``Situation``, ``Plan``, ``Action: {"action_type": ...}``: as this project's other agents answer."""
 
+    whole: re.Pattern[str] = re.compile(r"^action\W.*\}", re.IGNORECASE | re.DOTALL | re.MULTILINE)
+
     def read(self, text: str, verbs: Verbs) -> list[GuiCall]:
-        """See ``Syntax``."""
         action = answer.read(text).action
         return [GuiCall(str(action.action_type), to_json(action))]
 
     def write(self, thought: str, calls: Sequence[GuiCall], verbs: Verbs) -> str:
-        """See ``Syntax``."""
         lines = "\n".join(f"Action: {json.dumps(dict(call.arguments), ensure_ascii=False)}" for call in calls)
         return f"Situation: {thought}\nPlan: none\n{lines}"
 
     def describe(self, verbs: Verbs, width: int, height: int) -> str:
-        """See ``Syntax``."""
         kinds = [ActionType(name) for name in verbs]
         return grammar(kinds).replace(POINT_TOO, "").replace('"index": <int>', '"x": <int>, "y": <int>')
 

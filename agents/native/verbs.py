@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from math import isfinite
@@ -48,6 +48,8 @@ class GuiCall:
 class Meaning(StrEnum):
     """What a verb does."""
 
+    MOVE = "move"
+    """Points at something without touching it."""
     TAP = "tap"
     DOUBLE_TAP = "double_tap"
     HOLD = "hold"
@@ -86,18 +88,35 @@ class Verb:
     to: tuple[str, ...] = ()
     """The same for where a drag ends."""
     text: str = ""
-    """The argument with the text: what is typed, said, opened, pressed, or the status."""
+    """The argument with the text: what is typed, said, opened, pressed, or the status. Others that are read after a
+    ``|``."""
     direction: str = ""
     seconds: str = ""
     means: str = ""
     """Without an argument for it, the text that the word stands for."""
+    says: str = ""
+    """The argument with what the driver is told at the end."""
+    enter: str = ""
+    clear: str = ""
+    """The argument that says whether enter is pressed after a text, and whether what stood in the field goes, with
+    what holds without it: ``name:true``. Without a name, it is fixed."""
+    ways: tuple[str, ...] = ()
+    """The directions of an amount above and below zero, if the direction is told so."""
     point_optional: bool = False
+    """Whether it may come without a point: then it is where the last one was."""
     unasked: bool = False
     """Whether the word is read if a model says it, but not offered."""
 
+    @property
+    def may_decline(self) -> bool:
+        """Whether it can end with a status other than success."""
+        return self.meaning is Meaning.END and self.means != "success"
+
     def arguments(self) -> tuple[str, ...]:
         """Names of its arguments."""
-        return (*self.at, *self.to, *filter(None, (self.text, self.direction, self.seconds)))
+        switches = (switch.partition(":")[0] for switch in (self.enter, self.clear))
+        named = (self.text.partition("|")[0], self.direction, self.seconds, self.says, *switches)
+        return (*self.at, *self.to, *filter(None, named))
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +126,9 @@ class Hand:
     screen: GuiScreen
     elements: Sequence[Element] = ()
     last: tuple[int, int] | None = None
-    """The pixel that was touched last."""
+    """The pixel that was touched or pointed at last."""
+    has_touched: bool = False
+    """Whether that was in the same answer, so that the focus is where it has gone since the picture."""
 
 
 def actions(verbs: Mapping[str, Verb], call: GuiCall, hand: Hand) -> list[Action]:
@@ -125,12 +146,16 @@ def actions(verbs: Mapping[str, Verb], call: GuiCall, hand: Hand) -> list[Action
 def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
     text = _text(verb, call)
     match verb.meaning:
+        case Meaning.MOVE:
+            _point(verb.at, call, hand.screen)
+            return []
         case Meaning.TAP | Meaning.DOUBLE_TAP | Meaning.HOLD:
-            x, y = _point(verb.at, call, hand.screen)
+            x, y = _start(verb, call, hand)
             return [Action(TOUCHES[verb.meaning], x=x, y=y)]
         case Meaning.TYPE:
             typed = text.removesuffix("\n")
-            enter = [Action(ActionType.KEYBOARD_ENTER)] if typed != text else []
+            is_entered = typed != text or _is_on(verb.enter, call)
+            enter = [Action(ActionType.KEYBOARD_ENTER)] if is_entered else []
             return [*([_typed(typed, verb, call, hand)] if typed else []), *enter]
         case Meaning.SCROLL:
             return [Action(ActionType.SCROLL, index=_list(verb, call, hand), direction=_direction(verb, call))]
@@ -138,13 +163,13 @@ def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
             x, y = _point(verb.at, call, hand.screen) if _has_point(verb, call) else _middle(hand.screen)
             return [Action(ActionType.SWIPE, x=x, y=y, direction=_direction(verb, call))]
         case Meaning.DRAG:
-            return [drag(_point(verb.at, call, hand.screen), _point(verb.to, call, hand.screen))]
+            return [drag(_start(verb, call, hand), _point(verb.to, call, hand.screen))]
         case Meaning.KEY:
             return [Action(_key(text))]
         case Meaning.OPEN:
             return [Action(ActionType.OPEN_APP, app_name=text)]
         case Meaning.WAIT:
-            return [Action(ActionType.WAIT, seconds=_seconds(call.arguments.get(verb.seconds)))]
+            return [Action(ActionType.WAIT, seconds=_seconds(call.arguments.get(verb.seconds, verb.means)))]
         case Meaning.SAY:
             return [Action(ActionType.ANSWER, text=text)]
         case Meaning.ASK:
@@ -152,7 +177,9 @@ def _actions(verb: Verb, call: GuiCall, hand: Hand) -> list[Action]:
         case Meaning.END:
             if text.casefold() not in STATUSES:
                 raise ActionError(str(UnknownNameError("status", text[:40], STATUSES)))
-            return [Action(ActionType.STATUS, goal_status=STATUSES[text.casefold()])]
+            said = str(call.arguments.get(verb.says) or "")
+            told = [Action(ActionType.ANSWER, text=said)] if said else []
+            return [*told, Action(ActionType.STATUS, goal_status=STATUSES[text.casefold()])]
         case Meaning.CAR:
             return [parse(dict(call.arguments))]
 
@@ -173,7 +200,7 @@ def _call(name: str, verb: Verb, action: Action, screen: GuiScreen) -> GuiCall |
     said = _said(verb, action)
     if said is None or (verb.means and said != verb.means):
         return None
-    found: dict[str, Any] = {verb.text: said} if verb.text else {}
+    found: dict[str, Any] = {verb.text.partition("|")[0]: said} if verb.text else {}
     if verb.at and action.x is not None and action.y is not None:
         found |= _spread(verb.at, screen.point(action.x, action.y))
         if verb.to:
@@ -184,6 +211,12 @@ def _call(name: str, verb: Verb, action: Action, screen: GuiScreen) -> GuiCall |
         found[verb.direction] = str(action.direction)
     if verb.seconds and action.seconds is not None:
         found[verb.seconds] = action.seconds
+    if verb.says:
+        found[verb.says] = ""
+    for switch, wanted in ((verb.enter, False), (verb.clear, bool(action.clear_text))):
+        key, _, default = switch.partition(":")
+        if key and wanted != (default == "true"):
+            found[key] = wanted
     return GuiCall(name, found)
 
 
@@ -215,7 +248,7 @@ def _said(verb: Verb, action: Action) -> str | None:
             if kind is not ActionType.STATUS:
                 return None
             return next(word for word, status in STATUSES.items() if status is action.goal_status)
-        case Meaning.CAR:
+        case Meaning.CAR | Meaning.MOVE:
             return None
 
 
@@ -239,15 +272,16 @@ CAR_ACTIONS = frozenset(
 
 
 def _text(verb: Verb, call: GuiCall) -> str:
-    if not verb.text or verb.text not in call.arguments:
+    name = next((each for each in verb.text.split("|") if each in call.arguments), None)
+    if name is None:
         return verb.means
-    value = call.arguments[verb.text]
+    value = call.arguments[name]
     if isinstance(value, list) and len(value) == 1:  # a list of keys
         value = value[0]
     if isinstance(value, int | float) and not isinstance(value, bool):
         value = str(value)
     if not isinstance(value, str):
-        raise ActionError(f"{call.name}: {verb.text} is {value!r:.60}; give one text")
+        raise ActionError(f"{call.name}: {name} is {value!r:.60}; give one text")
     return value
 
 
@@ -264,6 +298,26 @@ def _point(names: tuple[str, ...], call: GuiCall, screen: GuiScreen) -> tuple[in
         came = ", ".join(f"{name} {value!r:.40}" for name, value in zip(names, values, strict=True))
         raise ActionError(f"{call.name}: {came} is no point; give two numbers, x and y")
     return screen.pixel(*numbers)
+
+
+def _start(verb: Verb, call: GuiCall, hand: Hand) -> tuple[int, int]:
+    """Where a touch begins: at its point, or without one where the last was."""
+    if verb.at and (_has_point(verb, call) or not verb.point_optional or hand.last is None):
+        return _point(verb.at, call, hand.screen)
+    if hand.last is None:
+        raise ActionError(f"{call.name} begins at the last touch, and there was none; touch or point there first")
+    return hand.last
+
+
+def pointed(verb: Verb, call: GuiCall, hand: Hand) -> tuple[int, int] | None:
+    """The pixel that a word points at without touching it; None if it does not point."""
+    return _point(verb.at, call, hand.screen) if verb.meaning is Meaning.MOVE else None
+
+
+def _is_on(switch: str, call: GuiCall) -> bool:
+    name, _, default = switch.partition(":")
+    value = call.arguments.get(name, default)
+    return str(value).casefold() == "true"
 
 
 def _numbers(value: Any) -> list[float]:
@@ -284,6 +338,8 @@ def _spread(names: tuple[str, ...], point: tuple[int, int]) -> Json:
 
 def _direction(verb: Verb, call: GuiCall) -> Direction:
     value = str(call.arguments.get(verb.direction, "")).casefold()
+    if verb.ways and (amounts := _numbers(value)):
+        value = verb.ways[0] if amounts[0] > 0 else verb.ways[1]
     if value not in set(Direction):
         raise ActionError(str(UnknownNameError("direction", value[:40], Direction)))
     return Direction(value)
@@ -302,10 +358,13 @@ def _key(name: str) -> ActionType:
 
 
 def _typed(text: str, verb: Verb, call: GuiCall, hand: Hand) -> Action:
-    if _has_point(verb, call) and verb.at:
+    clear = _is_on(verb.clear, call)
+    if verb.at and _has_point(verb, call):
         x, y = _point(verb.at, call, hand.screen)
-        return Action(ActionType.INPUT_TEXT, x=x, y=y, text=text)
-    return typed(text, hand.elements, hand.last)
+        return Action(ActionType.INPUT_TEXT, x=x, y=y, text=text, clear_text=clear or None)
+    if hand.has_touched and hand.last is not None and _under(hand.last, hand, lambda each: each.is_editable):
+        return typed(text, (), hand.last, clear=clear)
+    return typed(text, hand.elements, hand.last, clear=clear)
 
 
 def typed(text: str, elements: Sequence[Element], last: tuple[int, int] | None, *, clear: bool = False) -> Action:
@@ -327,14 +386,18 @@ def _list(verb: Verb, call: GuiCall, hand: Hand) -> int | None:
     """The list under the point, if one is given: the smallest that can be scrolled."""
     if not verb.at or not _has_point(verb, call):
         return None
-    x, y = _point(verb.at, call, hand.screen)
-    under = [
+    under = _under(_point(verb.at, call, hand.screen), hand, lambda each: each.is_scrollable)
+    return min(under)[1] if under else None
+
+
+def _under(at: tuple[int, int], hand: Hand, wanted: Callable[[Element], bool]) -> list[tuple[int, int]]:
+    """Area in square pixels and index of the wanted elements under a pixel."""
+    return [
         ((box.x_max - box.x_min) * (box.y_max - box.y_min), index)
         for index, element in enumerate(hand.elements)
         for box in (element.bbox_pixels,)
-        if element.is_scrollable and box.x_min <= x < box.x_max and box.y_min <= y < box.y_max
+        if wanted(element) and box.x_min <= at[0] < box.x_max and box.y_min <= at[1] < box.y_max
     ]
-    return min(under)[1] if under else None
 
 
 def _middle(screen: GuiScreen) -> tuple[int, int]:

@@ -31,6 +31,21 @@ def list_agents(as_json: AsJson = False) -> None:
     typer.echo(f"models: {', '.join(MODELS)}")
 
 
+@app.command("formats")
+def list_formats(as_json: AsJson = False) -> None:
+    """List the native formats: their models, coordinates and words, with version, date and source of the words."""
+    from automotive_cosim.agents import FORMATS
+
+    if as_json:
+        print_json({"formats": {name: form.as_json() for name, form in FORMATS.items()}})
+        return
+    for name, form in FORMATS.items():
+        declines = f"; declines with {form.declines}" if form.declines else ""
+        typer.echo(f"{name}: {form.models}; {form.grid.told}{declines}; has no {', '.join(form.lacks)}")
+        for words in form.words:
+            typer.echo(f"    {', '.join(words.verbs)}\n        {words.version}; {words.date}, {words.source}")
+
+
 @app.command()
 def show(name: str, as_json: AsJson = False) -> None:
     """Show an agent's inputs and actions and, if it uses a model, its prompt."""
@@ -53,10 +68,7 @@ def show(name: str, as_json: AsJson = False) -> None:
         return
     typer.echo(f"{name}: gets {', '.join(channels) or 'only the goal'}")
     if name == NativeAgent.name:
-        typer.echo("its model gets the screenshot alone\n")
-        for form, each in FORMATS.items():
-            typer.echo(f"{form}: {', '.join(each.verbs)}\n    has no {', '.join(each.lacks)}")
-        typer.echo()
+        typer.echo("its model gets the screenshot alone; `automotive-cosim agents formats` has its words\n")
     elif actions:
         typer.echo(f"actions: {', '.join(actions)}\n")
     typer.echo(prompt, nl=False)

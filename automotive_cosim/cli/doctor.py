@@ -59,7 +59,7 @@ EXTRAS = {
     "browser": Extra("playwright", "the tests of the pages in a browser"),
     "import": Extra("osmium", "scenarios import and download"),
     "inspect": Extra("inspect_ai", "inspect eval automotive_cosim/cockpit"),
-    "llm": Extra("openai", "--model openai/NAME"),
+    "llm": Extra("httpx2", "--model openai/NAME"),
     "local": Extra("xllamacpp", "--model local"),
     "mcp": Extra("mcp", "mcp"),
     "openenv": Extra("openenv", "doors.openenv"),

@@ -17,7 +17,7 @@ from typing import Annotated, Any
 import anyio.from_thread
 from mcp.server.mcpserver import Context, MCPServer
 from mcp.server.mcpserver.exceptions import ToolError
-from mcp_types import CallToolResult, ContentBlock, ImageContent, TextContent
+from mcp_types import CallToolResult, ContentBlock, ImageContent, InputRequiredResult, TextContent, Tool
 from pydantic import BeforeValidator, Field, WithJsonSchema
 
 from automotive_cosim import __version__
@@ -81,6 +81,31 @@ on what is nested too deep."""
 EpisodeId = Annotated[str, Field(description="The id that `start` returned.")]
 
 
+class CockpitServer(MCPServer[Any]):
+    """A server that refuses arguments which a tool does not have, in place of leaving them out."""
+
+    async def list_tools(self) -> list[Tool]:
+        """The tools, whose schemas say so."""
+        tools: list[Tool] = await super().list_tools()
+        for tool in tools:
+            tool.input_schema = tool.input_schema | {"additionalProperties": False}
+        return tools
+
+    async def call_tool(
+        self, name: str, arguments: dict[str, Any], context: Context[Any, Any] | None = None
+    ) -> CallToolResult | InputRequiredResult:
+        """Calls a tool.
+
+        Raises:
+            ToolError: it has no such argument, or it says so itself.
+        """
+        for tool in await super().list_tools():
+            known = tool.input_schema.get("properties", {})
+            for unknown in arguments.keys() - known.keys() if tool.name == name else ():
+                raise ToolError(str(UnknownNameError(f"argument of {name}", unknown, known)))
+        return await super().call_tool(name, arguments, context)
+
+
 def make_server(service: EpisodeService, interface: Interface = Interface.TOUCH) -> MCPServer[Any]:
     """A server of the service's episodes, not yet running. The caller closes the service.
 
@@ -91,9 +116,7 @@ def make_server(service: EpisodeService, interface: Interface = Interface.TOUCH)
             protocol has no sessions that could have tools of their own.
     """
     told = INSTRUCTIONS if interface.touches else CALLING
-    server: MCPServer[Any] = MCPServer(
-        "automotive-cosim", instructions=told, version=__version__, log_level="WARNING"
-    )
+    server = CockpitServer("automotive-cosim", instructions=told, version=__version__, log_level="WARNING")
     tools = CockpitTools(service, server, interface)
     acting = (tools.act,) if interface.touches else ()
     for tool in (tools.list_tasks, tools.list_drives, tools.start, tools.observe, *acting, tools.finish):

@@ -39,7 +39,7 @@ def make_model(name: str, api: ProviderApi | None = None, turns: Turns | None = 
     Raises:
         UnknownNameError: the name has none of the forms above.
         UserError: the recording cannot be read, or a setting is wrong.
-        SetupError: the ``openai`` package, the key or the address is missing.
+        SetupError: ``httpx2``, the key or the address is missing.
     """
     provider, slash, rest = name.partition("/")
     if name == "rules":

@@ -13,12 +13,13 @@ from __future__ import annotations
 
 import base64
 import json
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Protocol
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.models.base import ChatMessage, ModelReply
+from automotive_cosim.models.base import ChatMessage, ModelReply, ToolCall
 
 MOST_TOKENS = 10**9
 """No question or answer has more."""
@@ -67,15 +68,12 @@ class Chat:
     """Whether the server is told the form of the answer and holds the model to it."""
 
     def path(self, model: str) -> str:
-        """See ``ProviderApi``."""
         return "/chat/completions"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``ProviderApi``."""
         return {}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         named = {self.longest if name == "max_tokens" else name: value for name, value in limits.items()}
         told = {"model": model, "messages": [self._message(message) for message in messages]} | named
         form = messages[-1].form if self.is_guided else None
@@ -84,7 +82,6 @@ class Chat:
         return told
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         choice = _first(told, "choices")
         message = choice.get("message") or {}
         usage = told.get("usage") or {}
@@ -97,7 +94,8 @@ class Chat:
             tokens_in + cached if cached > tokens_in else tokens_in,  # some gateways leave the cached ones out
             _count(usage.get("completion_tokens")),
             finish=str(choice.get("finish_reason") or "stop"),
-            reasoning=_text(message.get("reasoning_content") or message.get("reasoning")),
+            reasoning=_text(message.get("reasoning_content") or message.get("reasoning"))
+            or _text(message.get("content"), is_thought=True),
             tokens_reasoning=_detail(usage, "completion_tokens_details", "reasoning_tokens"),
             tokens_cached=cached,
         )
@@ -118,20 +116,19 @@ class ChatTools(Chat):
     """Each with name, description and parameters."""
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         tools = [{"type": "function", "function": tool} for tool in self.tools]
         return Chat.body(self, model, messages, limits) | {"tools": tools}
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         plain = Chat.read(self, told)
         message = _first(told, "choices").get("message") or {}
         calls = [
-            {"name": str(each.get("name") or ""), "arguments": _loaded(each.get("arguments"))}
+            {"name": str(each["name"]), "arguments": _loaded(each.get("arguments"))} | _back(each, CALL_BACK)
             for each in _named(message.get("tool_calls"))
         ]
         say = _text(message.get("content")) or _text(message.get("refusal"))
-        return replace(plain, text=json.dumps({"say": say, "calls": calls}, ensure_ascii=False))
+        text = {"say": say, "calls": calls} | (_back(message, TURN_BACK) if calls else {})
+        return replace(plain, text=json.dumps(text, ensure_ascii=False))
 
     def _message(self, message: ChatMessage) -> Json:
         if message.call_id:
@@ -140,14 +137,10 @@ class ChatTools(Chat):
         if not message.calls:
             return told
         calls = [
-            {
-                "id": call.id,
-                "type": "function",
-                "function": {"name": call.name, "arguments": _dumped(call.arguments)},
-            }
+            {"id": call.id, "type": "function", "function": _called(call), **(call.back or {})}
             for call in message.calls
         ]
-        return told | {"content": message.text or None, "tool_calls": calls}
+        return told | {"content": message.text or None, "tool_calls": calls} | (message.back or {})
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,15 +151,12 @@ class OpenAI:
     """Further functions, each with name, description and parameters."""
 
     def path(self, model: str) -> str:
-        """See ``ProviderApi``."""
         return "/responses"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``ProviderApi``."""
         return {}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         named = {"max_output_tokens" if name == "max_tokens" else name: value for name, value in limits.items()}
         named.pop("seed", None)  # which this protocol does not have
         asked = [
@@ -183,13 +173,12 @@ class OpenAI:
         return {"model": model, "input": asked, "tools": tools} | named
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         say, calls, reasoning = "", list[Json](), ""
         _check(told)
         for item in _objects(told["output"]):
             match item.get("type"):
                 case "reasoning":
-                    reasoning += _text(item.get("summary"))
+                    reasoning += _text(item.get("summary")) or _text(item.get("content"), is_thought=True)
                 case "message":
                     say += "".join(
                         str(part.get("text") or part.get("refusal") or "") for part in item.get("content") or ()
@@ -216,15 +205,9 @@ class OpenAI:
 TOOLSET = "computer_toolset_20260801"
 """Its members are tools of their own, and it needs no size of the display."""
 NO_MEMBERS = (
-    "cursor_position",
-    "hold_key",
-    "left_mouse_down",
-    "left_mouse_up",
-    "middle_click",
-    "mouse_move",
-    "right_click",
+    "cursor_position", "hold_key", "left_mouse_down", "left_mouse_up", "middle_click", "mouse_move", "right_click",
     "zoom",
-)
+)  # fmt: skip
 """Those that a touch screen does not have."""
 
 
@@ -238,16 +221,13 @@ class Anthropic:
     """The beta header that the earlier tools require."""
 
     def path(self, model: str) -> str:
-        """See ``ProviderApi``."""
         return "/messages"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``ProviderApi``."""
         named = {"x-api-key": key, "anthropic-version": "2023-06-01"}
         return named | ({"anthropic-beta": self.beta} if self.beta else {})
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         asked = [
             {
                 "role": message.role,
@@ -278,7 +258,6 @@ class Anthropic:
         return {"model": model, "messages": asked, "tools": [computer, *functions], "max_tokens": 1024} | named
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         say, calls, reasoning = "", list[Json](), ""
         _check(told)
         for block in _objects(told["content"]):
@@ -305,15 +284,12 @@ class Gemini:
     functions: tuple[Json, ...] = ()
 
     def path(self, model: str) -> str:
-        """See ``ProviderApi``."""
         return f"/models/{model}:generateContent"
 
     def headers(self, key: str) -> Mapping[str, str]:
-        """See ``ProviderApi``."""
         return {"x-goog-api-key": key}
 
     def body(self, model: str, messages: Sequence[ChatMessage], limits: Json) -> Json:
-        """See ``ProviderApi``."""
         asked = [
             {
                 "role": "model" if message.role == "assistant" else "user",
@@ -334,7 +310,6 @@ class Gemini:
         return {"contents": asked, "tools": tools, "generationConfig": named}
 
     def read(self, told: Any) -> ModelReply:
-        """See ``ProviderApi``."""
         blocked = (told.get("promptFeedback") or {}).get("blockReason")
         candidate = _first(told, "candidates") if not blocked else {"finishReason": blocked}
         say, calls, reasoning = "", list[Json](), ""
@@ -355,13 +330,9 @@ class Gemini:
         return replace(found, reasoning=reasoning, tokens_reasoning=thoughts, tokens_cached=cached)
 
 
-_ENDS = {
-    "stop": "stop",
-    "end_turn": "stop",
-    "tool_use": "stop",
-    "max_tokens": "length",
-    "max_output_tokens": "length",
-}
+_ENDS = dict.fromkeys(("stop", "end_turn", "tool_use"), "stop") | dict.fromkeys(
+    ("max_tokens", "max_output_tokens"), "length"
+)
 """The providers' words for an answer that ended by itself or was cut off; any other word is kept."""
 
 
@@ -407,15 +378,31 @@ def _loaded(arguments: object) -> object:
         return str(arguments)
 
 
-def _dumped(arguments: object) -> str:
-    return arguments if isinstance(arguments, str) else json.dumps(arguments, ensure_ascii=False)
+def _called(call: ToolCall) -> Json:
+    """A call as its server takes it back, which need not be as the model wrote it: a name of certain characters, an
+    object."""
+    given = call.arguments if isinstance(call.arguments, dict) else {"unreadable": str(call.arguments)}
+    name = re.sub(r"[^\w-]", "_", call.name, flags=re.ASCII)[:64] or "unnamed"
+    return {"name": name, "arguments": json.dumps(given, ensure_ascii=False)}
+
+
+CALL_BACK, TURN_BACK = ("extra_content",), ("reasoning_content", "reasoning_details")
+"""Fields that a server gives with a call and with a turn of calls, and refuses the next question without (Gemini;
+DeepSeek, Kimi, OpenRouter)."""
+
+
+def _back(told: Json, names: Sequence[str]) -> Json:
+    found = {name: told[name] for name in names if told.get(name)}
+    return {"back": found} if found else {}
 
 
 def _named(calls: object) -> list[Json]:
-    """The functions of an answer's calls; some servers leave their frame out."""
+    """The functions of an answer's calls, with what their frame has besides; some servers leave the frame out."""
     listed = _objects(calls) if isinstance(calls, list) else []
-    functions = (each.get("function", each) for each in listed)
-    return [each for each in functions if isinstance(each, dict) and each.get("name")]
+    functions = (
+        {**each, **function} for each in listed if isinstance(function := each.get("function", each), dict)
+    )
+    return [each for each in functions if each.get("name")]
 
 
 def _tool_calls(calls: object) -> str:
@@ -442,14 +429,26 @@ def _detail(usage: Json, group: str, name: str) -> int:
     return _count(details.get(name)) if isinstance(details, dict) else 0
 
 
-def _text(content: object) -> str:
-    """A string, or the text parts of a list; nothing else counts as text."""
+def _text(content: object, *, is_thought: bool = False) -> str:
+    """A string, or the text parts of a list; nothing else counts as text.
+
+    Args:
+        content: of an answer.
+        is_thought: whether the thoughts among the parts are wanted, instead of the words.
+    """
     if isinstance(content, str):
-        return content
-    if isinstance(content, list):
-        parts = (part.get("text") if isinstance(part, dict) else part for part in content)
-        return "".join(part for part in parts if isinstance(part, str))
-    return ""
+        return "" if is_thought else content
+    found = ""
+    for part in content if isinstance(content, list) else ():
+        told = part if isinstance(part, dict) else {"text": part}
+        thinks = told.get("thought") is True or bool(_THOUGHT.search(str(told.get("type"))))
+        if thinks == is_thought:
+            text = told.get("text") or (told.get("thinking") or told.get("reasoning") if thinks else "")
+            found += _text(text)
+    return found
+
+
+_THOUGHT = re.compile("think|thought|reason")
 
 
 def _base64(picture: bytes) -> str:

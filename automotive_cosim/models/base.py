@@ -14,6 +14,8 @@ from automotive_cosim.contracts import Json
 CHARACTERS_PER_TOKEN = 4
 """A usual estimate for English, for models that count no tokens themselves."""
 
+NOTHING = '{"say": "", "calls": []}'
+"""The text of an answer in calls that has neither words nor a call."""
 ENDED_BY_ITSELF = ("stop", "tool_calls", "function_call", "eos", "end_turn", "stop_sequence")
 """What providers say of an answer that ended by itself."""
 
@@ -26,6 +28,8 @@ class ToolCall:
     name: str
     arguments: Any
     """By name; as they came where they are no object."""
+    back: Json | None = None
+    """Fields of the call that its server wants back, such as Gemini's signature of the thoughts before it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,6 +47,8 @@ class ChatMessage:
     """The call that it is the result of."""
     form: Json | None = None
     """JSON Schema of the answer that is asked for, for models that can be held to one."""
+    back: Json | None = None
+    """Fields of the assistant's turn that its server wants back, such as the thoughts that led to calls."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,9 +75,16 @@ class ModelReply:
         return asdict(self)
 
     @property
+    def is_cut(self) -> bool:
+        """Whether it was cut off at its longest."""
+        return self.finish == "length"
+
+    @property
     def ending(self) -> str:
         """Why it did not end by itself, to be put after an error about its text; empty if it did."""
-        if self.finish == "length":
+        if self.reasoning and self.text in ("", NOTHING):
+            return "; the answer ended within its thoughts"
+        if self.is_cut:
             return "; the answer was cut off at its longest"
         return "" if self.finish in ENDED_BY_ITSELF else f"; the provider ended the answer: {self.finish}"
 

@@ -1,4 +1,4 @@
-"""Any OpenAI-compatible endpoint, and others' by their own protocols (``apis``), through the ``openai`` package.
+"""Any OpenAI-compatible endpoint, and others' by their own protocols (``apis``). Needs ``httpx2``.
 
 Key and address come from ``<PROVIDER>_API_KEY`` and ``<PROVIDER>_BASE_URL``. The key never gets into a message,
 log or record: every text about an endpoint passes ``_Endpoint.clean``.
@@ -6,13 +6,15 @@ log or record: every text about an endpoint passes ``_Endpoint.clean``.
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import json
 import os
 import re
+import ssl
 import time
-from collections.abc import Callable, Sequence
-from contextlib import closing
+from collections.abc import Callable, Coroutine, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from functools import cache
 from types import NoneType
@@ -22,20 +24,23 @@ from urllib.parse import parse_qsl, quote
 from automotive_cosim.errors import ModelError, SetupError, UnknownNameError, UserError, install_hint
 from automotive_cosim.models.apis import Chat, ProviderApi
 from automotive_cosim.models.base import ChatMessage, ModelReply
+from automotive_cosim.models.refusal import LONGEST_REASON, pause_asked_s, reason, told
 from automotive_cosim.models.turns import LocalTurns, Turns
 
 if TYPE_CHECKING:
-    import openai
     from _typeshed import DataclassInstance
 
 BODY_LIMIT_BYTES = 4_000_000
 """Longest body to read; an answer of a few thousand tokens has some tens of kilobytes."""
 LONGEST_FINISH = 40
 """Characters of the reason why an answer ends."""
-LONGEST_PAUSE_S = 60.0
 FIRST_PAUSE_S = 0.5
-STREAMED = "X-Stainless-Raw-Response"
-"""With this header and the value ``stream``, the ``openai`` package hands over the answer before it has read it."""
+LONGEST_PAUSE_S = 60.0
+"""Between two attempts, if the server asks for no pause."""
+SHORTEST_ASKED_PAUSE_S, LONGEST_ASKED_PAUSE_S = 1.0, 600.0
+"""A server that says when to come back has not failed, and its pauses use up no attempt, until they are longer than
+this together, as at the end of a day's quota."""
+OPENAI_URL = "https://api.openai.com/v1"
 SHORTEST_KEY = 12
 """A shorter key is no secret but a dummy for a local server, and may occur in any answer."""
 
@@ -49,7 +54,7 @@ class Settings:
     max_tokens: int | None = 1024
     """Longest answer, in tokens."""
     timeout_s: float = 60.0
-    """Time limit of one attempt, from the question to the answer's last byte."""
+    """Time limit of one attempt, from the question to the answer's last byte, whatever the answer is."""
     retries: int = 4
     """Further attempts after a transient failure."""
     per_minute: float | None = None
@@ -114,7 +119,7 @@ def make_remote(spec: str, api: ProviderApi | None = None, turns: Turns | None =
         turns: where it takes its turns; by default its own.
 
     Raises:
-        SetupError: the ``openai`` package, the key or the address is missing.
+        SetupError: ``httpx2``, the key or the address is missing.
         UserError: a setting is wrong.
     """
     whole, _, query = spec.partition("?")
@@ -145,15 +150,10 @@ class _Endpoint:
             text = text.replace(form, "***")
         return text
 
-    def client(self, timeout_s: float) -> openai.OpenAI:
-        try:
-            import openai
-        except ImportError as error:
-            raise SetupError(f"the openai package is missing; install it with `{install_hint('llm')}`") from error
-        http = openai.DefaultHttpx2Client(follow_redirects=False)  # to whom the question and the key would go
-        return openai.OpenAI(
-            api_key=self.key, base_url=self.base_url, timeout=timeout_s, max_retries=0, http_client=http
-        )
+    def url(self, path: str) -> str:
+        """The address of a request; a query of the endpoint's own stays at its end."""
+        base, mark, query = (self.base_url or OPENAI_URL).partition("?")
+        return f"{base.rstrip('/')}{path}{mark}{query}"
 
 
 @cache
@@ -204,8 +204,12 @@ class Remote:
             sleep: waits for a number of seconds, between attempts and for the rate limit.
 
         Raises:
-            SetupError: the ``openai`` package is missing.
+            SetupError: ``httpx2`` is missing.
         """
+        try:
+            import httpx2  # noqa: F401, whether it is there
+        except ImportError as error:
+            raise SetupError(f"the package httpx2 is missing; install it with `{install_hint('llm')}`") from error
         self.name = name
         self._model = model
         self._settings = settings
@@ -213,28 +217,31 @@ class Remote:
         self._api = api
         self._turns = turns
         self._sleep = sleep
-        self._client = endpoint.client(settings.timeout_s)
 
     def chat(self, messages: Sequence[ChatMessage]) -> ModelReply:
-        """Asks, and repeats the question after a transient failure, each time after a longer pause.
+        """Asks, and repeats the question after a transient failure, each time after a longer pause, or after that
+        which the server asks for.
 
         Raises:
             ModelError: refused, or every attempt failed.
         """
-        started_s, queued_s = time.monotonic(), 0.0
-        attempts, why = self._settings.retries + 1, ""
-        for attempt in range(attempts):
+        started_s, queued_s, asked_s = time.monotonic(), 0.0, 0.0
+        retries, failed = self._settings.retries, 0
+        while True:
             queued_s += self._take_turn()
             try:
                 reply = self._ask(messages)
+                return replace(reply, seconds=max(0.0, time.monotonic() - started_s - queued_s - asked_s))
             except _PassingError as error:
-                why, pause_s = str(error), error.pause_s
-                if attempt + 1 < attempts:
-                    longer_s = FIRST_PAUSE_S * 2**attempt
-                    self._sleep(min(LONGEST_PAUSE_S, longer_s if pause_s is None else max(pause_s, longer_s)))
-            else:
-                return replace(reply, seconds=max(0.0, time.monotonic() - started_s - queued_s))
-        raise self._error(f"gave no answer in {attempts} attempts: {why}")
+                why, pause_s = str(error), error.pause_s or 0.0
+            is_told = pause_s >= SHORTEST_ASKED_PAUSE_S and retries > 0
+            if is_told and asked_s + pause_s > LONGEST_ASKED_PAUSE_S:
+                raise self._error(f"is busy: {why}; it asks for a pause of {asked_s + pause_s:,.0f} s")
+            failed += not is_told
+            if failed > retries:
+                raise self._error(f"gave no answer in {failed} attempts: {why}")
+            asked_s += pause_s
+            self._sleep(max(pause_s, min(LONGEST_PAUSE_S, FIRST_PAUSE_S * 2 ** max(0, failed - 1))))
 
     def _error(self, what: str) -> ModelError:
         return ModelError(" ".join(self._endpoint.clean(f"{self.name} {what}").split()))
@@ -250,55 +257,67 @@ class Remote:
 
     def _ask(self, messages: Sequence[ChatMessage]) -> ModelReply:
         import httpx2
-        import openai
 
         try:
-            body = self._post(messages)
-        except openai.APIStatusError as error:
-            why = f"status {error.status_code}: {self._endpoint.clean(error.message)[:300]}"
-            if error.status_code in (408, 409, 429) or error.status_code >= 500:
-                raise _PassingError(why, _pause(error.response.headers.get("retry-after"))) from None
-            if 300 <= error.status_code < 400:
-                where = self._endpoint.clean(error.response.headers.get("location", "somewhere"))[:200]
-                why += f"; it sends to {where}, and nothing is sent on: if that is right, make it the address"
-            raise self._error(f"refused: {why}") from None
-        except (openai.APIError, httpx2.HTTPError, httpx2.StreamError) as error:
+            status, headers, body = _in_a_loop(lambda: self._post(messages))
+        except TimeoutError:
+            raise _PassingError(f"the answer took over {self._settings.timeout_s:g} s") from None
+        except (httpx2.HTTPError, httpx2.StreamError, OSError) as error:
             raise _PassingError(f"{type(error).__name__}: {error}") from None
-        return self._read(body)
+        except (httpx2.InvalidURL, UnicodeError) as error:  # of the address, or in the key
+            raise self._error(f"cannot be asked: {type(error).__name__}: {error}") from None
+        if 200 <= status < 300:
+            return self._read(body, headers)
+        said = told(body)
+        why = self._endpoint.clean(reason(said))[:LONGEST_REASON]
+        why = f"status {status}: {why}" if why else f"status {status}"
+        if status in (408, 409, 425, 429) or status >= 500:
+            raise _PassingError(why, pause_asked_s(headers, said))
+        if 300 <= status < 400:
+            where = self._endpoint.clean(headers.get("location", "somewhere"))[:200]
+            why += f"; it sends to {where}, and nothing is sent on: if that is right, make it the address"
+        raise self._error(f"refused: {why}")
 
-    def _post(self, messages: Sequence[ChatMessage]) -> bytes:
-        """The body of the answer. It is read in pieces, so that the time limit applies to a slow server too."""
-        import openai
+    async def _post(self, messages: Sequence[ChatMessage]) -> tuple[int, Mapping[str, str], bytes]:
+        """Status, headers by names in small letters, and body of the answer.
 
-        settings = self._settings
+        The time limit holds from the connection to the last byte, whatever comes; so does that of size.
+
+        Raises:
+            TimeoutError: it took longer.
+            _PassingError: it is longer.
+        """
+        import httpx2
+
+        settings, key = self._settings, self._endpoint.key
         wanted = {"seed": settings.seed, "temperature": settings.temperature, "max_tokens": settings.max_tokens}
         limits = {name: value for name, value in wanted.items() if value is not None}
-        headers: dict[str, Any] = dict(self._api.headers(self._endpoint.key))
-        if headers:  # a key of its own takes the bearer's place
-            headers["Authorization"] = openai.Omit()
-        limit_s = time.monotonic() + settings.timeout_s
-        body = b""
-        response = self._client.post(
-            self._api.path(self._model),
-            cast_to=openai.APIResponse[bytes],
-            body=self._api.body(self._model, messages, limits),
-            options={"headers": headers | {STREAMED: "stream"}},
-        )
-        with closing(response):
-            for piece in response.iter_bytes():
+        question = json.dumps(self._api.body(self._model, messages, limits)).encode()
+        own = self._api.headers(key) or {"Authorization": f"Bearer {key}"}
+        sent = {"Content-Type": "application/json", "Accept": "application/json", **own}
+        verify = _certificates() if self._endpoint.url("").startswith("https") else False
+        async with (
+            asyncio.timeout(settings.timeout_s),
+            # To whom a redirect leads, the question and the key would go.
+            httpx2.AsyncClient(follow_redirects=False, timeout=None, verify=verify) as http,
+            http.stream(
+                "POST", self._endpoint.url(self._api.path(self._model)), content=question, headers=sent
+            ) as response,
+        ):
+            body = b""
+            async for piece in response.aiter_bytes():
                 body += piece
-                if time.monotonic() > limit_s:
-                    raise _PassingError(f"the answer took over {settings.timeout_s:g} s")
                 if len(body) > BODY_LIMIT_BYTES:
                     raise _PassingError(f"the answer has over {BODY_LIMIT_BYTES} bytes")
-        return body
+            return response.status_code, {name.lower(): value for name, value in response.headers.items()}, body
 
-    def _read(self, body: bytes) -> ModelReply:
+    def _read(self, body: bytes, headers: Mapping[str, str]) -> ModelReply:
         try:
             reply = self._api.read(json.loads(body))
         except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
             shown = self._endpoint.clean(body.decode(errors="replace"))[:80]  # cut first, half a key would pass
-            raise _PassingError(f"the answer is not one of its protocol: {shown!r}") from None
+            wrong = f"the answer is not one of its protocol: {shown!r}"
+            raise _PassingError(wrong, pause_asked_s(headers, told(body))) from None
         settings = self._settings
         in_usd, cached_usd = settings.usd_per_million_in, settings.usd_per_million_cached
         dollars = (reply.tokens_in - reply.tokens_cached) * in_usd
@@ -313,9 +332,22 @@ class Remote:
         return replace(reply, text=text, finish=finish, reasoning=reasoning, cost_usd=dollars / 1e6)
 
 
-def _pause(header: str | None) -> float | None:
-    """The pause that the server requests, in seconds; None without one, or with a date."""
+T = TypeVar("T")
+
+
+def _in_a_loop(make: Callable[[], Coroutine[Any, Any, T]]) -> T:
+    """What a coroutine returns; where a loop runs already, as in a notebook, in another thread."""
     try:
-        return max(0.0, float(header)) if header else None
-    except ValueError:
-        return None
+        asyncio.get_running_loop()
+    except RuntimeError:
+        return asyncio.run(make())
+    with ThreadPoolExecutor(1) as other:
+        return other.submit(lambda: asyncio.run(make())).result()
+
+
+@cache
+def _certificates() -> ssl.SSLContext:
+    """Whom to trust; reading them takes longer than a short answer."""
+    import httpx2
+
+    return httpx2.create_ssl_context()

@@ -30,7 +30,6 @@ class LocalTurns:
         self._next_s: dict[str, float] = {}
 
     def wait_s(self, model: str, per_minute: float) -> float:
-        """See ``Turns``."""
         with self._lock:
             now_s = self._clock()
             turn_s = max(now_s, self._next_s.get(model, now_s))

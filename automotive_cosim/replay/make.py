@@ -1,7 +1,7 @@
 """Makes the shipped conversations anew: ``python -m automotive_cosim.replay.make``.
 
-Needed once an agent's prompt or the screens in it have changed. The native formats say the reference solution,
-touch by touch; T3A, M3A and ASURADA are answered by the stand-in ``rules``.
+Needed once an agent's prompt or the screens in it have changed. The native formats that have one say the reference
+solution, touch by touch; T3A, M3A and ASURADA are answered by the stand-in ``rules``.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from automotive_cosim.contracts.ids import resource_id
 from automotive_cosim.models import ChatMessage, ModelReply, Rules
 from automotive_cosim.models.apis import Anthropic, Chat, Gemini, OpenAI, ProviderApi
 from automotive_cosim.models.base import estimated_tokens
-from automotive_cosim.models.replay import SUFFIX, text_digest
+from automotive_cosim.models.replay import SUFFIX, shipped, text_digest
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeSetup, run_episode
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.traffic.fork import Simulations
@@ -77,7 +77,7 @@ def made(simulations: Simulations) -> dict[str, Json]:
     setup = replace(SETUP, agent="oracle", model="none")
     run_episode(setup, make_agent("oracle"), (watcher,), simulations=simulations)
     found = {}
-    for name, form in FORMATS.items():
+    for name, form in ((name, form) for name, form in FORMATS.items() if name in shipped()):
         bodies = (provider_body(name, text) for text in texts(name, watcher.actions))
         found[name] = _recorded("native", f"replay/{name}?format={name}", bodies, form.api or Chat(), simulations)
     for name in PROFILES:

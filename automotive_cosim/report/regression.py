@@ -10,6 +10,7 @@ from xml.etree import ElementTree
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.plain import markup
 from automotive_cosim.report.drives import ScoreChange, score_change
 from automotive_cosim.report.results import Contestant, Results, contestant, pair_instance, pairs, read_results
 from automotive_cosim.report.stats import LEAST_CLUSTERS, Comparison, Rate, bracketed, compare
@@ -464,4 +465,4 @@ def junit(found: Sequence[SuccessChange]) -> str:
                 if case.after is not None and case.after.has_run:
                     told.text = f"trial {case.after.id}: `automotive-cosim serve` with its folder shows each step"
     ElementTree.indent(root)
-    return ElementTree.tostring(root, encoding="unicode", xml_declaration=True) + "\n"
+    return markup(ElementTree.tostring(root, encoding="unicode", xml_declaration=True)) + "\n"

@@ -158,8 +158,8 @@ def _own(rows: Iterable[TrialRow]) -> dict[Hashable, Tokens]:
 
 def pictures_of(job: TrialJob) -> int:
     """How many pictures a step's question has, if the model sees any."""
-    is_listed = job.setup.conditions.see is See.TREE
-    return 0 if is_listed else PICTURED.get(job.setup.agent, int(job.setup.agent not in A_STEP))
+    is_withheld = job.setup.conditions.see in (See.TREE, See.NOTHING)
+    return 0 if is_withheld else PICTURED.get(job.setup.agent, int(job.setup.agent not in A_STEP))
 
 
 def _tokens(job: TrialJob, own: Mapping[Hashable, Tokens]) -> tuple[Range, Range]:

@@ -250,30 +250,57 @@ def test_half_characters_and_senseless_figures_do_no_harm(serve: Serve, observat
         assert metrics.tokens_in == 0
 
 
-@pytest.mark.parametrize("version", ["1.0", "0.3"])
-@pytest.mark.parametrize("as_task", [False, True], ids=["message", "task"])
-def test_it_talks_with_agents_made_with_the_sdk(observation: Seen, version: str, as_task: bool) -> None:
+WORDS = ["Which ", "tem", "perature ", "would you ", "like?"]
+MANNERS = {
+    "message": "a message",
+    "status": "a task, with the answer in the message of its status",
+    "artifact": "a task, with the answer in an artifact",
+    "chunks": "an artifact in chunks",
+    "both": "an artifact, repeated in the status",
+    "chunks and status": "an artifact in chunks, repeated in the status",
+    "split": "words in the status, calls in an artifact, and the other way round",
+    "open": "one task for the whole conversation, with the answer in the status",
+    "open, artifacts": "the same, with an artifact for each answer",
+    "open, one artifact": "the same, with one artifact that each answer replaces",
+    "open, growing artifact": "the same, with one artifact to which each answer is appended",
+}
+
+
+@pytest.mark.parametrize(
+    ("version", "manner"), [*(("1.0", each) for each in MANNERS), ("0.3", "message"), ("0.3", "both")]
+)
+def test_agents_made_with_the_sdk_are_heard_once_and_whole(observation: Seen, version: str, manner: str) -> None:
     seen = observation("Fan to the maximum")
-    with sdk_agent(version, as_task) as address:
+    with sdk_agent(version, manner) as address:
         agent = make_agent(PREFIX + address, settings=SETTINGS)
         agent.reset(seen.goal)
-        assert agent.act(seen).function == "set_hvac_fan_speed"
+        assert agent.act(seen) == Action(ActionType.ASK_DRIVER, text="".join(WORDS))
+        for _ in range(3):  # the same call in two answers, and twice in the second
+            assert agent.act(seen).function == "set_hvac_fan_speed"
         assert agent.act(seen).action_type is ActionType.STATUS
         assert sum(stage.reply.tokens_in for stage in agent.stages if stage.reply) == 70
 
 
 @contextmanager
-def sdk_agent(version: str, as_task: bool) -> Iterator[str]:
-    """Serves an agent of CAR-bench's kind: calls, then the end, then words with metrics. Its address."""
+def sdk_agent(version: str, manner: str) -> Iterator[str]:
+    """Serves an agent of CAR-bench's kind: words, calls, the end, then words with metrics. Its address."""
     import uvicorn
     from a2a.helpers.proto_helpers import new_data_part, new_message, new_task_from_user_message, new_text_part
     from a2a.server.agent_execution import AgentExecutor
     from a2a.server.request_handlers import DefaultRequestHandler
     from a2a.server.routes import create_agent_card_routes, create_jsonrpc_routes
     from a2a.server.tasks import InMemoryTaskStore, TaskUpdater
-    from a2a.types import AgentCard, Role
+    from a2a.types import AgentCard, Role, TaskState
     from google.protobuf.json_format import ParseDict
     from starlette.applications import Starlette
+
+    answers = [
+        [new_text_part("".join(WORDS))],
+        [new_data_part(calls(FAN))],
+        [new_data_part(calls(FAN, FAN))],
+        [new_data_part(calls(DONE))],
+        [new_text_part("Done.")],
+    ]
 
     class Executor(AgentExecutor):
         def __init__(self) -> None:
@@ -281,17 +308,34 @@ def sdk_agent(version: str, as_task: bool) -> Iterator[str]:
 
         async def execute(self, context: Any, event_queue: Any) -> None:
             turn = self.turns[context.context_id] = self.turns.get(context.context_id, -1) + 1
-            answers = [[new_data_part(calls(FAN))], [new_data_part(calls(DONE))], [new_text_part("Done.")]]
-            message = new_message(answers[turn], context.context_id, role=Role.ROLE_AGENT)
-            if turn == 2:
-                message.metadata.update({"turn_metrics": METRICS})
-            if not as_task:
-                await event_queue.enqueue_event(message)
+            metadata = {"turn_metrics": METRICS} if turn == 4 else {}
+            answer = new_message(answers[turn], context.context_id, role=Role.ROLE_AGENT)
+            answer.metadata.update(metadata)
+            if manner == "message":
+                await event_queue.enqueue_event(answer)
                 return
-            task = new_task_from_user_message(context.message)
-            await event_queue.enqueue_event(task)
+            task = context.current_task or new_task_from_user_message(context.message)
+            if context.current_task is None:
+                await event_queue.enqueue_event(task)
             updater = TaskUpdater(event_queue, task.id, task.context_id)
-            await updater.complete(message)
+            await updater.start_work(new_message([new_text_part("Hm.")], context.context_id, role=Role.ROLE_AGENT))
+            in_status = manner in ("status", "open", "both", "chunks and status") or (
+                manner == "split" and turn % 2
+            )
+            if "chunks" in manner and not turn:
+                for at, word in enumerate(WORDS):
+                    await updater.add_artifact([new_text_part(word)], artifact_id="a", append=at > 0)
+            elif manner == "open, growing artifact":
+                await updater.add_artifact(answers[turn], artifact_id="a", append=turn > 0, metadata=metadata)
+            elif manner == "open, one artifact":
+                await updater.add_artifact(answers[turn], artifact_id="a", metadata=metadata)
+            elif not in_status or manner in ("both", "chunks and status"):
+                await updater.add_artifact(answers[turn], metadata=metadata)
+            said = answer if in_status else None
+            if manner.startswith("open"):
+                await updater.update_status(TaskState.TASK_STATE_INPUT_REQUIRED, said)
+            else:
+                await updater.complete(said)
 
         async def cancel(self, context: Any, event_queue: Any) -> None:
             raise NotImplementedError

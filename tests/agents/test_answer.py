@@ -58,10 +58,61 @@ def test_near_misses_are_forgiven(text):
     assert to_json(answer.action) == HOME
 
 
-def test_what_gpt_oss_thinks_before_it_answers_is_left_out():
-    thoughts = '<|channel|>analysis<|message|>{"action_type": "navigate_back"}<|end|><|start|>assistant'
-    text = f'{thoughts}<|channel|>final<|message|>Action: {{"action_type": "click", "index": 3}}<|return|>'
-    assert read(text).action == Action(ActionType.CLICK, index=3)
+THOUGHTS = [
+    *((f"<{name}>", f"</{name}>") for name in ("think", "thinking", "THINK", "thought", "reasoning", "seed:think")),
+    *(
+        (f"<{name}>", f"</{name}>")
+        for name in ("longcat_think", "mm:think", "reflection", "scratchpad", "analysis")
+    ),
+    ("<think>\n<think>", "</think>"),
+    ("[THINK]", "[/THINK]"),
+    ("<|begin_of_thought|>", "<|end_of_thought|>"),
+    ("<|START_THINKING|>", "<|END_THINKING|>"),
+    ("<|think|>", "<|/think|>"),
+    ("\u25c1think\u25b7", "\u25c1/think\u25b7"),
+    ("<unused94>thought", "<unused95>"),
+    ("Here is my thought process: ", "\nHere is my response: "),
+    ("Here are my reasoning steps:\n", "\n[BEGIN FINAL RESPONSE]"),
+    ("<|channel>thought\n", "<channel|>"),
+    ("<|channel|>analysis<|message|>", "<|end|><|start|>assistant<|channel|>final<|message|>"),
+    ("<|channel|>analysis<|message|>", "<|start|>assistant<|channel|>final<|message|>"),
+    ("analysis", "assistantfinal"),
+]
+"""What stands before and after the thoughts of a model whose server leaves them in the answer."""
+WRONG = 'The fan. One way: Action: {"action_type": "emergency_call"} would be wrong, '
+
+
+@pytest.mark.parametrize(("begin", "end"), THOUGHTS, ids=lambda each: each[:20])
+def test_thoughts_are_not_actions_in_any_form_closed_or_cut_off(begin, end):
+    said = f"Situation: a\nAction: {json.dumps(HOME)}"
+    assert to_json(read(f"{begin}{WRONG}{end}{said}").action) == HOME
+    for text in (f"{begin}{WRONG}", f"{begin}{WRONG}{end}", f"{begin}{said}", f"{said}\n{begin}{WRONG}"):
+        if begin[:1] in "Ha" and text.startswith("Sit"):
+            continue  # these begin the answer
+        with pytest.raises(ActionError, match="ended within its thoughts"):
+            read(text)
+    if end.startswith(("</", "[/", "<|end_", "<|END_")):  # the beginning stands in the prompt
+        assert to_json(read(f"{WRONG}{end}{said}").action) == HOME
+
+
+def test_a_tag_of_thoughts_without_any_is_none():
+    assert to_json(read(f"<think>\n</think>Action: {json.dumps(HOME)}<think>").action) == HOME
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{WRONG} so",
+        f'Perhaps {{"action_type": "pull_over"}}? {WRONG[:40]}',
+        'Action: {"action_type": "answer", "text": "It',
+    ],
+)
+def test_of_an_answer_that_was_cut_off_only_a_whole_action_after_its_label_counts(text):
+    with pytest.raises(ActionError, match="no JSON object"):
+        read(text.replace('Action: {"action_type": "em', '{"action_type": "em'), is_cut=True)
+    whole = json.dumps({"situation": "a", "plan": "b", "action": HOME})
+    for said in (f"Action: {json.dumps(HOME)}\n\nNow I wait, as", whole, f"{whole}\nNow I"):
+        assert to_json(read(said, is_cut=True).action) == HOME
 
 
 def test_punctuation_of_full_width_is_read_and_texts_keep_theirs():

@@ -4,7 +4,9 @@ import json
 import re
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import product
+from datetime import date
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -12,9 +14,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from automotive_cosim.agents import AgentSettings, NativeAgent, make_agent
-from automotive_cosim.agents.native.formats import FORMATS, chosen
-from automotive_cosim.agents.native.grid import GuiScreen, Resized
-from automotive_cosim.agents.native.verbs import Hand, actions, call_for
+from automotive_cosim.agents.native.formats import FORMATS, chosen, vocabularies
+from automotive_cosim.agents.native.grid import Grid, GuiScreen, Resized
+from automotive_cosim.agents.native.verbs import GuiCall, Hand, actions, call_for
+from automotive_cosim.agents.thoughts import spoken
+from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -22,8 +26,9 @@ from automotive_cosim.contracts import (
     BoundingBox,
     Direction,
     Element,
+    Feedback,
+    FeedbackCode,
     GoalStatus,
-    Json,
     Observation,
 )
 from automotive_cosim.errors import ActionError, OutOfBudgetError, UnknownNameError, UserError
@@ -38,19 +43,12 @@ SHOWN = (LIST, FIELD)
 
 
 def read(form: str, text: str, elements: Sequence[Element] = SHOWN) -> list[Action]:
-    chosen_form = FORMATS[form]
-    hand = Hand(GuiScreen(1280, 720, chosen_form.grid), elements)
-    calls = chosen_form.syntax.read(text, chosen_form.verbs)
-    return [action for call in calls for action in actions(chosen_form.verbs, call, hand)]
+    hand = Hand(GuiScreen(1280, 720, FORMATS[form].grid), elements)
+    return [action for action, _ in FORMATS[form].acts(text, hand)]
 
 
 def tool(**arguments: object) -> str:
     return f"<tool_call>\n{json.dumps({'name': 'mobile_use', 'arguments': arguments})}\n</tool_call>"
-
-
-def calls(*each: Json, say: str = "") -> str:
-    """What a provider's own protocol comes to."""
-    return json.dumps({"say": say, "calls": [{"name": call.pop("name"), "arguments": call} for call in each]})
 
 
 def code(*lines: str) -> str:
@@ -60,12 +58,13 @@ def code(*lines: str) -> str:
 # --- coordinates --------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("form", "size"), list(product(FORMATS, SIZES)))
-def test_every_pixel_comes_back_within_one(form: str, size: tuple[int, int]) -> None:
-    screen = GuiScreen(*size, FORMATS[form].grid)
-    for x, y in [*((x, 0) for x in range(size[0])), *((0, y) for y in range(size[1]))]:
-        back = screen.pixel(*screen.point(x, y))
-        assert max(abs(back[0] - x), abs(back[1] - y)) <= 1
+@pytest.mark.parametrize("grid", {each.grid for each in FORMATS.values()}, ids=lambda grid: grid.told)
+def test_every_pixel_comes_back_within_one(grid: Grid) -> None:
+    for size in SIZES:
+        screen = GuiScreen(*size, grid)
+        for x, y in [*((x, 0) for x in range(size[0])), *((0, y) for y in range(size[1]))]:
+            back = screen.pixel(*screen.point(x, y))
+            assert max(abs(back[0] - x), abs(back[1] - y)) <= 1
 
 
 @pytest.mark.parametrize(
@@ -121,7 +120,7 @@ def test_what_a_format_can_say_is_read_as_it_was_meant(form: str) -> None:
     for action, call in said.items():
         shown = SHOWN if action.action_type is TYPE else ()
         back, *more = read(form, chosen_form.syntax.write("I see.", [call], chosen_form.verbs), shown)
-        assert more == ([ENTER] if (form, action.action_type) == ("gemini", TYPE) else [])
+        assert more == ([ENTER] if form.startswith("holo") and action.action_type is TYPE else [])
         if back.x is not None and back.y is not None and action.x is not None and action.y is not None:
             assert max(abs(back.x - action.x), abs(back.y - action.y)) <= 1
         if action.distance_px is not None:
@@ -148,300 +147,62 @@ def test_the_prompt_names_every_word_of_the_format_and_it_says_what_it_lacks(for
     assert ("show_alert" in chosen_form.lacks) == ("not_needed" in chosen_form.lacks)
 
 
-# --- what each family answers -------------------------------------------------------------------------------
+# --- what each family answers: ``native_answers.jsonl`` -----------------------------------------------------------
+
+ANSWERS = [
+    json.loads(line) for line in Path(__file__).with_name("native_answers.jsonl").read_text("utf-8").splitlines()
+]
+"""A line for each answer: its format, the answer or the body of a provider's response, what it does as actions or
+what is said of it, and where it was seen: repository and commit, issue, or package."""
 
 
-@pytest.mark.parametrize(
-    ("form", "text", "expected"),
-    [
-        ("ui-tars-1.0", "Thought: a\nAction: click(start_box='(500,500)')", [Action(CLICK, x=640, y=360)]),
-        (
-            "ui-tars-1.0",
-            "Thought: a\nAction: click(start_box='<|box_start|>(400,450,600,550)<|box_end|>')",
-            [Action(CLICK, x=640, y=360)],
-        ),
-        ("ui-tars-1.5", "Action: click(point='<point>644 364</point>')", [Action(CLICK, x=640, y=360)]),
-        (
-            "ui-tars-1.5",
-            "Thought: Type it.\nAction: type(content='Rue d'Ulm\\n')",
-            [Action(TYPE, index=1, text="Rue d'Ulm"), Action(ActionType.KEYBOARD_ENTER)],
-        ),
-        (
-            "ui-tars-1.5",
-            "Action: scroll(point='<point>300 300</point>', direction='down')",
-            [Action(ActionType.SCROLL, index=0, direction=Direction.DOWN)],
-        ),
-        (
-            "ui-tars-1.5",
-            "Action: drag(start_point='<point>322 364</point>', end_point='<point>644 374</point>')",
-            [Action(SWIPE, x=320, y=360, direction=Direction.RIGHT, distance_px=320)],
-        ),
-        (
-            "ui-tars-1.5",
-            "Thought: x\nAction: press_back()\n\nfinished(content='done')",
-            [Action(ActionType.NAVIGATE_BACK), Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)],
-        ),
-        ("ui-tars-1.5", "Action: call_user()", [Action(ActionType.STATUS, goal_status=GoalStatus.INFEASIBLE)]),
-        ("qwen2.5-vl", tool(action="click", coordinate=[644, 364]), [Action(CLICK, x=640, y=360)]),
-        (
-            "qwen2.5-vl",
-            tool(action="swipe", coordinate=[644, 600], coordinate2=[644, 300]),
-            [Action(SWIPE, x=640, y=593, direction=Direction.UP, distance_px=296)],
-        ),
-        ("qwen2.5-vl", tool(action="system_button", button="Back"), [Action(ActionType.NAVIGATE_BACK)]),
-        ("qwen2.5-vl", tool(action="wait", time=2), [Action(ActionType.WAIT, seconds=2)]),
-        ("qwen2.5-vl", tool(action="wait", time=99.5), [Action(ActionType.WAIT, seconds=10)]),
-        (
-            "qwen2.5-vl",
-            tool(action="terminate", status="failure"),
-            [Action(ActionType.STATUS, goal_status=GoalStatus.INFEASIBLE)],
-        ),
-        (
-            "qwen2.5-vl",
-            '<tool_call>{"name": "car", "arguments": {"action_type": "show_alert", "kind": "speed"}}</tool_call>',
-            [Action(ActionType.SHOW_ALERT, kind=AlertKind.SPEED)],
-        ),
-        (
-            "qwen3-vl",
-            "Thought: a\nAction: Tap it.\n" + tool(action="click", coordinate=[999, 0]),
-            [Action(CLICK, x=1279, y=0)],
-        ),
-        ("qwen3-vl", tool(action="answer", text="50"), [Action(ActionType.ANSWER, text="50")]),
-        ("gui-owl", tool(action="key", text="enter"), [Action(ActionType.KEYBOARD_ENTER)]),
-        ("gui-owl-1.5", tool(action="interact", text="Which?"), [Action(ActionType.ASK_DRIVER, text="Which?")]),
-        ("mai-ui", tool(action="ask_user", text="Which one?"), [Action(ActionType.ASK_DRIVER, text="Which one?")]),
-        ("gui-owl-1.5", tool(action="click", coordinate=[500, 500]), [Action(CLICK, x=640, y=360)]),
-        ("mai-ui", tool(action="swipe", direction="up"), [Action(SWIPE, x=640, y=360, direction=Direction.UP)]),
-        (
-            "mai-ui",
-            "<thinking>\na {brace} and <tool_call>\n</thinking>\n" + tool(action="open", text="climate"),
-            [Action(ActionType.OPEN_APP, app_name="climate")],
-        ),
-        ("opencua", code("import pyautogui", "pyautogui.click(x=644, y=364)"), [Action(CLICK, x=640, y=360)]),
-        (
-            "opencua",
-            code("pyautogui.click(644, 364)", "pyautogui.write('Ulm')", "pyautogui.press(['enter'])"),
-            [Action(CLICK, x=640, y=360), Action(TYPE, index=1, text="Ulm"), Action(ActionType.KEYBOARD_ENTER)],
-        ),
-        (
-            "opencua",
-            code("pyautogui.moveTo(x=322, y=364)", "pyautogui.dragTo(x=644, y=364, button='left')"),
-            [Action(SWIPE, x=320, y=360, direction=Direction.RIGHT, distance_px=320)],
-        ),
-        ("opencua", code("pyautogui.scroll(-3)"), [Action(ActionType.SCROLL, direction=Direction.DOWN)]),
-        (
-            "opencua",
-            code("computer.terminate(status='success')"),
-            [Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)],
-        ),
-        (
-            "openai",
-            calls({"name": "click", "button": "left", "x": 640, "y": 360}, {"name": "keypress", "keys": ["ENTER"]}),
-            [Action(CLICK, x=640, y=360), ENTER],
-        ),
-        (
-            "openai",
-            calls({"name": "scroll", "x": 300, "y": 300, "scroll_x": 0, "scroll_y": 120}),
-            [Action(ActionType.SCROLL, index=0, direction=Direction.DOWN)],
-        ),
-        (
-            "openai",
-            calls({"name": "drag", "path": [{"x": 320, "y": 360}, {"x": 400, "y": 360}, {"x": 640, "y": 365}]}),
-            [Action(SWIPE, x=320, y=360, direction=Direction.RIGHT, distance_px=320)],
-        ),
-        ("openai", calls(say="It is done."), [Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)]),
-        (
-            "openai",
-            calls({"name": "car", "action_type": "status", "goal_status": "not_needed"}),
-            [Action(ActionType.STATUS, goal_status=GoalStatus.NOT_NEEDED)],
-        ),
-        ("anthropic", calls({"name": "left_click", "coordinate": [640, 360]}), [Action(CLICK, x=640, y=360)]),
-        (
-            "anthropic",
-            calls({"name": "scroll", "coordinate": [1, 1], "scroll_direction": "up", "scroll_amount": 3}),
-            [Action(ActionType.SCROLL, direction=Direction.UP)],
-        ),
-        ("anthropic", calls({"name": "key", "text": "Return"}), [ENTER]),
-        ("anthropic", calls({"name": "wait", "duration": 3}), [Action(ActionType.WAIT, seconds=3)]),
-        ("gemini", calls({"name": "click_at", "x": 500, "y": 500}), [Action(CLICK, x=640, y=360)]),
-        (
-            "gemini",
-            calls({"name": "type_text_at", "x": 500, "y": 500, "text": "Ulm"}),
-            [Action(TYPE, x=640, y=360, text="Ulm"), ENTER],
-        ),
-        (
-            "gemini",
-            calls({"name": "type_text_at", "x": 500, "y": 500, "text": "Ulm", "press_enter": False}),
-            [Action(TYPE, x=640, y=360, text="Ulm")],
-        ),
-        ("gemini", calls({"name": "go_back"}), [Action(ActionType.NAVIGATE_BACK)]),
-        ("gemini", calls({"name": "wait_5_seconds"}), [Action(ActionType.WAIT, seconds=5)]),
-        (
-            "json",
-            'Situation: a\nPlan: b\nAction: {"action_type": "click", "x": 640, "y": 360}',
-            [Action(CLICK, x=640, y=360)],
-        ),
-    ],
-)
-def test_answers_are_read(form: str, text: str, expected: list[Action]) -> None:
-    assert read(form, text) == expected
+@pytest.mark.parametrize("form", FORMATS)
+def test_answers_are_read_as_their_families_mean_them(form: str) -> None:
+    api, mine = FORMATS[form].api, [each for each in ANSWERS if each["format"] == form]
+    assert mine
+    for told in mine:
+        text = told["answer"] if api is None or "answer" in told else api.read(told["body"]).text
+        if "says" in told:
+            with pytest.raises(ActionError, match=told["says"]) as caught:
+                read(form, text)
+            assert "\n" not in str(caught.value)
+        else:
+            assert [to_json(action) for action in read(form, text)] == told["does"], told
 
 
-MIDDLE = [Action(CLICK, x=640, y=360)]
-BOXES = (
-    "start_box='<|box_start|>(644,364)<|box_end|>'",
-    "start_box='(644,364)'",
-    'start_box="(644, 364)"',
-    "start_box='[644, 364]'",
-    "start_box='[630, 350, 658, 378]'",
-    "start_box='<|box_start|>(630,350),(658,378)<|box_end|>'",
-    "start_box='<bbox>630 350 658 378</bbox>'",
-    "start_box='<point>644 364</point>'",
-    "start_box=<|box_start|>(644,364)<|box_end|>",
-    "start_box=(644, 364)",
-    "point='<point>644 364</point>'",
-    "point='644 364'",
-    "start_point='<point>644 364</point>'",
-    "'<point>644 364</point>'",
-    "644, 364",
-)
-"""A point as UI-TARS 1.5 writes it, whatever the prompt asks for: bytedance/UI-TARS 125, 183; UI-TARS-desktop 28,
-37, 233, 234, 942."""
+@pytest.mark.parametrize("form", FORMATS)
+def test_what_holds_no_action_says_so_and_a_thought_holds_none(form: str) -> None:
+    for text in ("", "I do not know.", "{", "Action: ", code()):
+        with pytest.raises(ActionError, match=r"the answer|the code"):
+            read(form, text)
+    chosen_form = FORMATS[form]
+    call = call_for(chosen_form.verbs, SAMPLES[0], GuiScreen(1280, 720, chosen_form.grid))
+    assert call is not None
+    said = chosen_form.syntax.write("I see.", [call], chosen_form.verbs)
+    if chosen_form.api is None:
+        said = spoken(said)
+        for begin, end in (("<think>", "</think>"), ("[THINK]", "[/THINK]"), ("<thinking>", "</thinking>")):
+            for text in (f"{begin}{said}", f"{begin}{said}{end}", f"{said}{end}"):
+                with pytest.raises(ActionError, match="within its thoughts"):
+                    read(form, text)
+            assert read(form, f"{begin}{said} was wrong.{end}{said}") == read(form, said)
+        assert not chosen_form.syntax.whole.search(said[: len(said) // 2])
+    assert chosen_form.syntax.whole.search(said)  # this much counts even of an answer that was cut off
 
 
-@pytest.mark.parametrize("box", BOXES)
-def test_a_point_is_read_in_every_spelling(box: str) -> None:
-    assert read("ui-tars-1.5", f"Thought: The fan.\nAction: click({box})") == MIDDLE
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "Action: click(point='<point>644 364</point>'",  # UI-TARS-desktop 942
-        "Action: click(point='<point>644 364</point>)",
-        "Action: click(point='<point>644 364</point>\"",
-        "Action: click(start_box='<|box_start|>(644,364)<|box_end|>'",
-        "Action: click(start_box='(644,364)')<|im_end|>",
-        "Action: click(start_box='(644,364)')<|im_end|>\n<|im_start|>user\nAction: press_back()",
-        "Action: click(start_box='(644,364)')</s>",
-        "Action\uff1aclick(start_box='(644,364)')",  # midscene 843
-        "Action\uff1aclick\uff08start_box=\u2018\uff08644\uff0c364\uff09\u2019\uff09",
-        "Action: click(start_box\uff1d'(644\uff0c364)')",
-        "Action: click(start_box='(644,364)') to open it.",
-        "Action:\n```\nclick(start_box='(644,364)')\n```",
-        "Action: `click(start_box='(644,364)')`",
-        "action: click(start_box='(644,364)');",
-        "Thought: Action: none yet, (so) it's time.\nAction: click(start_box='(644,364)')",
-        "1. The fan.\nAction: click(start_box='<|box_start|>(644,364)<|box_end|>')",
-        "click(start_box='(644,364)')",
-        "Action: Click(start_box='(644,364)')",
-        "Action: <action>click(start_box='(644,364)')</action>",
-        "Action: click(x=644, y=364)",
-        "Action: click(position='(644,364)')",
-        "Action: left_single(point='<point>644 364</point>')",
-    ],
-)
-def test_an_answer_of_ui_tars_is_read_though_its_end_or_its_punctuation_is_not_as_asked(text: str) -> None:
-    assert read("ui-tars-1.5", text) == MIDDLE
-
-
-@pytest.mark.parametrize(
-    ("text", "expected"),
-    [
-        ("hotkey(key='enter')", [ENTER]),
-        ("hotkey(hotkey='Return')", [ENTER]),
-        ("press(key='esc')", [Action(ActionType.NAVIGATE_BACK)]),
-        ("right_single(start_box='(644,364)')", [Action(ActionType.LONG_PRESS, x=640, y=360)]),
-        (
-            "drag(start_box='<|box_start|>(322,364)<|box_end|>', end_box='<|box_start|>(644,374)<|box_end|>')",
-            [Action(SWIPE, x=320, y=360, direction=Direction.RIGHT, distance_px=320)],
-        ),
-        ("type(content='don't (stop), now')", [Action(TYPE, index=1, text="don't (stop), now")]),
-        ("type(content='\u4f60\uff0c\u597d'", [Action(TYPE, index=1, text="\u4f60\uff0c\u597d")]),
-        ("type(text='Ulm'", [Action(TYPE, index=1, text="Ulm")]),
-        (
-            "scroll(direction='down', start_box='(300,300)'",
-            [Action(ActionType.SCROLL, index=0, direction=Direction.DOWN)],
-        ),
-        ("scroll(up)", [Action(ActionType.SCROLL, direction=Direction.UP)]),
-        ("press_back", [Action(ActionType.NAVIGATE_BACK)]),
-        ("`finished`.", [Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)]),
-        ("finished(content='done')<|im_end|>", [Action(ActionType.STATUS, goal_status=GoalStatus.COMPLETE)]),
-    ],
-)  # fmt: skip
-def test_every_word_of_ui_tars_is_read_in_the_same_spellings(text: str, expected: list[Action]) -> None:
-    assert read("ui-tars-1.5", f"Thought: so.\nAction: {text}") == expected
-
-
-@pytest.mark.parametrize("form", ["qwen2.5-vl", "gui-owl"])
-@pytest.mark.parametrize(
-    "text",
-    [
-        '<tool_call>\n{"name": "mobile_use", "arguments": {"action": "click", "coordinate": [644, 364]}',
-        '<tool_call>{"name": "mobile_use", "arguments": {"action": "click", "coordinate": [644, 364]}}<|im_end|>',
-        '{"name": "mobile_use", "arguments": "{\\"action\\": \\"click\\", \\"coordinate\\": [644, 364]}"}',
-        "<tool_call>{'name': 'mobile_use', 'arguments': {'action': 'click', 'coordinate': [644, 364]}}</tool_call>",
-        '{"action": "click", "coordinate": [644, 364]}',  # X-PLUG/MobileAgent 182
-        '{"name": "click", "arguments": {"coordinate": [644, 364]}}',
-        '<tool_call>{"name": "mobile_use", "arguments": {"action": "click", "coordinate": [644 364]}}</tool_call>',
-        '{"name": "mobile_use", "arguments": {"action": "click", "coordinate": "[644, 364]"}}',
-        '<tool_call>{\u201cname\u201d\uff1a \u201cmobile_use\u201d\uff0c \u201carguments\u201d\uff1a '
-        '{\u201caction\u201d\uff1a \u201cclick\u201d\uff0c \u201ccoordinate\u201d\uff1a [644, 364]}}</tool_call>',
-        '```json\n{"name": "mobile_use", "parameters": {"action": "click", "coordinate": [644, 364]}}\n```',
-    ],
-)  # fmt: skip
-def test_a_tool_call_is_read_though_its_json_is_not_as_asked(form: str, text: str) -> None:
-    assert read(form, text) == MIDDLE
-
-
-@pytest.mark.parametrize(
-    "text",
-    [
-        "## Action:\nTap.\n\n## Code:\n```python\npyautogui.click(x=644, y=364)<|im_end|>",
-        "## Code:\npyautogui.click(x=644, y=364)",
-        "## Code:\n```python\npyautogui.click(x=644, y=364\n```",
-        "## Code:\n```python\npyautogui.click\uff08x=644\uff0c y=364\uff09\n```",
-    ],
-)
-def test_code_is_read_though_its_frame_is_not_as_asked(text: str) -> None:
-    assert read("opencua", text) == MIDDLE
-
-
-@pytest.mark.parametrize(
-    ("form", "text", "said"),
-    [
-        *(
-            (form, text, "the answer|the code")
-            for form in FORMATS
-            for text in ("", "I do not know.", "{", "Action: ", code())
-        ),
-        ("ui-tars-1.5", "Action: fly(point='<point>1 1</point>')", "no action in this format named 'fly'"),
-        ("ui-tars-1.5", "Action: click(point='here')", "no point"),
-        ("ui-tars-1.5", "Action: click()", "no point"),
-        ("ui-tars-1.5", "Action: scroll(direction='sideways')", "direction"),
-        ("qwen2.5-vl", tool(action="click", coordinate=[1]), "no point"),
-        ("qwen2.5-vl", tool(action="click", coordinate=[True, False]), "no point"),
-        ("qwen2.5-vl", tool(action="type", text=["a", "b"]), "give one text"),
-        ("qwen2.5-vl", tool(action="system_button", button="Menu"), "no key 'Menu'"),
-        ("qwen2.5-vl", tool(action="terminate", status="maybe"), "status"),
-        ("qwen2.5-vl", tool(action="type", text="x" * 500), "500 characters"),
-        ("qwen3-vl", tool(action="key", text="enter"), "no action in this format named 'key'"),
-        ("opencua", code("__import__('os').system('ls')"), "no call of pyautogui"),
-        ("opencua", code("pyautogui.click(x=1+1j, y=open('x'))"), "cannot be read"),
-        ("opencua", code("pyautogui.moveTo(1, 1)"), "nothing on a touch screen"),
-        ("opencua", code("pyautogui.hotkey('ctrl', 'c')"), "combinations"),
-        ("opencua", code("pyautogui.dragTo(1, 1)"), "no point"),
-        ("opencua", code("pyautogui.click("), "no point"),
-        ("openai", calls({"name": "move", "x": 1, "y": 1}), "no action in this format named 'move'"),
-        ("openai", calls({"name": "drag", "path": []}), "no list of calls"),
-        ("anthropic", calls(), "the answer is empty"),
-        ("gemini", calls({"name": "key_combination", "keys": "control+c"}), "no key"),
-    ],
-)
-def test_what_cannot_be_done_is_told(form: str, text: str, said: str) -> None:
-    with pytest.raises(ActionError, match=said) as caught:
-        read(form, text)
-    assert "\n" not in str(caught.value)
+def test_every_word_has_a_version_a_date_and_a_source_and_an_unknown_one_says_who_knows_it() -> None:
+    used = [words for form in FORMATS.values() for words in form.words]
+    for name, words in vocabularies().items():
+        assert words in used, name
+        assert words.version, name
+        assert date.fromisoformat(words.date) < date(2026, 11, 29), name
+        assert re.search(r"github \S+/\S+ [0-9a-f]{7}\b|PyPI \S+ \d", words.source), name
+    for form, each in FORMATS.items():
+        for word in {word for other in FORMATS.values() for word in other.verbs} - each.verbs.keys():
+            call = SimpleNamespace(read=lambda *_, word=word: [GuiCall(word, {})])
+            with pytest.raises(ActionError, match=rf"named '{word}'.*would know '{word}'"):
+                replace(each, syntax=call).acts("", Hand(GuiScreen(9, 9, each.grid)))
+            assert form
 
 
 def test_a_text_goes_to_the_field_with_the_focus_or_to_the_last_touch() -> None:
@@ -520,11 +281,57 @@ def test_an_answer_that_cannot_be_carried_out_is_told_to_the_model(seen: Observa
     assert "named 'fly'" in model.asked[1].text
 
 
+@pytest.mark.parametrize(("form", "second"), [("anthropic", "home"), ("openai", "back")])
+def test_of_claude_what_follows_a_failed_action_of_the_same_answer_is_left_out(
+    seen: Observation, form: str, second: str
+) -> None:
+    def keys(*names: str) -> str:
+        name, key = ("key", "text") if form == "anthropic" else ("keypress", "keys")
+        return json.dumps({"say": "", "calls": [{"name": name, "arguments": {key: each}} for each in names]})
+
+    agent = native(Answers(keys("enter", "esc"), keys("home")), form)
+    agent.act(seen)
+    failed = replace(seen, feedback=Feedback(FeedbackCode.REFUSED, "locked"))
+    assert agent.act(failed).action_type == f"navigate_{second}"
+
+
 def test_an_answer_has_no_more_actions_than_the_limit_and_none_of_it_is_done(seen: Observation) -> None:
     agent = native(Answers("Action: " + "\n".join(["press_home()"] * 11), "Action: finished()"))
     with pytest.raises(ActionError, match="11 actions; at most 10"):
         agent.act(seen)
     assert agent.act(seen).action_type is ActionType.STATUS
+
+
+@pytest.mark.parametrize(
+    ("form", "reply", "why"),
+    [
+        (
+            "ui-tars-1.5",
+            ModelReply("Thought: Perhaps\nclick(start_box='(1,1)", finish="length"),
+            "no whole call.*longest",
+        ),
+        (
+            "qwen3-vl",
+            ModelReply('One way is {"action": "click", "coordinate": [1, 1]}', finish="length"),
+            "no whole call",
+        ),
+        ("glm-4.5v", ModelReply("", reasoning="Hm.", finish="length"), "ended within its thoughts"),
+        ("anthropic", ModelReply('{"say": "Let me", "calls": []}', finish="length"), "no whole call.*longest"),
+        (
+            "openai",
+            ModelReply('{"say": "I must not.", "calls": []}', finish="content_filter"),
+            "not finished.*filter",
+        ),
+        ("gemini", ModelReply('{"say": "<think>Hm.", "calls": []}'), "empty|within its thoughts"),
+    ],
+)
+def test_an_answer_that_was_cut_off_is_no_action_and_declares_nothing(
+    seen: Observation, form: str, reply: ModelReply, why: str
+) -> None:
+    model = Answers()
+    model.chat = lambda messages: reply  # type: ignore[method-assign]
+    with pytest.raises(ActionError, match=why):
+        native(model, form).act(seen)
 
 
 def test_its_budget_ends_it(seen: Observation) -> None:

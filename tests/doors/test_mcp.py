@@ -3,6 +3,7 @@
 import base64
 import json
 import os
+import re
 import socket
 import sys
 from collections.abc import Callable, Iterator
@@ -351,6 +352,11 @@ def test_what_clients_write_as_text_or_null_is_taken(service: EpisodeService) ->
             turn = await call(client, "start", START | filled | {"channels": ["null"]})
             await call(client, "finish", {"episode_id": turn["episode_id"]})
         assert "did you mean 'none'" in await refused(client, "start", START | {"geo": "None"})
+        for tool in (await client.list_tools()).tools:
+            assert tool.input_schema["additionalProperties"] is False
+            said = await refused(client, tool.name, START | {"episode_id": "x", "action": "{}", "sed": 1})
+            assert re.search(rf"no argument of {tool.name} named '\w+'", said), said
+        assert "did you mean 'seed'" in await refused(client, "start", START | {"sed": 1})
         turn = await call(client, "start", START | {"geo": "none", "policy": ""})
         assert "gps" not in turn
         fenced = '```json\n{"action_type": "wait"}\n```'

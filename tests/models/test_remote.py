@@ -159,11 +159,102 @@ def test_what_may_pass_is_tried_again_with_longer_pauses(server, status):
     assert len(set(made.pauses)) == 3
 
 
-def test_the_servers_own_wish_for_a_pause_is_kept(server):
-    server.behaviours.insert(0, lambda handler: send(handler, 429, b"{}", Retry_After="7"))
+RETRY_INFO = {"@type": "type.googleapis.com/google.rpc.RetryInfo", "retryDelay": "34.07s"}
+DATED = {"Date": "Wed, 21 Oct 2026 07:28:00 GMT"}
+PAUSES = [
+    ({"Retry_After": "7"}, "{}", 7.0),
+    ({"Retry_After": "1.5"}, "", 1.5),
+    ({"Retry_After": "1m30s"}, "", 90.0),
+    ({"Retry_After_ms": "2500", "Retry_After": "3"}, "{}", 2.5),
+    ({"x_ms_retry_after_ms": "4000"}, "{}", 4.0),
+    ({"Retry_After": "Wed, 21 Oct 2026 07:28:12 GMT", **DATED}, "", 12.0),
+    ({"Retry_After": "Wednesday, 21-Oct-26 07:28:12 GMT", **DATED}, "", 12.0),
+    ({"Retry_After": "Wed Oct 21 07:28:12 2026", **DATED}, "", 12.0),
+    ({"Retry_After": "2026-10-21T07:28:12Z", **DATED}, "", 12.0),
+    ({"Retry_After": "Wed, 21 Oct 2020 07:28:12 GMT"}, "", 0.5),
+    ({"Retry_After": "0"}, "{}", 0.5),
+    ({}, {"error": {"code": 429, "details": [RETRY_INFO]}}, 34.07),
+    ({}, [{"error": {"code": 429, "message": "Quota exceeded.", "details": [RETRY_INFO]}}], 34.07),
+    ({}, {"retryDelay": {"seconds": "7", "nanos": 500_000_000}}, 7.5),
+    ({}, {"error": {"message": "busy", "retry_after": 9}}, 9.0),
+    ({}, {"retry_after_ms": 900}, 0.9),
+    ({}, {"error": {"message": "Rate limit reached. Please try again in 1m2.5s. Visit our page."}}, 62.5),
+    ({}, {"error": {"message": "Limit 3 in 20 s. Please try again in 640ms."}}, 0.64),
+    ({}, "Too many requests, retry after 26 seconds.", 26.0),
+    *(({"Retry_After": odd}, "{}", 0.5) for odd in ("soon", "-3", "nan", "1e400", "")),
+    ({}, {"error": {"message": "The limit is 50 requests in 60 s"}}, 0.5),
+]
+
+
+@pytest.mark.parametrize(("headers", "body", "pause_s"), PAUSES)
+def test_the_pause_that_the_server_asks_for_is_kept_in_every_form(server, headers, body, pause_s):
+    def busy(handler: BaseHTTPRequestHandler) -> None:
+        handler.date_time_string = lambda *_: headers.get("Date", "Wed, 21 Oct 2026 07:28:00 GMT")
+        own = {name: value for name, value in headers.items() if name != "Date"}
+        send(handler, 429, (body if isinstance(body, str) else json.dumps(body)).encode(), **own)
+
+    server.behaviours.insert(0, busy)
     made = model()
-    made.chat(ASK)
-    assert made.pauses == [7.0]
+    reply = made.chat(ASK)
+    assert made.pauses == [pytest.approx(pause_s)]
+    assert (reply.seconds == 0) == (pause_s != 0.5)  # a pause that is asked for is none of the model's
+
+
+def test_a_server_that_says_when_to_come_back_has_not_failed(server):
+    wait = lambda handler: send(handler, 503, b"{}", Retry_After="12")  # noqa: E731
+    server.behaviours = [*[wait] * 8, *server.behaviours]
+    made = model()
+    assert made.chat(ASK).text == "hello"
+    assert made.pauses == [12.0] * 8
+    server.behaviours = [wait]
+    with pytest.raises(ModelError, match="612 s"):
+        made.chat(ASK)
+    server.asked.clear()
+    with pytest.raises(ModelError, match="1 attempts"):
+        model("local/m?retries=0").chat(ASK)
+    assert len(server.asked) == 1
+
+
+def test_a_pause_until_tomorrow_is_told_at_once(server):
+    server.behaviours = [lambda handler: send(handler, 429, b'{"error": "quota"}', Retry_After="86400")]
+    made = model()
+    with pytest.raises(ModelError, match=r"is busy: status 429: quota; it asks for a pause of 86,400 s"):
+        made.chat(ASK)
+    assert (made.pauses, len(server.asked)) == ([], 1)
+
+
+REFUSALS = [
+    ({"error": {"message": "no such model", "type": "x"}}, "no such model"),
+    ({"error": "'type' must be 'text'"}, "'type' must be 'text'"),
+    ({"error": ["a is missing", "b is missing"], "warnings": []}, "a is missing; b is missing"),
+    ({"error": {"code": "bad", "param": "p"}}, '{"code": "bad", "param": "p"}'),
+    ([{"error": {"code": 400, "message": "call after user", "status": "INVALID"}}], "call after user"),
+    ({"detail": "Not allowed"}, "Not allowed"),
+    ({"detail": [{"loc": ["body", "seed"], "msg": "extra", "type": "t"}]}, "body.seed: extra"),
+    ({"object": "error", "message": {"detail": [{"loc": ["body"], "msg": "extra"}]}}, "body: extra"),
+    ({"object": "error", "message": "too long", "code": 400}, "too long"),
+    ({"title": "Bad Request", "status": 400, "detail": "no tools"}, "Bad Request; no tools"),
+    ({"status": 400, "error": "Bad Request", "message": "no tools", "path": "/v1"}, "Bad Request; no tools"),
+    ({"errors": [{"message": "one"}, {"message": "two"}]}, "one; two"),
+    ({"error": {"message": "Provider", "metadata": {"raw": '{"error": "the cause"}'}}}, "Provider; the cause"),
+    ({"Message": "signature"}, "signature"),
+    ({"fault": {"faultstring": "no key"}}, "no key"),
+    ("just\nwords", "just words"),
+    ("<html><style>p {x}</style><h1>502 Bad</h1>\n<p>gateway</p></html>", "502 Bad gateway"),
+    ('"words"', "words"),
+    ("[" * 5_000, "[[["),
+]
+
+
+@pytest.mark.parametrize(("body", "said"), REFUSALS, ids=lambda each: str(each)[:30])
+def test_the_reason_of_a_refusal_is_told_in_every_form(server, body, said):
+    told = body if isinstance(body, str) else json.dumps(body)
+    for status, retries in ((400, 4), (500, 0)):
+        server.behaviours = [lambda handler, status=status: send(handler, status, told.encode())]
+        with pytest.raises(ModelError, match=rf"status {status}: {re.escape(said)}") as caught:
+            model(f"local/m?retries={retries}").chat(ASK)
+        assert "\n" not in str(caught.value)
+        assert len(str(caught.value)) < 400
 
 
 @pytest.mark.parametrize("status", [400, 401, 403, 404, 422])
@@ -242,11 +333,16 @@ def test_a_malformed_answer_is_tried_again(server, body):
         ("a\ud800b", "a?b"),
         ([{"type": "text", "text": "a"}, {"type": "text", "text": "b"}], "ab"),
         (["a", {"type": "text", "text": None}, None], "a"),
+        ([{"type": "thinking", "thinking": [{"type": "text", "text": "Hm."}]}, {"type": "text", "text": "b"}], "b"),
+        ([{"type": "reasoning", "text": "Hm."}, {"type": "redacted_thinking", "data": "x"}], ""),
+        ([{"text": "Hm.", "thought": True}, {"text": "b"}], "b"),
     ],
 )
 def test_an_answer_without_text_is_an_empty_one(server, content, text):
     server.behaviours = [lambda handler: send(handler, 200, completion(content))]
-    assert model().chat(ASK).text == text
+    reply = model().chat(ASK)
+    assert reply.text == text
+    assert (reply.reasoning == "Hm.") == ("Hm." in str(content))
 
 
 @pytest.mark.parametrize(
@@ -370,10 +466,31 @@ def test_an_answer_that_ran_into_its_limit_says_so(server):
     assert model().chat(ASK).finish == "length"
 
 
-def test_an_endless_body_is_not_read(server):
-    server.behaviours = [lambda handler: send(handler, 200, b" " * 5_000_000)]
+@pytest.mark.parametrize("status", [200, 307, 400, 429, 503])
+def test_an_endless_body_is_not_read(server, status):
+    server.behaviours = [lambda handler: send(handler, status, b" " * 5_000_000, Location="/elsewhere")]
     with pytest.raises(ModelError, match="bytes"):
         model("local/m?retries=0").chat(ASK)
+
+
+@pytest.mark.parametrize("at", ["head", "headers", 200, 307, 400, 429, 503])
+def test_the_time_of_an_attempt_holds_wherever_it_trickles(server, at):
+    def trickle(handler: BaseHTTPRequestHandler) -> None:
+        """Keeps every single wait short and never comes to an end."""
+        begun = {"head": "", "headers": "HTTP/1.1 200 OK\r\n"}
+        handler.wfile.write(
+            begun.get(at, f"HTTP/1.1 {at} X\r\nLocation: /x\r\nContent-Length: 9999\r\n\r\n").encode()
+        )
+        for _ in range(40):
+            handler.wfile.write(b"a" if at != "headers" else b"a: b\r\n")
+            handler.wfile.flush()
+            time.sleep(0.05)
+
+    server.behaviours = [trickle]
+    began_s = time.monotonic()
+    with pytest.raises(ModelError, match=r"took over 0\.2 s"):
+        model("local/m?timeout_s=0.2&retries=0").chat(ASK)
+    assert time.monotonic() - began_s < 1.5
 
 
 @pytest.mark.parametrize(
@@ -526,7 +643,7 @@ def test_wrong_settings_are_told(server, query, said):
 
 
 def test_without_the_package_it_says_what_to_install(server, monkeypatch):
-    monkeypatch.setitem(sys.modules, "openai", None)
+    monkeypatch.setitem(sys.modules, "httpx2", None)
     with pytest.raises(SetupError, match=re.escape(install_hint("llm"))):
         make_model("local/m")
 

@@ -1,5 +1,6 @@
 """The conversations that ship with the package play to their recorded ends, without a model."""
 
+from collections.abc import Iterable
 from dataclasses import replace
 
 import pytest
@@ -13,8 +14,13 @@ from automotive_cosim.run.episode import run_episode
 from automotive_cosim.traffic.fork import Simulations
 
 
-def test_there_is_one_for_every_native_format_and_every_agent_with_a_model() -> None:
-    assert set(shipped()) == {*FORMATS, *PROFILES}
+def test_there_is_one_for_every_agent_with_a_model_and_every_way_in_which_native_formats_write_and_speak() -> None:
+    def ways(names: Iterable[str]) -> set[tuple[type, type]]:
+        return {(type(FORMATS[name].syntax), type(FORMATS[name].api)) for name in names}
+
+    native = set(shipped()) - set(PROFILES)
+    assert set(shipped()) == {*native, *PROFILES}
+    assert ways(native) == ways(FORMATS)
 
 
 @pytest.mark.slow

@@ -5,11 +5,13 @@ from dataclasses import replace
 from xml.etree import ElementTree
 
 import pytest
+from jinja2 import Template
 
 import automotive_cosim
 from automotive_cosim.contracts.given import Clock
 from automotive_cosim.episode.conditions import Conditions
 from automotive_cosim.errors import UserError
+from automotive_cosim.report import templates
 from automotive_cosim.report.regression import as_json, changes, junit, markdown, plain
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
@@ -73,6 +75,25 @@ def test_what_an_agent_raised_is_told_where_it_lost(tmp_path):
     found = changes(write(tmp_path / "a"), write(tmp_path / "b", lost={1}, **raised))
     for told in (markdown(found, 0.0), junit(found)):
         assert "no action in 20 steps, at first: agent 'mine' raised ZeroDivisionError" in told
+
+
+EVERY = "".join(map(chr, (*range(0x300), *range(0xD7F0, 0xD800), *range(0xDFFF, 0xE010), *range(0xFDC0, 0x10010))))
+EVERY += "".join(map(chr, (*range(0x1FFF0, 0x20010), *range(0x10FFF0, 0x110000))))
+
+
+def test_junit_and_pages_hold_only_characters_that_they_may(tmp_path, monkeypatch):
+    raised = {"agent_error": "it raised OSError: \ufffe\uffff\x00\x1b[1m\ufdd0\U0001ffff ]]> \U0001f697&"}
+    text = junit(changes(write(tmp_path / "a"), write(tmp_path / "b", lost={1}, **raised)))
+    said = ElementTree.fromstring(text.encode())[0].find("testcase/error").get("message")
+    assert "OSError: \ufffd\ufffd" in said
+    assert "]]> \U0001f697&" in said
+    monkeypatch.setattr(templates._ENVIRONMENT, "get_template", lambda name: Template("{{ text }}"))
+    page = templates.render("any", text=EVERY)
+    assert len(page) == len(EVERY)
+    for code in map(ord, page):  # HTML, 13.2.3.5 and Infra: no controls, surrogates, noncharacters
+        assert code in (9, 10, 13) or not (code < 0x20 or 0x7F <= code < 0xA0)
+        assert not any((0xD800 <= code < 0xE000, 0xFDD0 <= code < 0xFDF0, code & 0xFFFE == 0xFFFE)), hex(code)
+    assert {chr(code) for code in (0x7E, 0xA0, 0xFDCF, 0xFDF0, 0xFFFD, 0x1FFFD, 0x10FFFD)} <= set(page)
 
 
 def test_an_agent_that_raises_in_every_step_is_an_error_of_junit_before_the_change_too(tmp_path):

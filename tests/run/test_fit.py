@@ -1,12 +1,14 @@
 """One question before a run says what a model does not take."""
 
+import re
+
 import pytest
 
 from automotive_cosim.errors import ModelError
 from automotive_cosim.models import ModelReply
 from automotive_cosim.models.base import estimated_tokens
 from automotive_cosim.run import fit
-from automotive_cosim.run.forecast import longest_question
+from automotive_cosim.run.forecast import longest_question, pictures_of
 from automotive_cosim.run.plan import make_plan
 
 PICTURE = b"a picture"
@@ -52,14 +54,46 @@ def test_one_that_never_answers_is_no_misfit():
         fit.misfit(Model(0), 2000, None)
 
 
+class Calls(Model):
+    """Answers with a call, or with words, and takes no results."""
+
+    def __init__(self, text, takes=True):
+        super().__init__()
+        self.text, self.takes, self.roles = text, takes, []
+
+    def chat(self, messages):
+        self.roles.append([message.role for message in messages])
+        if messages[-1].role == "tool":
+            assert messages[-1].call_id == messages[-2].calls[-1].id
+            assert estimated_tokens(messages[-1].text) > 1900
+            if not self.takes:
+                raise ModelError("refused: status 400: Unexpected role 'user' after role 'tool'")
+        return ModelReply(self.text)
+
+
+@pytest.mark.parametrize("text", ["OK", "<think>Hm.", '{"say": "", "calls": [{"name": "wait", "arguments": {}}]}'])
+def test_one_that_calls_is_asked_a_second_question_with_a_result_in_it(text):
+    model = Calls(text)
+    assert fit.misfit(model, 2000, PICTURE, calls=True) == ""
+    assert model.roles == [["system", "user"], ["system", "user", "assistant", "tool"]]
+    said = fit.misfit(Calls(text, takes=False), 2000, PICTURE, calls=True)
+    assert re.search("no question with the result of a call .*Unexpected role.*t3a", said)
+
+
 def test_each_model_is_asked_once_for_all_trials_alike_and_the_stand_in_never(monkeypatch):
     asked = []
-    monkeypatch.setattr(fit, "misfit", lambda model, *_: asked.append(model.name) or "")
+    monkeypatch.setattr(fit, "misfit", lambda model, *_, calls: asked.append((model.name, calls)) or "")
     monkeypatch.setenv("NOWHERE_API_KEY", "any")
     monkeypatch.setenv("NOWHERE_BASE_URL", "http://127.0.0.1:9/v1")
-    values = {"agents": ["t3a", "asurada"], "models": ["rules", "nowhere/m"], "tasks": ["hvac_fan_max"]}
+    values = {"agents": ["t3a", "caller"], "models": ["rules", "nowhere/m"], "tasks": ["hvac_fan_max"]}
     assert list(fit.misfits(make_plan(values | {"scenarios": ["grid"], "seeds": [0, 1]}).jobs())) == []
-    assert asked == ["nowhere/m"] * 2
+    assert sorted(asked) == [("nowhere/m", False), ("nowhere/m", True)]
+
+
+@pytest.mark.parametrize(("see", "count"), [("both", 1), ("picture", 1), ("tree", 0), ("nothing", 0)])
+def test_what_an_agent_is_not_shown_is_no_part_of_the_question(see, count):
+    plan = {"agents": ["caller"], "tasks": ["hvac_fan_max"], "scenarios": ["grid"], "see": [see]}
+    assert pictures_of(make_plan(plan | {"interface": ["functions"]}).jobs()[0]) == count
 
 
 def test_a_longer_prompt_makes_longer_questions():
