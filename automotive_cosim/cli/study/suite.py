@@ -64,9 +64,11 @@ def suite(
     if as_json:
         rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
         typer.echo(json.dumps({"networks": rows, "out": str(out)}, ensure_ascii=False))
-    errors = sum(len(study.errors) for study in found)
+    errors = [row for study in found for row in study.errors]
     if errors:
-        raise InfrastructureError(f"{counted(errors, 'drive')} ended in an error; rerun the command to retry them")
+        from automotive_cosim.run.row import remedy
+
+        raise InfrastructureError(f"{counted(len(errors), 'drive')} ended in an error; {remedy(errors)}")
 
 
 def _all_of(names: Sequence[str]) -> list[str]:
