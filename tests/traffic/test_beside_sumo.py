@@ -67,18 +67,9 @@ class Road:
         (folder / "n.nod.xml").write_text(f"<nodes>{nodes}</nodes>")
         (folder / "n.edg.xml").write_text(f"<edges>{self.edges}</edges>")
         (folder / "n.typ.xml").write_text(self.types or "<types/>")
-        plain: list[str | Path] = [
-            "-n",
-            folder / "n.nod.xml",
-            "-e",
-            folder / "n.edg.xml",
-            "-t",
-            folder / "n.typ.xml",
-        ]
-        built = sumo_programs.run(
-            "netconvert",
-            [*plain, "-t", folder / "n.typ.xml", "--no-turnarounds", *self.options, "-o", folder / "n.net.xml"],
-        )
+        plain: list[str | Path] = ["-n", folder / "n.nod.xml", "-e", folder / "n.edg.xml"]
+        net = ["-t", folder / "n.typ.xml", "--no-turnarounds", *self.options, "-o", folder / "n.net.xml"]
+        built = sumo_programs.run("netconvert", [*plain, *net])
         assert built[0], built[1]
         (folder / "n.rou.xml").write_text(f"<routes>{self.routes}</routes>")
         (folder / "n.add.xml").write_text(f"<additional>{self.more}</additional>")
