@@ -68,7 +68,14 @@ class Road:
         (folder / "n.edg.xml").write_text(f"<edges>{self.edges}</edges>")
         (folder / "n.typ.xml").write_text(self.types or "<types/>")
         plain: list[str | Path] = ["-n", folder / "n.nod.xml", "-e", folder / "n.edg.xml"]
-        net = ["-t", folder / "n.typ.xml", "--no-turnarounds", *self.options, "-o", folder / "n.net.xml"]
+        net: list[str | Path] = [
+            "-t",
+            folder / "n.typ.xml",
+            "--no-turnarounds",
+            *self.options,
+            "-o",
+            folder / "n.net.xml",
+        ]
         built = sumo_programs.run("netconvert", [*plain, *net])
         assert built[0], built[1]
         (folder / "n.rou.xml").write_text(f"<routes>{self.routes}</routes>")
