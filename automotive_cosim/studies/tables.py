@@ -49,7 +49,7 @@ def groups(study: Study) -> list[tuple[float, str, float, list[PolicyChoice]]]:
 
 def goes_by_news(policy: str) -> bool:
     """Whether a policy decides by the plan's traffic news; others know the present, the future or nothing."""
-    return parse_policy(policy).rule in (PolicyRule.ALWAYS, PolicyRule.DELAY)
+    return parse_policy(policy).rule in (PolicyRule.ALWAYS, PolicyRule.DELAY, PolicyRule.WORTHWHILE)
 
 
 def policies(study: Study) -> Table:
