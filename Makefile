@@ -1,6 +1,5 @@
 # `make run` is the main job, `make test-fast` the inner loop, `make check test` what a change must pass. Each makes its
-# own environment.
-# `make test TURN=1/6` runs all quick tests, and of those that start SUMO or are slow a sixth.
+# own environment. `make prove` is what takes long; `make prove PART=1/10` a tenth of it.
 PYTHON ?= python3
 VENV ?= .venv
 BIN = $(VENV)/bin
@@ -8,14 +7,19 @@ BIN = $(VENV)/bin
 # Container images like to set it; hundreds of processes start in the tests, and each would compile the package anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: run test test-fast coverage lint check docs report release-check bench clean
+.PHONY: run test prove test-fast coverage lint check docs report release-check bench clean
 .DELETE_ON_ERROR:
 
 run: $(VENV)/.run
 	$(BIN)/automotive-cosim run --pair
 
 test: $(VENV)/.dev
-	$(BIN)/python -m pytest -n auto --dist worksteal --durations=10 $(if $(TURN),--turn $(TURN))
+	$(BIN)/python -m pytest -n auto --dist worksteal --durations=10
+
+prove: $(VENV)/.dev
+	$(BIN)/python -m pytest -n auto --dist worksteal --durations=10 --prove $(PART)
+	$(BIN)/automotive-cosim tasks validate --suite all $(if $(PART),--part $(PART)) --seeds 0 --workers 2 \
+	    --against tests/proof/traces.json
 
 test-fast: $(VENV)/.dev
 	$(BIN)/python -m pytest -n auto --dist worksteal -m "not sumo and not slow" -q

@@ -1,4 +1,4 @@
-"""The parts of the short prompt: the same facts as the long one has, each told once.
+"""The parts of the prompt, in which each fact is told once.
 
     switch: 32 "Seat heat: Off" - "Driver: Seat heat", 41 "Sync" [on]
 

@@ -139,8 +139,7 @@ class ModelAgent:
         lesson = self._reflect(last, now) if self._profile.reflects and not has_waited else ""
         done = prompt.action_words(last.action, last.seen)
         number = len(self._history) + 1
-        told = prompt.summary if self._profile.length is PromptLength.LONG else prompt.step
-        line = told(number, last.action, last.seen, now, lesson)
+        line = prompt.step(number, last.action, last.seen, now, lesson)
         self._done.append(done)
         self._history.append(line)
         self._asking.note(StageName.REMEMBER, now, line)
@@ -149,7 +148,7 @@ class ModelAgent:
         before, after = (_shown(seen) if self._sees else None for seen in (last.seen, now))
         pictures = tuple(screen for screen in (before, after) if screen is not None)
         shown = before is not None, after is not None
-        text = prompt.look_back(last.seen, last.action, now, last.plan, shown, length=self._profile.length)
+        text = prompt.look_back(last.seen, last.action, now, last.plan, shown)
         reply, asked = self._asking.ask(text, pictures)
         lesson = one_line(answer.labelled(reply.text, "lesson") or reply.text)[:LONGEST_LESSON]
         self._asking.note(StageName.REFLECT, now, lesson, reply, asked, len(pictures))

@@ -7,19 +7,15 @@ name of a street or a contact can begin a section of its own.
 
 from __future__ import annotations
 
-import json
 import re
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import asdict
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from string import Template
 
 from automotive_cosim.agents import brief
 from automotive_cosim.agents.lines import one_line
-from automotive_cosim.agents.marks import listed
 from automotive_cosim.agents.settings import AgentProfile
-from automotive_cosim.cockpit.actions import FIELDS, grammar, to_json
-from automotive_cosim.cockpit.restrictions import in_words
+from automotive_cosim.cockpit.actions import FIELDS, to_json
 from automotive_cosim.contracts import (
     Action,
     ActionType,
@@ -77,17 +73,17 @@ def turn(
         _file(profile, observation),
         {
             "instructions": profile.instructions,
-            "hands": _HANDS[profile.interface, profile.length is PromptLength.LONG],
+            "hands": _HANDS[profile.interface],
             "grammar": _grammar(profile, by_point=not is_listed, on_watch=observation.on_watch),
             "policy": observation.policy,
             "goal": driver_words(observation),
             "history": "\n".join(map(one_line, history)) or "nothing yet",
             "plan": one_line(plan) or None,
             "feedback": _timed_result(observation),
-            "elements": _elements(profile, observation) if is_listed else None,
+            "elements": brief.told(observation.elements or ()) if is_listed else None,
             "pictures": (PICTURES if is_listed else PICTURE) if pictures else None,
             "seen": "the screen, its elements" if is_listed else "the screen",
-            "vehicle": _vehicle(observation.vehicle, profile.length) if Channel.VEHICLE in given else None,
+            "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
             "context": _context(profile, observation) if is_told else None,
@@ -102,7 +98,7 @@ def _file(profile: AgentProfile, observation: Observation) -> str:
         return OWN
     if observation.on_watch:
         return DRIVE
-    return profile.name if profile.length is PromptLength.LONG else profile.length
+    return profile.length
 
 
 def situation(profile: AgentProfile, observation: Observation, *, pictures: bool, is_spoken: bool = True) -> str:
@@ -121,9 +117,9 @@ def situation(profile: AgentProfile, observation: Observation, *, pictures: bool
         {
             "goal": driver_words(observation) if is_spoken else None,
             "feedback": _timed_result(observation),
-            "elements": _elements(profile, observation) if is_listed else None,
+            "elements": brief.told(observation.elements or ()) if is_listed else None,
             "pictures": PICTURE if pictures else None,
-            "vehicle": _vehicle(observation.vehicle, profile.length) if Channel.VEHICLE in given else None,
+            "vehicle": _vehicle(observation.vehicle) if Channel.VEHICLE in given else None,
             "connectivity": _connectivity(observation) if Channel.CONNECTIVITY in given else None,
             "gps": _gps(observation.gps) if Channel.GPS in given else None,
             "context": _context(profile, observation) if Channel.CONTEXT in given else None,
@@ -151,15 +147,12 @@ PICTURES = (
     "The numbers are the indices below."
 )
 PICTURE = "One picture comes with this text: the screen, as wide and high in pixels as x and y count."
-_HANDS: Mapping[tuple[Interface, bool], str] = {
-    (Interface.TOUCH, False): "touch screen and safety functions",
-    (Interface.FUNCTIONS, False): "functions",
-    (Interface.BOTH, False): "touch screen and functions",
-    (Interface.TOUCH, True): "the touch screen and the safety functions",
-    (Interface.FUNCTIONS, True): "the functions",
-    (Interface.BOTH, True): "the touch screen and the functions",
+_HANDS: Mapping[Interface, str] = {
+    Interface.TOUCH: "touch screen and safety functions",
+    Interface.FUNCTIONS: "functions",
+    Interface.BOTH: "touch screen and functions",
 }
-"""What an agent operates, by interface and whether its prompt is the long one."""
+"""What an agent operates."""
 FUNCTIONS = (
     'Functions for the action `call`, as in {"action_type": "call", "function": "set_hvac_temperature", '
     '"arguments": {"which": "driver", "celsius": 21.5}}:'
@@ -176,10 +169,7 @@ def _grammar(profile: AgentProfile, *, by_point: bool, on_watch: bool) -> str:
     """The actions, and the functions that can be called; in a watch, a wait ends when something changes and nothing
     ends the watch."""
     kinds = profile.actions - (UNASKED if on_watch else frozenset())
-    if profile.length is PromptLength.LONG:
-        text = grammar(kinds, by_point=by_point)
-    else:
-        text = brief.actions(kinds, by_point=by_point, by_name=profile.length is PromptLength.SHORT)
+    text = brief.actions(kinds, by_point=by_point, by_name=profile.length is PromptLength.SHORT)
     for action, about in ON_DRIVES.items() if on_watch else ():
         text = text.replace(FIELDS[action].about, about)
     if profile.functions:
@@ -194,7 +184,6 @@ def look_back(
     after: Observation,
     plan: str = "",
     pictures: tuple[bool, bool] = (False, False),
-    length: PromptLength = PromptLength.STANDARD,
 ) -> str:
     """The prompt that asks about the result of an action, or of an answer that could not be read.
 
@@ -204,34 +193,20 @@ def look_back(
         after: what is seen now.
         plan: what was planned.
         pictures: whether a picture of before and one of after come with it.
-        length: how much it says.
     """
+    lists = (before.elements, after.elements)
     slots = {
         "goal": driver_words(after),
-        "action": "an answer that could not be read" if action is None else json.dumps(to_json(action)),
+        "action": action_words(action, before),
         "plan": one_line(plan) or None,
         "feedback": _timed_result(after),
         "pictures": BEFORE_AND_AFTER.get(pictures),
+        "changes": None if lists[0] is None or lists[1] is None else brief.changes(lists[0], lists[1]),
     }
-    if length is not PromptLength.LONG:
-        lists = (before.elements, after.elements)
-        changes = None if lists[0] is None or lists[1] is None else brief.changes(lists[0], lists[1])
-        return fill("lesson", slots | {"action": action_words(action, before), "changes": changes})
-    shown = {name: None if seen.elements is None else elements(seen) for name, seen in _sides(before, after)}
-    return fill("reflect", slots | shown)
-
-
-def _sides(before: Observation, after: Observation) -> Iterator[tuple[str, Observation]]:
-    yield "before", before
-    yield "after", after
+    return fill("lesson", slots)
 
 
 def step(number: int, action: Action | None, seen: Observation, after: Observation, lesson: str = "") -> str:
-    """The same as ``summary`` in fewer words, with the element's words in place of its index."""
-    return _line(number, action_words(action, seen), seen, after, lesson)
-
-
-def summary(number: int, action: Action | None, seen: Observation, after: Observation, lesson: str = "") -> str:
     """One line of history: the action, when it was chosen, its result, and the lesson.
 
     Args:
@@ -241,22 +216,9 @@ def summary(number: int, action: Action | None, seen: Observation, after: Observ
         after: what was seen then.
         lesson: what the agent learnt from it.
     """
-    done = json.dumps(to_json(action)) if action else "unreadable answer"
-    kind = action.action_type if action else "none"
-    on = f" on {one_line(name)}" if (name := target(action, seen)) else ""
-    return _line(number, f"{kind} {done}{on}", seen, after, lesson)
-
-
-def _line(number: int, done: str, seen: Observation, after: Observation, lesson: str) -> str:
     learnt = f"; {one_line(lesson)}" if lesson else ""
     came = f"{after.feedback.code} {one_line(after.feedback.text)}".rstrip()
-    return f"Step {number} at {seen.time_s:.0f} s: {done} -> {came}{learnt}"
-
-
-def elements(observation: Observation) -> str:
-    """The visible elements with their indices, one JSON object per line."""
-    entries = (listing(index, element) for index, element in listed(observation.elements or ()))
-    return "\n".join(json.dumps(entry, ensure_ascii=False) for entry in entries)
+    return f"Step {number} at {seen.time_s:.0f} s: {action_words(action, seen)} -> {came}{learnt}"
 
 
 def driver_words(observation: Observation) -> str:
@@ -283,15 +245,10 @@ def passed(observation: Observation) -> str:
     return f"{observation.time_s:.0f} s have passed"
 
 
-def _elements(profile: AgentProfile, observation: Observation) -> str:
-    is_long = profile.length is PromptLength.LONG
-    return elements(observation) if is_long else brief.told(observation.elements or ())
-
-
 def _context(profile: AgentProfile, observation: Observation) -> str:
     """The geo-context; short only for who can ask for the rest, and not in a watch, where anything can matter."""
     text = observation.context or "unknown"
-    if profile.length is not PromptLength.LONG and ActionType.QUERY in profile.actions and not observation.on_watch:
+    if ActionType.QUERY in profile.actions and not observation.on_watch:
         return brief.context(text, driver_words(observation))
     return _lines(text)
 
@@ -320,16 +277,8 @@ def listing(index: int, element: Element) -> Json:
     return entry | {flag.removeprefix("is_"): True for flag in SHOWN_FLAGS if getattr(element, flag)}
 
 
-def _vehicle(vehicle: VehicleState | None, length: PromptLength) -> str:
-    if vehicle is None:
-        return "unknown"
-    if length is not PromptLength.LONG:
-        return brief.vehicle(vehicle)
-    shown = {name: value for name, value in asdict(vehicle).items() if value is not None}
-    shown["restrictions"] = in_words(vehicle.restrictions)
-    noticed = shown.pop("noticed", "")
-    lines = [f"{name}: {round(value, 1) if isinstance(value, float) else value}" for name, value in shown.items()]
-    return "\n".join([*lines, *noticed.splitlines()])
+def _vehicle(vehicle: VehicleState | None) -> str:
+    return "unknown" if vehicle is None else brief.vehicle(vehicle)
 
 
 def _connectivity(observation: Observation) -> str:

@@ -5,7 +5,6 @@
 
 A decision on a grid has a fork, a branch and its share of the kept route's future; some hundred vehicles are on
 the road, whatever the size, so rows differ by the network. Times but those of forks are processor time.
-Bare SUMO is as many steps of libsumo that read nothing, in a fork of the same instant.
 
 The model has three measured parts: the processor time of a decision in a worker, that of a seed's warm-up, which
 each worker with a drive of that seed spends, and that of the program that hands out drives and writes rows. Workers
@@ -15,20 +14,19 @@ share nothing else: throughput grows with them until seeds or that program are t
 from __future__ import annotations
 
 import argparse
+import functools
 import os
 import statistics
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
-
-from decisions import Children
-from futures import Tally, counted, decisions
 
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady
@@ -39,6 +37,7 @@ from automotive_cosim.studies.rows import DriveRow
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
+from automotive_cosim.traffic.remote import RemoteProcess
 
 BLOCK_M = 150
 VEHICLES_OF = 1_000
@@ -47,6 +46,62 @@ VEHICLES_OF = 1_000
 JAM = "jam edges=c1c2,c2c3 length_m=200 hold_s=15"
 MANY = 100
 """Workers of the model."""
+
+
+class Children:
+    """Processor time of the simulations' processes, past and present."""
+
+    def __init__(self) -> None:
+        self._ended_s = 0.0
+        self._running: dict[int, RemoteProcess] = {}
+        self._since_s: Counter[int] = Counter()
+
+    @contextmanager
+    def counted(self) -> Iterator[Children]:
+        """Counts every process that is started or forked in the meantime."""
+        first_call, close = RemoteProcess.receive, RemoteProcess.close
+
+        @functools.wraps(first_call)
+        def receive(process: RemoteProcess, *arguments: Any, **options: Any) -> Any:
+            if process.pid and process.pid not in self._running:
+                self._running[process.pid] = process
+            return first_call(process, *arguments, **options)
+
+        @functools.wraps(close)
+        def closed(process: RemoteProcess) -> None:
+            if self._running.pop(process.pid, None) is not None:
+                self._ended_s += spent_s(process.pid)
+            close(process)
+
+        RemoteProcess.receive, RemoteProcess.close = receive, closed  # type: ignore[method-assign]
+        try:
+            yield self
+        finally:
+            RemoteProcess.receive, RemoteProcess.close = first_call, close  # type: ignore[method-assign]
+
+    @property
+    def spent_s(self) -> float:
+        """Seconds spent by all of them so far."""
+        return self._ended_s + sum(map(spent_s, self._running))
+
+
+def spent_s(pid: int) -> float:
+    """A process's own clock (clock_getcpuclockid(3)); Linux."""
+    try:
+        return time.clock_gettime(((~pid) << 3) | 2)
+    except OSError:  # it has ended
+        return 0.0
+
+
+def decisions(plan: StudyPlan) -> int:
+    """Runs all drives of a study; the number of their decisions."""
+    count = 0
+    with drives() as run:
+        for job in plan.jobs():
+            row = run(job, Path())
+            assert not row.error, row.error
+            count += len(row.decisions)
+    return count
 
 
 @dataclass(slots=True)
@@ -110,22 +165,22 @@ def on_network(streets: int, trips: int) -> str:
             warm_up_s=300.0,
         )
         plan = replace(plan, trips=tuple(trip.name for trip in plan.opened.ego.trips[:trips]))
-        clock, tally = Clock(), Tally()
+        clock = Clock()
         with Children().counted() as children:
             begun_s = time.process_time()
 
-            def spent_s() -> float:
+            def now_s() -> float:
                 return time.process_time() - begun_s + children.spent_s
 
-            with clock.running(spent_s), counted(tally):
+            with clock.running(now_s):
                 count = decisions(plan)
-            all_s = spent_s()
+            all_s = now_s()
     if not count:
         sys.exit("no decision; give more --trips")
-    decision_s = (all_s - clock.warm_s - tally.bare_s) / count
+    decision_s = (all_s - clock.warm_s) / count
     return (
         f"{edges:,} | {clock.vehicles} | {clock.warm_s:.1f} s | {1000 * statistics.median(clock.forks_s):.0f} ms | "
-        f"{count} | {decision_s:.2f} s | {tally.ours_s / count:.2f} s | {tally.bare_s / count:.2f} s"
+        f"{count} | {decision_s:.2f} s"
     )
 
 
@@ -237,8 +292,6 @@ def main() -> None:
             "fork",
             "decisions",
             "a decision",
-            "its futures",
-            "bare SUMO",
         ]
         print(f"| {' | '.join(columns)} |\n|{'---:|' * len(columns)}")
         for streets in given.streets:

@@ -36,8 +36,10 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
 from automotive_cosim.traffic import remote
+from automotive_cosim.traffic.base import WarmUpProgress
 from automotive_cosim.traffic.fork import Simulations
-from tests import preloaded
+from automotive_cosim.traffic.options import Setup
+from tests import farm, preloaded
 
 PROXIES = [f"{kind}_proxy" for kind in ("http", "https", "all")]
 for _name in (
@@ -52,13 +54,18 @@ typer.main.get_command = cache(typer.main.get_command)
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
 NO_LIBSUMO = Path(__file__).parent / "no_libsumo"
 """What the children of a test find in the place of libsumo."""
-TRAFFIC = Path(__file__).parent / "traffic"
+ABOUT_PROCESSES = {"test_faults", "test_confinement"}
+"""Modules whose simulations start as programs start them."""
 _forbidden = False
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption(
-        "--turn", metavar="I/N", help="of the tests marked `sumo`, `slow` or `long`, run the I-th of N parts"
+        "--prove",
+        metavar="I/N",
+        nargs="?",
+        const="1/1",
+        help="run the tests marked `proof` instead, the I-th of N parts",
     )
 
 
@@ -66,21 +73,24 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if "sumo" in getattr(item, "fixturenames", ()):
             item.add_marker("sumo")
-    if config.option.turn:
-        part, parts = map(int, config.option.turn.split("/"))
-        if not 1 <= part <= parts:
-            raise pytest.UsageError(f"--turn is {config.option.turn}; give a part from 1 to {parts}")
-        left = [item for item in items if (turn := _turn(item)) and crc32(turn.encode()) % parts != part - 1]
-        config.hook.pytest_deselected(items=left)
-        items[:] = [item for item in items if item not in set(left)]
+    part, parts = map(int, (config.option.prove or "0/1").split("/"))
+    if not 0 <= part <= parts:
+        raise pytest.UsageError(
+            f"--prove is {config.option.prove}; give a part from 1 to {parts}, such as 1/{parts}"
+        )
+
+    def is_wanted(item: pytest.Item) -> bool:
+        is_proof = item.get_closest_marker("proof") is not None
+        return is_proof and crc32(item.nodeid.encode()) % parts == part - 1 if part else not is_proof
+
+    config.hook.pytest_deselected(items=[item for item in items if not is_wanted(item)])
+    items[:] = [item for item in items if is_wanted(item)]
     items.sort(key=lambda item: item.get_closest_marker("long") is None)  # else a worker waits for one at the end
 
 
-def _turn(item: pytest.Item) -> str:
-    """What takes turns together: a long test alone, the others of a file, which share what they prepare."""
-    if item.get_closest_marker("long"):
-        return item.nodeid
-    return str(item.path.name) if item.get_closest_marker("sumo") or item.get_closest_marker("slow") else ""
+def pytest_sessionstart(session: pytest.Session) -> None:
+    if session.config.getoption("numprocesses", None) and preloaded.POSSIBLE:
+        session.config.add_cleanup(farm.Farm().close)
 
 
 def pytest_collection_finish() -> None:
@@ -92,8 +102,10 @@ def pytest_collection_finish() -> None:
 def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     if item.get_closest_marker("sumo"):
         with pytest.MonkeyPatch.context() as patch:
-            if preloaded.POSSIBLE and TRAFFIC not in item.path.parents:
+            if preloaded.POSSIBLE and item.path.stem not in ABOUT_PROCESSES:
                 patch.setattr(remote, "_popen", _popen)
+                if farm.ADDRESS in os.environ:
+                    patch.setattr(remote.RemoteProcess, "start", staticmethod(_started))
             return (yield)
     with _without_sumo():
         return (yield)
@@ -106,6 +118,13 @@ def _preloaded() -> preloaded.Preloaded:
 
 def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> preloaded.Process:
     return _preloaded().start(connection, complaints, alarm_s)
+
+
+_start = remote.RemoteProcess.start
+
+
+def _started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> Any:
+    return (farm.copied if farm.has(setup) else _start)(setup, progress, timeout_s)
 
 
 @contextmanager

@@ -1,7 +1,6 @@
 """Simulations' processes forked from one that has imported everything, which takes half a second of a core.
 
-SUMO is started hundreds of times by the tests. Those of ``tests/traffic``, which are about the process, start it as
-programs do.
+SUMO is started hundreds of times by the tests. Those that are about the process start it as programs do.
 """
 
 from __future__ import annotations

@@ -46,7 +46,8 @@ def show(name: str, as_json: AsJson = False) -> None:
         actions = sorted(PROFILES[name].actions) if name in PROFILES else []
     prompt = ""
     if name in MODELLED:
-        prompt = files("automotive_cosim.agents").joinpath("prompts", f"{name}.md").read_text("utf-8")
+        file = "standard" if name in PROFILES else name
+        prompt = files("automotive_cosim.agents").joinpath("prompts", f"{file}.md").read_text("utf-8")
     if as_json:
         print_json({"name": name, "channels": channels, "actions": actions, "prompt": prompt})
         return

@@ -84,7 +84,7 @@ def evaluate(
     folder = chosen.out or _folder(plan)
     choice = filled(ExecutorSettings, settings)
     where = choice.opened()
-    console = Console(stderr=as_json, highlight=False)
+    console = Console(highlight=False)
     lacks, unit = plan.check(dry=chosen.dry_run), unit_of(plan.as_json())
     check_prices(plan.models, budget)
     tell_notes(map(open_scenario, plan.scenarios))

@@ -10,6 +10,7 @@ import io
 import os
 import signal
 import sys
+from contextlib import nullcontext
 from typing import Annotated
 
 import typer
@@ -36,8 +37,7 @@ from automotive_cosim.cli import (
     study,
     tasks,
 )
-from automotive_cosim.cli.former import refuse_former
-from automotive_cosim.cli.terminal import discard_output, open_streams, plain_streams
+from automotive_cosim.cli.terminal import discard_output, json_alone, open_streams, plain_streams
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.formats.plain import plain
 
@@ -111,7 +111,9 @@ def main() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):  # a street's name must not end a run under an ASCII locale
             stream.reconfigure(errors="replace")
-    with plain_streams():
+    words = set(sys.argv)
+    asks_json = "--json" in words and not {"-h", "--help"} & words
+    with json_alone() if asks_json else nullcontext(), plain_streams():
         code = _run()
         if code == INTERRUPTED:
             print("error: interrupted", file=sys.stderr)
@@ -122,7 +124,6 @@ def main() -> None:
 def _run() -> int:
     """Runs a command; returns the exit code."""
     try:
-        refuse_former(sys.argv[1:])
         return app(standalone_mode=False) or 0
     except (UserError, InfrastructureError, typer.TyperException) as error:
         if os.environ.get("AUTOMOTIVE_COSIM_DEBUG"):

@@ -15,7 +15,7 @@ import typer
 from annotated_types import Ge, Le
 
 from automotive_cosim.cli.derived import number_in
-from automotive_cosim.cli.terminal import escaped
+from automotive_cosim.cli.terminal import escaped, print_alone
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Option
 
@@ -79,8 +79,8 @@ AsJson = Annotated[bool, typer.Option("--json", help="Print one JSON object and 
 
 
 def print_json(values: object) -> None:
-    """Prints the one JSON object of ``--json``."""
-    typer.echo(escaped(json.dumps(values, ensure_ascii=False)))
+    """Prints the JSON of ``--json``; nothing else prints any."""
+    print_alone(escaped(json.dumps(values, ensure_ascii=False)))
 
 
 MOST_SEED = 2**31 - 1

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping, Sequence
 from contextlib import closing
 from dataclasses import replace
@@ -21,6 +20,7 @@ from automotive_cosim.cli.options import (
     ModelName,
     Seed,
     TasksFrom,
+    print_json,
     tell_opening,
 )
 from automotive_cosim.contracts import Json
@@ -133,7 +133,7 @@ def run(
         typer.echo(f"no --task was given: this was {ANYWHERE}, which comes about on any road", err=True)
     if as_json:
         told = [{**_headline(result), "out": str(folder)} for result in results]
-        typer.echo(json.dumps({"pair": told, "out": str(folder)} if how.pair else told[0]))
+        print_json({"pair": told, "out": str(folder)} if how.pair else told[0])
     elif has_begun:
         typer.echo(f"Recorded in {folder}; open {page}")
     for result in results:

@@ -316,14 +316,13 @@ def equilibrate_scenario(
     target = told.out or folder.with_name(f"{folder.resolve().name.removesuffix('.sumocfg')}_equilibrium")
 
     def tell(step: AssignmentStep) -> None:
-        typer.echo(f"step {step.number}: {step.gap}; {step.changed} change", err=as_json)
+        typer.echo(f"step {step.number}: {step.gap}; {step.changed} change")
 
     def tell_total(step: OptimumStep) -> None:
         total = step.total
         typer.echo(
             f"towards the optimum, step {step.number}: {total.mean_s:.1f} s per trip, {total.unfinished} had not "
-            f"arrived, {total.teleports} teleports; {step.changed} change",
-            err=as_json,
+            f"arrived, {total.teleports} teleports; {step.changed} change"
         )
 
     options = filled(EquilibriumSettings, settings)

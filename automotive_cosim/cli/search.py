@@ -19,7 +19,7 @@ from automotive_cosim.cli.batches import (
     minutes_in_words,
 )
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom
+from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom, print_json
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.safety.settings import SearchOrder, SearchSettings
@@ -90,7 +90,7 @@ def search(
     plan.check()
     check_space(space, plan)
     folder = order.out or Path("runs") / f"search-{file.stem}-{agent.replace(':', '.')}"
-    console = Console(stderr=as_json, highlight=False)
+    console = Console(highlight=False)
     about: Json = {
         "space": file.read_text(encoding="utf-8"),
         "agent": agent,
@@ -106,7 +106,7 @@ def search(
     if order.dry_run:
         console.print("nothing was run")
         if as_json:
-            typer.echo(json.dumps({"out": str(folder), "dry_run": True}))
+            print_json({"out": str(folder), "dry_run": True})
         return
 
     said_s = time.monotonic()
@@ -173,7 +173,7 @@ def search(
     elif order.save is not None:
         typer.echo(f"no failure was found, so nothing is saved in {order.save}", err=True)
     if as_json:
-        typer.echo(json.dumps(findings_json(found) | {"out": str(folder)}))
+        print_json(findings_json(found) | {"out": str(folder)})
     else:
         _tell_found(console, found, agent, page)
     if found.interrupted:

@@ -1,4 +1,4 @@
-"""Makes what reaches a terminal plain text.
+"""Makes what reaches a terminal plain text, and keeps standard output free for JSON.
 
 print, typer.echo -> Plain -> the stream
 rich -> console.Console -> the stream, with rich's own controls
@@ -9,8 +9,10 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from typing import Any, TextIO, cast
+
+import typer
 
 from automotive_cosim.formats.plain import OBEYED, plain
 
@@ -52,6 +54,37 @@ def plain_streams() -> Iterator[None]:
         yield
     finally:
         sys.stdout, sys.stderr = kept
+
+
+@contextmanager
+def json_alone() -> Iterator[None]:
+    """Within the block, only ``print_alone`` prints to standard output. What libraries, agents and the processes
+    started here print there goes to standard error."""
+    sys.stdout.flush()
+    kept = os.dup(1)
+    os.dup2(2, 1)
+    _outputs.append((kept, sys.stdout.encoding))
+    try:
+        with redirect_stdout(sys.stderr):
+            yield
+    finally:
+        _outputs.pop()
+        os.dup2(kept, 1)
+        os.close(kept)
+
+
+_outputs: list[tuple[int, str]] = []
+"""The standard output that is kept free, with its encoding."""
+
+
+def print_alone(text: str) -> None:
+    """Prints a text to standard output, within ``json_alone`` too."""
+    if not _outputs:
+        typer.echo(text)
+        return
+    descriptor, encoding = _outputs[-1]
+    with open(descriptor, "w", encoding=encoding, errors="replace", closefd=False) as output:
+        output.write(f"{text}\n")
 
 
 def open_streams() -> None:

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any
 
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, TasksFrom
+from automotive_cosim.cli.options import AsJson, TasksFrom, print_json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError, UserError
 from automotive_cosim.proof.settings import ProofSettings
@@ -72,7 +71,7 @@ def validate(tasks_from: TasksFrom = None, as_json: AsJson = False, **settings: 
     for name in changed:
         console.print(f"[red]✗[/] {name}: its reference solution gives a different trace", highlight=False)
     if as_json:
-        typer.echo(json.dumps(result))
+        print_json(result)
     else:
         for line in _summary(proofs, chosen):
             typer.echo(line)

@@ -244,18 +244,9 @@ def to_json(action: Action) -> Json:
     return {name: value for name, value in asdict(action).items() if value is not None}
 
 
-def grammar(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = False) -> str:
-    """The actions of these kinds, each as one line of JSON with its meaning, for a prompt.
-
-    Args:
-        kinds: the actions to list.
-        by_point: whether there is no list of elements, so that a target is a point.
-    """
-    return "\n".join(
-        f"- {_about(takes, by_point)}: {_example(kind, takes, by_point)}"
-        for kind, takes in FIELDS.items()
-        if kind in kinds
-    )
+def grammar(kinds: Collection[ActionType] = UNCALLED) -> str:
+    """The actions of these kinds, each as one line of JSON with its meaning, for a prompt."""
+    return "\n".join(f"- {takes.about}: {_example(kind, takes)}" for kind, takes in FIELDS.items() if kind in kinds)
 
 
 def signatures(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = False, is_told: bool = True) -> str:
@@ -263,7 +254,7 @@ def signatures(kinds: Collection[ActionType] = UNCALLED, *, by_point: bool = Fal
 
     Args:
         kinds: the actions to list.
-        by_point: see ``grammar``.
+        by_point: whether there is no list of elements, so that a target is a point.
         is_told: whether each says what it does.
     """
     return "\n".join(
@@ -456,18 +447,16 @@ def point(action: Action, elements: Sequence[Element]) -> tuple[int, int]:
     return (box.x_min + box.x_max) // 2, (box.y_min + box.y_max) // 2
 
 
-def _example(kind: ActionType, takes: Takes, by_point: bool) -> str:
-    target = ("x", "y") if by_point else ("index",)
-    optional = tuple(name for name in takes.optional if name != "index" or not by_point)
-    names = (target if takes.target else ()) + takes.required + optional
+def _example(kind: ActionType, takes: Takes) -> str:
+    names = (("index",) if takes.target else ()) + takes.required + takes.optional
     parts = [f'"action_type": "{kind}"']
     for name in names:
         if name in _ENUMS:
             parts.append(f'"{name}": "<{"|".join(_ENUMS[name])}>"')
         else:
             parts.append(f'"{name}": <{_TYPES[name].__name__}>')
-    point = ' (or "x", "y" in place of "index")' if takes.target and not by_point else ""
-    left_out = f" ({', '.join(optional)} may be left out)" if optional else ""
+    point = ' (or "x", "y" in place of "index")' if takes.target else ""
+    left_out = f" ({', '.join(takes.optional)} may be left out)" if takes.optional else ""
     return "{" + ", ".join(parts) + "}" + point + left_out
 
 

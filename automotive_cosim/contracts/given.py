@@ -121,8 +121,6 @@ class PromptLength(StrEnum):
     """What an action takes once, each element in a few words, and of the rules those that can matter."""
     SHORT = "short"
     """For small models: actions by name alone, fewer words on how to answer, the last steps of the history."""
-    LONG = "long"
-    """Every element as a JSON object and, to reflect, both lists of them: the prompt of version 0.2."""
 
     @classmethod
     def _missing_(cls, value: object) -> PromptLength | None:

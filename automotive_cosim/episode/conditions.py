@@ -137,12 +137,12 @@ class Conditions:
         OneOf(PromptLength, "prompt", OWN_PROMPT),
         Words(
             "Prompt", "{0.words} prompt", "{0.tag}_prompt", "Success by prompt",
-            "How much the prompt of T3A, M3A and ASURADA spells out; short is for small models, long is that of "
-            "version 0.2. A file stands for its instructions; its SHA-256 tells one from another.",
+            "How much the prompt of T3A, M3A and ASURADA spells out; short is for small models. A file "
+            "stands for its instructions; its SHA-256 tells one from another.",
         ),
     ] = PromptLength.STANDARD  # fmt: skip
-    """How much the prompt of T3A, M3A and ASURADA spells out: ``standard``, ``short`` for small
-    models, or ``long``; or a file (.md, .txt) in place of the standard one's instructions."""
+    """How much the prompt of T3A, M3A and ASURADA spells out: ``standard``, or ``short`` for
+    small models; or a file (.md, .txt) in place of the standard one's instructions."""
 
     policy: Annotated[
         ToldPolicy,

@@ -50,11 +50,8 @@ class Page:
     """Text of the last result."""
     gps: str
     memory: tuple[str, ...]
-    before: tuple[str, ...]
-    after: tuple[str, ...]
-    """The screen's lines before and after the last action, if the prompt asks to look back."""
     changes: tuple[str, ...] = ()
-    """What changed on the screen instead, if the prompt is the short one."""
+    """What changed on the screen, if the prompt asks to look back."""
     calls_alone: bool = False
     """Whether functions can be called, and the screen not touched."""
 
@@ -78,8 +75,6 @@ class Page:
             told=sections.get("Last result", "").partition(": ")[2],
             gps=sections.get("Where the car is", ""),
             memory=lines("What worked here before"),
-            before=lines("The screen before"),
-            after=lines("The screen after"),
             changes=lines("What changed on the screen"),
             calls_alone=bool(re.search(r"^Functions for the action", prompt, re.MULTILINE))
             and not re.search(r"\bclick\b", sections.get("Actions", "")),
@@ -88,7 +83,7 @@ class Page:
     @property
     def looks_back(self) -> bool:
         """Whether it asks about the result of the last action."""
-        return bool(self.before or self.after or self.changes)
+        return bool(self.changes)
 
     def find(self, label: str) -> ListedElement | None:
         """The first element with that text or description; ``label#2`` is the second."""
@@ -173,16 +168,12 @@ class Page:
 
 
 BRIEF = re.compile(r"(?<!\S)(\d+) (\"(?:[^\"\\]|\\.)*\")(?: - (\"(?:[^\"\\]|\\.)*\"))?(?: \[([^\]]*)\])?")
-"""An element of the short prompt: its index, label, description and state."""
+"""An element of the prompt: its index, label, description and state."""
 ACROSS = re.compile(r"x (\d+) to (\d+), y (\d+)")
 
 
 def _elements(line: str) -> Iterator[ListedElement]:
-    """The elements on a line of either prompt."""
-    if line.startswith("{"):
-        listed = _line(line)
-        yield from () if listed is None else (listed,)
-        return
+    """The elements on a line."""
     for found in BRIEF.finditer(line):
         state = found[4] or ""
         across = ACROSS.search(state)
@@ -196,19 +187,3 @@ def _elements(line: str) -> Iterator[ListedElement]:
             is_scrollable="scrolls" in state,
             bounds=(left, y, right, y),
         )
-
-
-def _line(text: str) -> ListedElement | None:
-    try:
-        entry = json.loads(text)
-        return ListedElement(
-            index=int(entry["index"]),
-            text=str(entry.get("text", "")),
-            description=str(entry.get("description", "")),
-            is_checked=bool(entry.get("checked")),
-            is_enabled=not entry.get("disabled"),
-            is_scrollable=bool(entry.get("scrollable")),
-            bounds=tuple(entry.get("bounds", (0, 0, 0, 0))),
-        )
-    except (ValueError, LookupError, TypeError, AttributeError, RecursionError):
-        return None

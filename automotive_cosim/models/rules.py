@@ -156,8 +156,5 @@ def _plan(text: str) -> tuple[tuple[SkillMove, ...], int]:
 
 
 def _look_back(page: Page) -> str:
-    if page.changes:
-        what = "nothing" if page.changes == ("nothing",) else "the screen"
-        return f"Lesson: {page.result or 'done'}; {what} changed."
-    before, after = set(page.before), set(page.after)
-    return f"Lesson: {page.result or 'done'}; {len(before - after)} elements gone, {len(after - before)} new."
+    what = "nothing" if page.changes == ("nothing",) else "the screen"
+    return f"Lesson: {page.result or 'done'}; {what} changed."

@@ -232,9 +232,7 @@ def _answers(step: Json) -> Iterator[str]:
 
 
 def _questions(job: EpisodeJob, row: EpisodeRow, judged: Judged) -> Json:
-    """The row's fields about questions; empty for a row that was written before they were counted."""
-    if row.questions is None:
-        return {}
+    """The row's fields about questions."""
     half = Instance(job.task, row.half, judged.goal, judged.parameters, language=row.conditions.language).half
     texts = (asked["text"] for asked in questions(judged.trace[0], judged.trace[-1]))
     return questioned(dialogue(texts, half.topics, half.needed_topics, half.neutral))

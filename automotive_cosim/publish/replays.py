@@ -20,7 +20,7 @@ from automotive_cosim.run.record import TrialRecord
 from automotive_cosim.run.rerun import compare, played
 from automotive_cosim.run.row import as_json, steady
 from automotive_cosim.run.store import read_trace, trace_file
-from automotive_cosim.run.trial_row import LATER, TrialRow
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.traffic.fork import Simulations
 
 OF_THE_AGENT = frozenset({"prompt_tokens", "calls", "tokens_in", "tokens_out", "cost_usd", "end"})
@@ -86,8 +86,7 @@ def _differences(
             told, now = ({SAID: []} | each for each in (step, new))
             yield from differences(file, f"step {number}", told, now, (*STEP, SAID), "its replay")
     yield from differences(file, "result", last["result"], new_last["result"], names, "its replay")
-    unknown = OF_THE_AGENT | (LATER if row.malformed is None else frozenset())
-    names = [name for name in steady(row) if name not in unknown]
+    names = [name for name in steady(row) if name not in OF_THE_AGENT]
     yield from differences(ROWS, row.id, as_json(row), as_json(again.row), names, "its replay")
     path, kind = judged_file(folder, row.id), JudgedDrive if isinstance(again, DriveRecord) else Judged
     if read_judged(folder, row.id, kind) != again.judged:

@@ -37,7 +37,7 @@ from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.rows import read_trials
 from automotive_cosim.run.store import read_evaluation, trace_file
-from automotive_cosim.run.trial_row import LATER, TrialRow
+from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import ran_with
 from automotive_cosim.traffic.fork import Simulations
 
@@ -229,7 +229,7 @@ def _manifest_problems(manifest: Json, jobs: Mapping[str, TrialJob]) -> Iterator
 def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) -> Iterator[Problem]:
     """Lines with unknown fields or about an episode that has a verdict already; in a bundle, also any second line
     of an episode, and lines that are not in their only valid form."""
-    known = {"untouched_drive", *(name for row in rows.values() for name in as_json(row))}
+    known = {name for row in rows.values() for name in as_json(row)}
     texts = (folder / ROWS).read_text(encoding="utf-8").splitlines() if (folder / ROWS).is_file() else []
     names: list[str] = []
     final: set[str] = set()
@@ -242,9 +242,7 @@ def _line_problems(folder: Path, rows: Mapping[str, TrialRow], *, strict: bool) 
             final.add(line["id"])
         for name in line.keys() - known:
             yield Problem(ROWS, f"line {number} {name}", "is not a field of a row")
-        whole = as_json(rows[line["id"]]).items()
-        form = {name: value for name, value in whole if name in line or name not in LATER}
-        if strict and text != json.dumps(form, ensure_ascii=False):
+        if strict and text != json.dumps(as_json(rows[line["id"]]), ensure_ascii=False):
             yield Problem(ROWS, f"line {number}", "is not in the form in which `publish bundle` writes it")
     if strict and names != sorted(names):
         yield Problem(ROWS, "", "is not sorted by id")

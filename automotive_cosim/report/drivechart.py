@@ -86,13 +86,12 @@ def _drawing(row: DriveTrialRow, timeline: Json, width_in: float) -> Drawing:
         for line in (*KEY, "", *told, *(["", *lost] if lost else ()))
         for part in wrap(line, room, subsequent_indent="    ") or [""]
     ]
-    panels: list[tuple[float, Callable[[Axes], None]]] = [(SPEED_IN, lambda axes: _speeds(axes, timeline))]
-    if "ttc_s" in timeline:  # a drive of an earlier version has speeds alone
-        panels += [
-            (PANEL_IN, lambda axes: _gaps(axes, timeline)),
-            (PANEL_IN, lambda axes: _sky(axes, timeline)),
-            (LAMPS_IN, lambda axes: _lamps(axes, timeline)),
-        ]
+    panels: list[tuple[float, Callable[[Axes], None]]] = [
+        (SPEED_IN, lambda axes: _speeds(axes, timeline)),
+        (PANEL_IN, lambda axes: _gaps(axes, timeline)),
+        (PANEL_IN, lambda axes: _sky(axes, timeline)),
+        (LAMPS_IN, lambda axes: _lamps(axes, timeline)),
+    ]
     rows_in = ROW_IN * (len(kinds) + 3)
     below_in = sum(height + GAP_IN for height, _ in panels) + AXIS_IN + LINE_IN * len(lines)
     height_in = rows_in + below_in

@@ -26,7 +26,6 @@ from automotive_cosim.report.results import Contestant, contestant
 from automotive_cosim.report.stats import CONFIDENCE, LEAST_CLUSTERS, Interval
 from automotive_cosim.report.tables import Cell, Table, TableRow
 from automotive_cosim.run.drive_row import DriveTrialRow
-from automotive_cosim.run.former import former_timeline
 from automotive_cosim.run.store import read_trace, trace_file
 
 DRAWS = 2000
@@ -474,4 +473,4 @@ def timeline_of(folder: Path, name: str) -> Json | None:
     if not trace_file(folder, name).is_file():
         return None
     result = read_trace(folder, name)[-1].get("result")
-    return former_timeline(folder, name) if result is None else result["timeline"]
+    return result and result["timeline"]

@@ -13,11 +13,11 @@ from PIL import Image
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import write_whole
-from automotive_cosim.formats.layout import FILM, PAGE
+from automotive_cosim.formats.layout import FILM, PAGE, screenshot
 from automotive_cosim.report.plot import Plot
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.episode import EpisodeResult
-from automotive_cosim.run.kept import picture, read_steps, read_trial
+from automotive_cosim.run.kept import read_steps, read_trial
 from automotive_cosim.run.row import from_json
 
 PARTS: Mapping[str, str] = {
@@ -67,7 +67,7 @@ def _steps(folder: Path) -> list[Json]:
             "number": step["step"],
             **{name: step[name] for name in ("at_s", "words", "thought", "feedback", "context")},
             "action": json.dumps(step["action"], ensure_ascii=False) if step["action"] else "",
-            "picture": _picture(picture(folder, step["picture"])),
+            "picture": _picture(screenshot(folder, step["picture"])),
         }
         for step in read_steps(folder)
     ]

@@ -11,8 +11,8 @@ from PIL import Image
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import STEPS
-from automotive_cosim.run.kept import picture, read_steps
+from automotive_cosim.formats.layout import STEPS, screenshot
+from automotive_cosim.run.kept import read_steps
 
 LAST_MS = 3000
 """How long an animation shows its last picture."""
@@ -57,7 +57,7 @@ def frames(folder: Path) -> Iterator[Frame]:
             step["speed_kmh"],
             step["action"],
             step["feedback"]["text"],
-            picture(folder, step["picture"]),
+            screenshot(folder, step["picture"]),
         )
 
 

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from contextlib import ExitStack, closing
 from dataclasses import asdict, dataclass, replace
 from math import inf
-from typing import Annotated, Any
+from typing import Any
 
 from automotive_cosim import geo
 from automotive_cosim.agents import Agent, Learner, Privileged
@@ -25,11 +25,9 @@ from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted
 from automotive_cosim.geo.breaches import Violation
 from automotive_cosim.run.estimates import PositionEstimate, estimates
-from automotive_cosim.run.former import setup_values
 from automotive_cosim.run.harm import DriveFigures, drive_figures
 from automotive_cosim.run.load import DriverLoad, driver_load
 from automotive_cosim.run.observer import Answers, TrialObserver, play_observed
-from automotive_cosim.run.row import formerly
 from automotive_cosim.run.timeline import Sample, TimelineEntry, samples, timeline
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.verdict import Verdict
@@ -66,12 +64,12 @@ class EpisodeSetup(EpisodeSpec):
 
 
 def read_setup(values: Mapping[str, Any], where: str) -> EpisodeSetup:
-    """A setup from its JSON form, one of an earlier version too.
+    """A setup from its JSON form.
 
     Raises:
         UserError: it is not one; the message says what is wrong where.
     """
-    return checked(EpisodeSetup, setup_values(values, where), lambda steps: (where, dotted(steps)))
+    return checked(EpisodeSetup, values, lambda steps: (where, dotted(steps)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,7 +127,7 @@ class EpisodeResult:
     """Visual and manual load on the driver while the car moved; None without a hand-over."""
     drive: DriveFigures | None = None
     """Figures of the drive from the hand-over to the end of the aftermath; only of judged safety tasks."""
-    baseline_drive: Annotated[DriveFigures | None, formerly("untouched_drive", "baseline_drive")] = None
+    baseline_drive: DriveFigures | None = None
     """The same figures of the baseline run, over the same time."""
 
     def as_json(self) -> Json:

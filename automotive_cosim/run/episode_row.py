@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 from typing import Annotated, Any
 
 from automotive_cosim.run.harm import DriveFigures
-from automotive_cosim.run.row import InColumns, formerly
+from automotive_cosim.run.row import InColumns
 from automotive_cosim.run.taps import PixelTaps
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.tasking.sets import Suite
@@ -85,9 +85,7 @@ class EpisodeRow(TrialRow):
     min_time_to_collision_s: float | None = None
     drive: Annotated[DriveFigures | None, InColumns("drive")] = None
     """Figures of the drive; only of judged safety tasks."""
-    baseline_drive: Annotated[
-        DriveFigures | None, InColumns("baseline_drive"), formerly("untouched_drive", "baseline_drive")
-    ] = None
+    baseline_drive: Annotated[DriveFigures | None, InColumns("baseline_drive")] = None
     """The same figures of the baseline run over the same time."""
     interaction_s: float | None = None
     """The driver's, while the car moved."""

@@ -45,10 +45,8 @@ A_STEP: Mapping[str, Tokens] = {"t3a": Tokens(1450, 100), "m3a": Tokens(1450, 10
 BY_PROMPT: Mapping[PromptLength, float] = {
     PromptLength.STANDARD: 1.0,
     PromptLength.SHORT: 0.75,
-    PromptLength.LONG: 3.0,
 }
-"""What another prompt makes of that (nine tasks on grid: T3A's turns have 910, 1,250 and 2,650 tokens, and lessons
-of 240, 240 and 3,400)."""
+"""What another prompt makes of that (nine tasks on grid: T3A's turns have 910 and 1,250 tokens)."""
 LONGEST = 1.5
 """The longest question of a trial, of that."""
 OTHER_STEP = Tokens(3000, 150)

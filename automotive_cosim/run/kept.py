@@ -9,19 +9,20 @@ from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import KMH_PER_MPS, Element, Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json, read_whole_lines
-from automotive_cosim.formats.layout import PICTURES, ROAD, SCREENSHOTS, STEPS, TRIAL, screenshot
+from automotive_cosim.formats.layout import PICTURES, ROAD, SCREENSHOTS, STEPS, TRIAL
 from automotive_cosim.interface.trace import element
-from automotive_cosim.run.former import FILES, former_screenshots, former_steps, former_trial
 from automotive_cosim.run.store import read_trace, trace_file
 from automotive_cosim.run.words import action_in_words
 
-READ = (TRIAL, STEPS, ROAD, *FILES)
+FORMER = ("episode.json", "shown.jsonl")
+"""Files in place of ``trial.json`` in what version 0.2 and earlier ones recorded, which this one does not read."""
+READ = (TRIAL, STEPS, ROAD, *FORMER)
 """Every file of a trial's folder that is read, except its screenshots."""
 
 
 def is_trial(folder: Path) -> bool:
     """Whether the steps of a trial are recorded in a folder."""
-    return (folder / STEPS).is_file() or former_steps(folder, ()) is not None
+    return (folder / STEPS).is_file()
 
 
 def trace_of(folder: Path) -> Path | None:
@@ -36,11 +37,16 @@ def read_trial(folder: Path) -> Json:
     What is not known yet is left out.
 
     Raises:
-        UserError: it cannot be read.
+        UserError: it cannot be read, or version 0.2 or an earlier one wrote it.
     """
     path = folder / TRIAL
+    if not path.is_file() and (found := next((name for name in FORMER if (folder / name).is_file()), None)):
+        raise UserError(
+            f"{folder} has {found} in place of {TRIAL}: version 0.2 or an earlier one recorded it; read it with "
+            "that version, or record the trial again"
+        )
     try:
-        told = read_json(path) if path.is_file() else former_trial(folder)
+        told = read_json(path) if path.is_file() else None
     except (OSError, ValueError, LookupError, TypeError, AttributeError) as error:
         raise UserError(f"cannot read the trial in {folder}: {error}") from error
     if told is None and (trace := trace_of(folder)):
@@ -60,7 +66,6 @@ def read_steps(folder: Path) -> list[Json]:
     path = folder / STEPS
     try:
         lines = read_whole_lines(path) if path.is_file() else []
-        lines = former_steps(folder, lines) or lines
         if not lines and (trace := trace_of(folder)):
             lines = read_trace(trace.parent.parent, folder.name)[:-1]
         return lines if not lines or "words" in lines[0] else shown(lines)
@@ -68,16 +73,9 @@ def read_steps(folder: Path) -> list[Json]:
         raise UserError(f"cannot read the steps in {folder}: {type(error).__name__}: {error}") from error
 
 
-def picture(folder: Path, step: int) -> Path:
-    """Path of the screenshot of a step that changed the screen, whether it is there or not."""
-    path = screenshot(folder, step)
-    return next((each for each in (path, *former_screenshots(path)) if each.exists()), path)
-
-
 def pictures(folder: Path) -> list[Path]:
     """The screenshots of a trial in order."""
-    found = sorted((folder / SCREENSHOTS).glob("step_*"))
-    return found or sorted(each for path in [screenshot(folder, 0)] for each in path.parent.parent.glob(path.name))
+    return sorted((folder / SCREENSHOTS).glob("step_*"))
 
 
 def shown(lines: Sequence[Json]) -> list[Json]:

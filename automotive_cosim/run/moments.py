@@ -31,7 +31,6 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import read_json, write_whole
 from automotive_cosim.formats.layout import TRACES
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.run.former import FIELDS, KEYS, MOVED
 
 PACKAGE = "automotive_cosim."
 """Only classes of this package are created when a file is read."""
@@ -50,15 +49,8 @@ class JudgeInput:
         """The same without what follows from the rest, as a file holds it."""
         return self
 
-    def unpacked(self, path: Path) -> Self:
-        """The reverse of ``packed``.
-
-        Args:
-            path: of the file, for messages.
-
-        Raises:
-            UserError: a version wrote it whose form can no longer be judged.
-        """
+    def unpacked(self) -> Self:
+        """The reverse of ``packed``."""
         return self
 
 
@@ -77,9 +69,8 @@ class Judged(JudgeInput):
     """Moments from the hand-over to the end."""
     baseline: tuple[Moment, ...]
     """Moments of the baseline run over the same time."""
-    counterfactual: Mapping[str, Any] | None = None
-    """What would be commanded at the end if the agent had given only the commands that belong to the goal; None in
-    an older file, which has no counterfactual."""
+    counterfactual: Mapping[str, Any]
+    """What would be commanded at the end if the agent had given only the commands that belong to the goal."""
     allowed_writes: frozenset[str] = frozenset()
     """The commands that belonged to it (``Half.allowed_writes``)."""
     said: tuple[str, ...] = ()
@@ -87,25 +78,13 @@ class Judged(JudgeInput):
 
     def packed(self) -> Judged:
         """Without geo-contexts, and with what changed from moment to moment alone."""
-        beside: Any = _changes(self.trace[-1].commands, self.counterfactual or {})
+        beside: Any = _changes(self.trace[-1].commands, self.counterfactual)
         return replace(self, trace=_bare(self.trace), baseline=_bare(self.baseline), counterfactual=beside)
 
-    def unpacked(self, path: Path) -> Judged:
-        """Each moment with its geo-context by the current rules.
-
-        Raises:
-            UserError: it was written without the counterfactual or with requests to the road as text.
-        """
+    def unpacked(self) -> Judged:
+        """Each moment with its geo-context by the current rules."""
         geo = Geo()
         judged = replace(self, trace=_placed(self.trace, geo), baseline=_placed(self.baseline, geo))
-        requests = (*judged.trace[-1].commands["requests"], *judged.baseline[-1].commands["requests"])
-        lacks = {
-            "with requests as text": any(isinstance(request, str) for request in requests),
-            "without the counterfactual": self.counterfactual is None,
-        }
-        for what, is_so in lacks.items():
-            if is_so:
-                raise UserError(f"{path} has an older format {what}; judge it with the version that wrote it")
         beside: Any = self.counterfactual
         return replace(judged, counterfactual=_changed(judged.trace[-1].commands, *beside))
 
@@ -145,7 +124,7 @@ def read_judged(folder: Path, trial: str, kind: type[J]) -> J:
         raise UserError(f"cannot read {path}: {error}; judge it with the version that wrote it") from error
     if not isinstance(value, kind):
         raise UserError(f"{path} has no moments" if kind is Judged else f"{path} holds no {kind.__name__}")
-    return value.unpacked(path)
+    return value.unpacked()
 
 
 def _bare(moments: Sequence[Moment]) -> tuple[Any, ...]:
@@ -281,7 +260,7 @@ class _Reader:
             case "f":
                 return frozenset(map(self.value, entries))
             case "d":
-                return {KEYS.get(key := self.value(name), key): self.value(each) for name, each in entries}
+                return {self.value(name): self.value(each) for name, each in entries}
             case "e":
                 return self._classes[entries[0]][0](entries[1])
             case "at":
@@ -293,12 +272,11 @@ class _Reader:
         """A dataclass; a field that was removed since is ignored, one that was added takes its default."""
         kind, names = self._classes[number]
         known = {each.name for each in fields(kind)}
-        now = (name if name in known else FIELDS.get(name, name) for name in names)
-        return kind(**{name: self.value(each) for name, each in zip(now, entries, strict=True) if name in known})
+        return kind(**{name: self.value(each) for name, each in zip(names, entries, strict=True) if name in known})
 
 
 def _find(name: str) -> Any:
-    module, _, kind = MOVED.get(name, name).partition(":")
+    module, _, kind = name.partition(":")
     found = getattr(importlib.import_module(module), kind) if module.startswith(PACKAGE) else None
     if not (is_dataclass(found) or (isinstance(found, type) and issubclass(found, Enum))):
         raise ValueError(f"{name} is not a class that can be stored")

@@ -30,7 +30,6 @@ from automotive_cosim.formats.toml import dotted, read_toml
 from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
-from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.jobs import HUMAN, NO_MODEL, DriveJob, EpisodeJob, Limits, TrialJob, digest
 from automotive_cosim.run.outside import check_agent
 from automotive_cosim.run.settings import ALL_SUITES, BOTH, SUITES, EvaluationSettings
@@ -370,7 +369,7 @@ def read_plan(path: Path) -> dict[str, Any]:
         UserError: it cannot be read, is not TOML, or has a wrong or surplus field.
     """
     document = read_toml(path)
-    document = replace(document, table=with_files(plan_values(document.table, str(path))))
+    document = replace(document, table=with_files(document.table))
     document.read(Plan)
     return document.table
 
@@ -404,7 +403,7 @@ def make_plan(values: Mapping[str, Any]) -> Plan:
     Raises:
         UserError: a field is unknown, missing, empty or of the wrong type.
     """
-    plan = checked(Plan, plan_values(values, "the plan"), lambda steps: ("the plan", dotted(steps)))
+    plan = checked(Plan, values, lambda steps: ("the plan", dotted(steps)))
     if not plan.agents:
         raise UserError('the plan has no agent; give agents = ["asurada"] in the file, or --agents asurada')
     given = {entry.name: getattr(plan, entry.name) for entry in fields(plan)}

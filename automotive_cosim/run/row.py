@@ -13,11 +13,10 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Generic, TypeVar, get_type_hints
 
-from pydantic import AliasChoices, Field, TypeAdapter, ValidationError
+from pydantic import TypeAdapter, ValidationError
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.run.former import present, trial_values
 
 T = TypeVar("T")
 R = TypeVar("R", bound="JobRow")
@@ -34,16 +33,6 @@ class InColumns:
 _VOLATILE = object()
 Volatile = Annotated[T, _VOLATILE]
 """A field that may differ between two runs of one plan, such as a wall time."""
-
-
-def formerly(before: str, now: str) -> Any:
-    """Marks a field that has another name in older lines.
-
-    Args:
-        before: its name in older lines.
-        now: its name.
-    """
-    return Field(validation_alias=AliasChoices(now, before))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -89,8 +78,10 @@ def from_line(kind: type[R], line: bytes) -> R:
         ValueError: the line is not JSON, or a field is missing or of another type; the message gives the first.
     """
     form = _form(kind)
+    if "conditions" in form.marks and b'"conditions":' not in line:  # read as the defaults, they would be others
+        raise ValueError("conditions: it has none, as in version 0.2 and before")
     try:
-        return form.adapter.validate_json(present(line) if "conditions" in form.marks else line, strict=True)
+        return form.adapter.validate_json(line, strict=True)
     except ValidationError as error:
         first = error.errors(include_url=False)[0]
         where = ".".join(map(str, first["loc"]))
@@ -103,8 +94,7 @@ def from_json(kind: type[T], values: Json) -> T:
     Raises:
         ValueError: a field is missing or of another type.
     """
-    form = _form(kind)
-    return form.adapter.validate_python(trial_values(values) if "conditions" in form.marks else values)
+    return _form(kind).adapter.validate_python(values)
 
 
 def steady(row: JobRow) -> Json:

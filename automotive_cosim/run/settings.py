@@ -145,5 +145,3 @@ class BenchSettings:
     """A scenario's name or folder, any .sumocfg or .net.xml(.gz)."""
     steps: Annotated[int, Ge(100), Le(10**6)] = 2000
     """SUMO steps to measure after the warm-up."""
-    peers: bool = False
-    """Also compare with sumo-rl, which must be installed: a second of traffic, and a new episode."""

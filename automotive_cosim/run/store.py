@@ -28,10 +28,9 @@ from automotive_cosim.errors import UserError
 from automotive_cosim.formats import files
 from automotive_cosim.formats.files import write_whole
 from automotive_cosim.formats.layout import PICTURES, TRACES
-from automotive_cosim.run.former import plan_values
 from automotive_cosim.run.own_code import own_code, own_scenarios
 from automotive_cosim.run.row import R, as_json, from_line
-from automotive_cosim.run.versions import STAMPED, installed
+from automotive_cosim.run.versions import STAMPED, SUITE, installed
 
 FORMAT = 1
 """Format of the folder; any other is refused."""
@@ -149,8 +148,8 @@ def read_rows(folder: Path, kind: RowKind[R]) -> dict[str, R]:
             row = from_line(of, line)
         except ValueError as error:
             raise UserError(
-                f"{path}, line {number} cannot be read: {error}; read it with the version that wrote it, or remove "
-                "that line to rerun the episode"
+                f"{path}, line {number} cannot be read: {error}; read it with the version that wrote it"
+                f"{_writer(folder)}, or remove that line to rerun the episode"
             ) from error
         rows[row.id] = row
     return rows
@@ -160,7 +159,7 @@ def read_manifest(folder: Path) -> Json:
     """The manifest of an evaluation.
 
     Raises:
-        UserError: there is none, it has another format, or an older one with the mode ``monitoring``.
+        UserError: there is none, or it has another format.
     """
     path = folder / "manifest.json"
     try:
@@ -178,7 +177,7 @@ def read_manifest(folder: Path) -> Json:
         )
     if not isinstance(manifest.get("plan"), dict):
         raise UserError(f"{path} has no plan; give a results folder as `automotive-cosim eval` wrote it")
-    return manifest | {"plan": plan_values(manifest["plan"], str(path))}
+    return manifest
 
 
 def read_evaluation(folder: Path) -> Json:
@@ -252,6 +251,14 @@ def megabytes(folder: Path) -> float:
 
 
 # --- inside -----------------------------------------------------------------------------------------------
+
+
+def _writer(folder: Path) -> str:
+    """The version that a folder was begun with, in brackets; empty if that is not known."""
+    try:
+        return f" ({SUITE} {files.read_json(folder / 'manifest.json')['starts'][0]['versions'][SUITE]})"
+    except (OSError, ValueError, LookupError, TypeError):
+        return ""
 
 
 def _check(folder: Path) -> None:

@@ -14,9 +14,6 @@ from automotive_cosim.run.row import InColumns, JobRow, Volatile
 from automotive_cosim.tasking.policy import Breach
 from automotive_cosim.tasking.sets import Split
 
-LATER = frozenset({"malformed", "malformed_why"})
-"""Fields that rows of 0.2 may lack."""
-
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class TrialRow(JobRow, ABC):
@@ -36,8 +33,8 @@ class TrialRow(JobRow, ABC):
     """How the agent's side failed, if it did: a failure like any other, never an error."""
     steps: int = 0
     malformed: int | None = None
-    """Steps lost to answers that were no action, as the agent raised or they could not be read; None in earlier
-    rows."""
+    """Steps lost to answers that were no action, as the agent raised or they could not be read; None without a
+    trial."""
     malformed_why: str = ""
     """Why the first of them was none."""
     thought_s: float = 0.0

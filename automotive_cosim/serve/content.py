@@ -18,7 +18,6 @@ from automotive_cosim.report.page import PARTS
 from automotive_cosim.run.coverage import unit_of
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
-from automotive_cosim.run.former import trial_values
 from automotive_cosim.run.kept import READ, is_trial, read_steps, read_trial, trace_of
 from automotive_cosim.run.road import FORMAT, read_road
 from automotive_cosim.run.road_recorder import is_being_written
@@ -369,8 +368,8 @@ def _head_of(folder: Path, *_stamp: object) -> Json:
     manifest = told.get("manifest") or {}
     begun = next(iter(read_road(folder / ROAD)), {}) if (folder / ROAD).is_file() else {}
     setup = manifest.get("setup") or {}
-    values = begun | trial_values((told.get("row") or {}) | (told.get("result") or {}))
-    given = (values if "conditions" in values else trial_values(setup)).get("conditions")
+    values = begun | (told.get("row") or {}) | (told.get("result") or {})
+    given = (values if "conditions" in values else setup).get("conditions")
     conditions = from_json(Conditions, given) if given else Conditions()
     is_drive = "family" in setup or folder.parent.name == LIVE
     return {name: values.get(name) for name in HEAD} | {

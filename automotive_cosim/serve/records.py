@@ -14,14 +14,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import LIVE, PICTURES
+from automotive_cosim.formats.layout import LIVE, PICTURES, screenshot
 from automotive_cosim.run import kept
 
 DEPTH = 3
 """How deep records are searched for below a given folder."""
 MOST = 2000
 """Maximum number of listed records."""
-KINDS = {".png": "image/png", ".jpg": "image/jpeg"}
 
 
 class NotHereError(UserError):
@@ -124,8 +123,8 @@ class RecordFolders:
                 return folder
         raise NotHereError(f"this record has no trial {trial!r}" if trial else "this record is no trial")
 
-    def picture(self, entry: RecordEntry, folder: Path, step: int) -> tuple[Path, str]:
-        """The screenshot of a step that changed the screen, and its media type.
+    def picture(self, entry: RecordEntry, folder: Path, step: int) -> Path:
+        """The screenshot of a step that changed the screen, a JPEG.
 
         Args:
             entry: the record.
@@ -135,8 +134,7 @@ class RecordFolders:
         Raises:
             NotHereError: there is none.
         """
-        path = kept.picture(folder, step)
-        return self.file(entry, *path.relative_to(entry.folder).parts), KINDS[path.suffix]
+        return self.file(entry, *screenshot(folder, step).relative_to(entry.folder).parts)
 
 
 def _seek(folder: Path, depth: int) -> Iterator[RecordEntry]:

@@ -293,8 +293,8 @@ class Site:
     def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         records = self._content.records
         entry = records.entry(path["run"])
-        picture, kind = records.picture(entry, records.trial(entry, path["episode"]), int(path["step"]))
-        return WebAnswer(picture.read_bytes(), kind, 60)
+        picture = records.picture(entry, records.trial(entry, path["episode"]), int(path["step"]))
+        return WebAnswer(picture.read_bytes(), "image/jpeg", 60)
 
 
 class WebServer(ThreadingHTTPServer):

@@ -2,7 +2,7 @@
 
 A ``Simulation`` holds a scenario's traffic, loaded and warmed up without the ego. ``depart`` puts the ego into an
 exact copy of it and gives a ``Traffic``: one drive, which can be branched at any instant. The implementations
-(``in_process.InProcess``, ``fork.Forked``) are interchangeable and give identical states for one seed.
+(``fork.Forked``, and those of the tests) are interchangeable and give identical states for one seed.
 """
 
 from __future__ import annotations

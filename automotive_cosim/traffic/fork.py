@@ -288,10 +288,6 @@ class RemoteTraffic:
         outcome: Settled = settled
         return outcome
 
-    def bare_steps(self, count: int) -> None:
-        """Steps of SUMO without reading anything, for benchmarks; the state stays what it was."""
-        self._process.call("bare_steps", count)
-
     def settle(self, groups: Sequence[Sequence[str]], share: float, limit_s: float) -> Settled:
         """Both of these, one after the other."""
         self.begin_settling(groups, share, limit_s)

@@ -278,13 +278,6 @@ class Server:
             detours.kept_in,
         )
 
-    def do_bare_steps(self, count: int) -> None:
-        """Steps of SUMO only."""
-        assert self._world is not None
-        for _ in range(count):
-            self._world.bare_step()
-            self._beat()
-
     def do_prove_fresh(self, seed: int) -> Trial:
         """What a seed makes of this traffic; this process cannot be used for anything else afterwards."""
         assert self._world is not None

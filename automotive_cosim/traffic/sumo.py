@@ -6,12 +6,13 @@ libsumo holds one simulation per process.
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import sys
 import tempfile
 from collections.abc import Callable, Collection, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, redirect_stdout
 from typing import Any
 
 from automotive_cosim.errors import ScenarioError, SetupError
@@ -223,7 +224,10 @@ def load_library() -> LibSumo:
     """
     kept = {name: os.environ.pop(name, None) for name in SUMO_VARIABLES}
     try:
-        import libsumo
+        # It prints a warning if pyarrow is not of the version that its own Parquet output was built with, which
+        # nothing here asks for. The variable that silences it would make traci another module in this process.
+        with redirect_stdout(io.StringIO()):
+            import libsumo
     except ImportError as error:
         raise SetupError(_mend(error)) from error
     finally:

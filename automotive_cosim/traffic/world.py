@@ -257,10 +257,6 @@ class World:
         if self._sensor is not None:
             self._sensor.looks_around = False
 
-    def bare_step(self) -> None:
-        """One step of SUMO only."""
-        self._sumo.step()
-
     def stage(self, incident: Incident) -> None:
         """Stages one more incident, whose times count like those of the others.
 

@@ -7,9 +7,6 @@ from pathlib import Path
 
 import pytest
 
-from automotive_cosim.report.results import read_results
-from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.row import as_json
 from automotive_cosim.scenarios import load
 
 ACTION = '{"action_type": "navigate_home"}\n'
@@ -41,7 +38,6 @@ def _assert_refused(ran, *words):
         (["--seed", "one"], ["--seed", "one"]),
         (["--actions", "nowhere.jsonl"], ["nowhere.jsonl"]),
         (["--taks", "x"], ["--taks"]),
-        (["--mode", "monitoring"], ["modes no longer exist", "`drive FAMILY`"]),
         (["surplus"], ["surplus"]),
     ],
 )
@@ -53,7 +49,7 @@ def test_a_wrong_argument_is_one_line(cli, tmp_path, arguments, words):
 def test_a_row_of_an_episode_that_was_not_planned_is_not_replayed(cli, tmp_path):
     manifest = {"format": 1, "plan": {"agents": ["oracle"], "tasks": ["hvac_fan_max"]}, "starts": []}
     row = dict(id="own-1", task="hvac_fan_max", half="first", pair="", dimension="explicit_control", module="hvac",
-               scenario="grid", agent="oracle", model="none", geo="full", seed=0, repeat=0)  # fmt: skip
+               scenario="grid", agent="oracle", model="none", conditions={}, seed=0, repeat=0)  # fmt: skip
     (tmp_path / "manifest.json").write_text(json.dumps(manifest))
     (tmp_path / "episodes.jsonl").write_text(json.dumps(row) + "\n")
     _assert_refused(cli("replay", ".", "own"), "manifest.json has no episode own-1")
@@ -63,27 +59,10 @@ def test_a_row_of_an_episode_that_was_not_planned_is_not_replayed(cli, tmp_path)
             _assert_refused(cli(*command))
 
 
-def test_a_folder_of_an_earlier_version_is_read_unless_it_has_monitoring(cli, tmp_path):
-    plan = {"agents": ["oracle"], "tasks": ["hvac_fan_max"], "modes": ["prompted"]}
-    job = make_plan({name: value for name, value in plan.items() if name != "modes"}).jobs()[0]
-    manifest = {"format": 1, "plan": plan, "starts": []}
-    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
-    (tmp_path / "episodes.jsonl").write_text(json.dumps(as_json(job.planned()) | {"mode": "prompted"}) + "\n")
-    found = read_results(tmp_path)
-    assert not found.coverage.problem
-    assert [row.id for row in found.rows] == [job.id]
-    manifest["plan"] = plan | {"modes": ["prompted", "monitoring"]}
-    (tmp_path / "manifest.json").write_text(json.dumps(manifest))
-    for command in (["report", "."], ["compare", ".", "."], ["publish", "regrade", "."], ["replay", ".", job.id]):
-        _assert_refused(cli(*command), "manifest.json has an older format", "drives have replaced monitoring")
-
-
-def test_a_single_run_of_an_earlier_version_is_replayed_unless_it_has_monitoring(cli, tmp_path):
+def test_a_trial_that_version_0_2_recorded_is_refused(cli, tmp_path):
     (tmp_path / "steps.jsonl").touch()
-    for mode, said in (("monitoring", "drives have replaced"), ("prompted", "surplus")):
-        record = {"manifest": {"setup": {"mode": mode, "surplus": 1}}, "agent_error": None}
-        (tmp_path / "episode.json").write_text(json.dumps(record))
-        _assert_refused(cli("replay", "."), said)
+    (tmp_path / "episode.json").write_text("{}")
+    _assert_refused(cli("replay", "."), "version 0.2 or an earlier one recorded it", "record the trial again")
 
 
 @pytest.mark.parametrize("arguments", [["rnu"], ["--verson"], ["tasks", "show", "hvac_fan_mix"], ["tasks", "lst"]])

@@ -94,8 +94,6 @@ def test_an_agent_that_fails_is_judged_and_told(cli, tmp_path):
         (("--agents", "t3a", "--ray-send", "."), "--ray-send requires --executor ray"),
         (("--agents", "t3a", "--scenarios", ""), "--scenarios is empty"),
         (("--plan", "none.toml"), "none.toml"),
-        (("--agents", "t3a", "--modes", "monitoring"), "drives have replaced monitoring"),
-        (("--agents", "t3a", "--drives", "all", "--mode", "prompted"), "modes no longer exist"),
     ],
 )
 def test_bad_input_is_one_line(cli, arguments, said, tmp_path):

@@ -8,7 +8,6 @@ from typer.main import get_command
 
 from automotive_cosim import __version__
 from automotive_cosim.agents import AGENTS
-from automotive_cosim.cli.former import COMMANDS, OPTIONS
 from automotive_cosim.cli.main import app
 from automotive_cosim.errors import TriggerNotReachedError
 from automotive_cosim.tasking.sets import Suite
@@ -119,18 +118,6 @@ def test_every_command_that_lists_or_reports_does_so_as_json(cli, command):
     told = cli(*command, "--help").out
     is_group = "COMMAND" in told.split("Options")[0]
     assert ("--json" in told) is (command not in OTHERS and not is_group)
-
-
-@pytest.mark.parametrize("former", [*COMMANDS, *(" ".join(words) for words in OPTIONS)])
-def test_a_former_name_is_answered_with_the_present_one(cli, former):
-    ran = cli(*former.split(), "anything")
-    assert (ran.code, ran.out, ran.err.count("\n")) == (2, "", 1)
-    assert ran.err.startswith("error: ")
-    if former in COMMANDS:
-        assert ran.err == f"error: `{former}` is now `{COMMANDS[former]}`\n"
-        *command, last = COMMANDS[former].split()
-        assert tuple(command if last.startswith("--") else [*command, last]) in set(every_command())
-        assert tuple(former.split()) not in set(every_command())
 
 
 def test_every_command_stands_under_a_heading():

@@ -26,7 +26,7 @@ import automotive_cosim.cli
 from automotive_cosim import scenarios
 from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.live import Live, LongWait
-from automotive_cosim.cli.main import CLOSED_PIPE
+from automotive_cosim.cli.main import CLOSED_PIPE, app
 from automotive_cosim.cli.terminal import Plain, escaped
 from automotive_cosim.formats.plain import plain
 from automotive_cosim_main import LOADING
@@ -124,6 +124,32 @@ def test_every_command_writes_through_our_console() -> None:
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.ImportFrom) and node.module == "rich.console" and path.name != "console.py":
                 assert "Console" not in [name.name for name in node.names], path.name
+
+
+def test_every_command_prints_its_json_through_what_keeps_it_alone() -> None:
+    package = Path(automotive_cosim.cli.__file__).parent
+    for path in package.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.Call) and ast.unparse(node.func) in ("print", "typer.echo"):
+                assert "dumps(" not in ast.unparse(node), f"{path.relative_to(package)} prints JSON itself"
+
+
+def _chatter(**named: object) -> object:
+    print("CHATTER of Python", flush=True)
+    os.write(1, b"CHATTER of a compiled library\n")
+    subprocess.run(["echo", "CHATTER of a program"], check=True)
+    return app(**named)
+
+
+def test_json_stands_alone_whatever_else_prints(cli, monkeypatch: pytest.MonkeyPatch) -> None:
+    """``main`` runs all commands alike."""
+    monkeypatch.setattr("automotive_cosim.cli.main.app", _chatter)
+    asked = cli("agents", "list", "--json")
+    assert json.loads(asked.out)["agents"]
+    assert asked.err.count("CHATTER") == 3
+    for words in (("agents", "list"), ("agents", "list", "--json", "--help")):
+        told = cli(*words)
+        assert (told.out.count("CHATTER"), told.err) == (3, "")
 
 
 @pytest.mark.slow

@@ -18,14 +18,14 @@ from automotive_cosim.tasks import CATALOGUE
 def prompt(goal: str, **sections: str) -> str:
     titles = {
         "screen": "The screen", "car": "The car", "context": "What applies here", "plan": "Your plan",
-        "result": "Last result", "before": "The screen before", "after": "The screen after",
+        "result": "Last result", "changes": "What changed on the screen",
     }  # fmt: skip
     whole = {"What the driver said": goal} | {titles[name]: text for name, text in sections.items()}
     return "\n\n".join(f"## {title}\n{text}" for title, text in whole.items())
 
 
-def row(index: int, label: str, **more: object) -> str:
-    return json.dumps({"index": index, "kind": "Button", "text": label} | more)
+def row(index: int, label: str, state: str = "") -> str:
+    return f"button: {index} {json.dumps(label)}{state and f' [{state}]'}"
 
 
 def ask(text: str):
@@ -83,7 +83,7 @@ def test_what_the_car_does_not_do_is_declined(code):
 
 
 def test_it_scrolls_for_what_is_not_in_sight_and_gives_up_in_the_end():
-    steps = follow("fan to max", row(0, "list", scrollable=True))
+    steps = follow("fan to max", row(0, "list", "scrolls"))
     kinds = [step["type"] for step in steps]
     assert kinds == ["open_app", *["scroll"] * 6, "status"]
     assert steps[-1]["status"] == "infeasible"
@@ -94,7 +94,7 @@ def test_every_kind_of_move_is_an_action(monkeypatch):
         opened("media"), tap("a"), tap("Some Text"), slide("s", 0.5), typed("f", "Rue 'x' \"y\""), say("hello"),
         call("show_alert", kind="speed"),
     )  # fmt: skip
-    screen = "\n".join([row(1, "a"), row(2, "some text"), row(3, "s", bounds=[100, 10, 340, 30]), row(4, "f")])
+    screen = "\n".join([row(1, "a"), row(2, "some text"), row(3, "s", "x 100 to 340, y 20"), row(4, "f")])
     monkeypatch.setattr("automotive_cosim.models.rules.SKILLS", (type(SKILLS[0])((".",), Course("so", moves)),))
     plan, actions = "", []
     for _ in range(len(moves) + 1):
@@ -118,9 +118,9 @@ def test_an_unknown_wish_is_declined():
 
 
 def test_asked_to_look_back_it_gives_one_line():
-    text = prompt("x", before=row(1, "a"), after=f"{row(1, 'a')}\n{row(2, 'b')}", result="ok: done")
-    reply = Rules().chat([ChatMessage("user", text)])
-    assert labelled(reply.text, "lesson") == "ok; 0 elements gone, 1 new."
+    for changes, lesson in (("new: b", "ok; the screen changed."), ("nothing", "ok; nothing changed.")):
+        reply = Rules().chat([ChatMessage("user", prompt("x", changes=changes, result="ok: done"))])
+        assert labelled(reply.text, "lesson") == lesson
 
 
 def test_pictures_change_nothing():

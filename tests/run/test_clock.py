@@ -82,15 +82,15 @@ def _planned(**values):
 
 
 def test_each_latency_is_an_episode_of_its_own():
-    rows = _planned(latency=[0, 1, 3])
+    rows = _planned(latency_s=[0, 1, 3])
     assert len({row.id for row in rows}) == 3
     assert {row.conditions.latency_s for row in rows} == {0.0, 1.0, 3.0}
-    assert _planned()[0].id == _planned(latency=[0])[0].id
-    assert _planned(clock="model")[0].id != _planned()[0].id
+    assert _planned()[0].id == _planned(latency_s=[0])[0].id
+    assert _planned(clock=["model"])[0].id != _planned()[0].id
 
 
 def test_success_is_shown_over_think_time(tmp_path):
-    rows = tuple(_planned(latency=[0, 3]))
+    rows = tuple(_planned(latency_s=[0, 3]))
     assert {contestant(row).label for row in rows} == {
         "oracle (told the answer)",
         "oracle (told the answer), latency 3 s",

@@ -2,23 +2,20 @@
 
 import inspect
 import json
-from dataclasses import replace
 
 import pytest
 
 from automotive_cosim.cli import drive, evaluate, run
 from automotive_cosim.doors.shared import conditions_of, takes_conditions
 from automotive_cosim.episode.conditions import INPUTS, TABLE, Condition, Conditions
-from automotive_cosim.episode.specification import End
 from automotive_cosim.errors import UserError
 from automotive_cosim.publish.leaderboard import COLUMNS, DRIVE_COLUMNS
 from automotive_cosim.report.findings import by_condition
 from automotive_cosim.report.results import Results
 from automotive_cosim.run.coverage import Coverage
-from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.plan import make_plan
-from automotive_cosim.run.row import as_json, columns, from_json, from_line
+from automotive_cosim.run.row import as_json, columns, from_line
 from tests.laws import over
 
 BASE = {"agents": ["oracle"], "tasks": ["hard_car_wash"]}
@@ -65,20 +62,9 @@ def test_a_door_takes_whatever_an_agent_is_given_and_nothing_about_its_speed() -
             start("x", **wrong)
 
 
-def test_a_row_and_a_plan_of_0_2_keep_their_conditions() -> None:
-    job = make_plan(BASE | {"clock": "model", "latency": [3]}).episodes()[0]
-    assert job.setup.conditions == Conditions.named({"clock": "model", "latency_s": 3.0})
-    row = job.planned()
+def test_a_row_of_0_2_which_has_no_table_of_conditions_is_refused() -> None:
+    row = make_plan(BASE).episodes()[0].planned()
     flat = as_json(row)
     flat |= flat.pop("conditions")
-    assert from_line(EpisodeRow, json.dumps(flat).encode()) == row
-
-
-@pytest.mark.parametrize("flat", [False, True])
-def test_a_drive_whose_time_was_over_keeps_its_end_by_its_former_name(flat: bool) -> None:
-    (job,) = make_plan({"agents": ["no-op"], "drives": ["nordic_december"]}).jobs()
-    row = replace(job.planned(), end=End.MINUTES_OVER)
-    former = as_json(row) | {"end": "watch_over"}
-    former |= former.pop("conditions") if flat else {}
-    assert from_line(DriveTrialRow, json.dumps(former).encode()) == row
-    assert from_json(DriveTrialRow, former) == row
+    with pytest.raises(ValueError, match="conditions"):
+        from_line(EpisodeRow, json.dumps(flat).encode())

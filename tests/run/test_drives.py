@@ -45,8 +45,7 @@ from automotive_cosim.run.regrade import regrade
 from automotive_cosim.run.rerun import compare, played, rerun
 from automotive_cosim.run.road import read_road
 from automotive_cosim.run.road_recorder import RoadRecorder
-from automotive_cosim.run.row import as_json, from_json, from_line, steady
-from automotive_cosim.run.rows import kind_of
+from automotive_cosim.run.row import as_json, from_json, steady
 from automotive_cosim.run.store import read_rows, read_trace
 from automotive_cosim.traffic.fork import Simulations
 
@@ -64,7 +63,7 @@ def test_families_are_named_by_id_pattern_scenario_or_season() -> None:
         ({"drives": ["all"]}, "--agents"),
         ({"drives": ["all"], "agents": ["human"]}, "human"),
         ({"drives": ["all"], "agents": ["rule-perfct"]}, "rule-perfect"),
-        ({"drives": ["all"], "agents": ["silent"], "latency": [-1.0]}, "latency"),
+        ({"drives": ["all"], "agents": ["silent"], "latency_s": [-1.0]}, "latency"),
     ],
 )
 def test_a_wrong_plan_is_refused_by_name(values: dict[str, object], named: str) -> None:
@@ -74,7 +73,13 @@ def test_a_wrong_plan_is_refused_by_name(values: dict[str, object], named: str) 
 
 def test_every_drive_has_its_own_id_and_is_run_with_others_of_its_traffic() -> None:
     plan = make_plan(
-        {"drives": ["grid"], "agents": ["silent", "asurada"], "seeds": [0, 1], "latency": [0.0, 3.0], "repeats": 2}
+        {
+            "drives": ["grid"],
+            "agents": ["silent", "asurada"],
+            "seeds": [0, 1],
+            "latency_s": [0.0, 3.0],
+            "repeats": 2,
+        }
     )
     jobs = plan.jobs()
     assert len(jobs) == len({job.id for job in jobs}) == 2 * 2 * 2 * 2 * 2
@@ -104,24 +109,6 @@ def test_a_drive_belongs_to_the_set_of_its_seed() -> None:
     assert dev
     assert test
     assert not dev & test
-
-
-def test_the_plan_of_a_folder_of_drives_of_0_2_is_read() -> None:
-    old = {
-        **{"drives": ["grid_june"], "scenarios": [], "agents": ["silent"], "models": ["rules"], "seeds": [0]},
-        **{"geo": ["full"], "clock": "fixed", "latency": [0.0], "repeats": 1, "see": ["both"], "wall_s": 60.0},
-        **{"feedback": ["quiet"], "screen": ["1280x720"]},
-    }
-    (job,) = make_plan(old).jobs()
-    assert isinstance(job, DriveJob)
-    assert job.limits.wall_s == 60.0
-    line = json.dumps({
-        **{"id": job.id, "family": "grid_june", "seed": 0, "scenario": "grid", "season": "summer"},
-        **{"agent": "silent", "model": "none", "geo": "full", "latency_s": 3.0, "see": "tree", "feedback": "quiet"},
-    }).encode()  # fmt: skip
-    row = from_line(kind_of(line), line)
-    assert isinstance(row, DriveTrialRow)
-    assert row.conditions.labels == ("latency 3 s", "tree alone")
 
 
 # --- on a drive ----------------------------------------------------------------------------------------------
@@ -338,9 +325,9 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
 @pytest.mark.slow
 def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None:
     values = PLAN | {"agents": ["rule-perfect"]}
-    jobs = make_plan(values | {"latency": [0, 1, 3, 10]}).jobs()
+    jobs = make_plan(values | {"latency_s": [0, 1, 3, 10]}).jobs()
     assert {job.setup.conditions.latency_s for job in jobs} == {0, 1, 3, 10}
-    two = make_plan(values | {"latency": [0, 10]})
+    two = make_plan(values | {"latency_s": [0, 10]})
     assert run_plan(two, tmp_path / "e", executor=Processes(1), retries=0).judged == 2
     rows = read_rows(tmp_path / "e", DriveTrialRow).values()
     scores = {each.conditions.latency_s: mine[0].value for each, mine in grouped(rows).items()}

@@ -202,19 +202,9 @@ def test_a_file_says_what_the_options_say(tmp_path):
     assert make_plan(made.as_json()) == made
 
 
-def test_a_plan_of_an_earlier_version_is_read_unless_it_has_another_mode(tmp_path):
-    path = tmp_path / "plan.toml"
-    path.write_text('agents = ["t3a"]\nmodes = ["prompted"]\n')
-    assert make_plan(read_plan(path)) == plan(agents=["t3a"])
-    for modes in ('["monitoring"]', '["prompted", "monitoring"]', '"promted"', "[]"):
-        path.write_text(f'agents = ["t3a"]\nmodes = {modes}\n')
-        with pytest.raises(UserError, match=r"plan.toml has an older format: its modes .* drives have replaced"):
-            read_plan(path)
-
-
-def test_ids_stay_as_they_were_when_there_were_modes():
+def test_ids_stay_as_they_were():
     """A stored row is found by its id."""
-    held_out = plan(agents=["t3a"], tasks=["hvac_fan_max"], held_out=True, latency=[3.0])
+    held_out = plan(agents=["t3a"], tasks=["hvac_fan_max"], held_out=True, latency_s=[3.0])
     ids = [job.id for one in (plan(tasks=["hvac_fan_max"]), held_out) for job in one.jobs()]
     assert ids == [
         "hvac_fan_max-first-oracle-none-full-s0-r0-own-07d4e4c6",

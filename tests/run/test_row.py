@@ -22,14 +22,14 @@ from automotive_cosim.tasking.verdict import PARTS, Part, Verdict
 
 OLD: dict[str, Any] = {
     "id": "a", "task": "road_speed_80_in_50", "half": "first", "pair": "p", "dimension": "environment_alerts",
-    "module": "road", "scenario": "paris_centre", "agent": "oracle", "model": "none", "geo": "full", "seed": 0,
-    "repeat": 0, "mode": "prompted", "success": True, "reward": 1.0, "end": "declared", "steps": 2, "error": None,
+    "module": "road", "scenario": "paris_centre", "agent": "oracle", "model": "none", "seed": 0,
+    "repeat": 0, "conditions": {}, "success": True, "reward": 1.0, "end": "declared", "steps": 2, "error": None,
     "parts": {"goal": True, "clean": True, "safe": True, "in_time": True, "declared": True}, "error_kind": None,
     "drive": {"overspeed_m": 0.0, "min_time_to_collision_s": 40.9, "arrival_s": 271.1, "energy_wh": 42.9},
-    "untouched_drive": {"overspeed_m": 9.5, "min_time_to_collision_s": None, "arrival_s": None, "energy_wh": 50},
+    "baseline_drive": {"overspeed_m": 9.5, "min_time_to_collision_s": None, "arrival_s": None, "energy_wh": 50},
     "cost_usd": 0, "trace_sha256": "ab" * 32,
 }  # fmt: skip
-"""An episode as the first version wrote it, without the fields that came later."""
+"""An episode without the fields that came later."""
 
 JOB = make_plan({"agents": ["oracle"], "tasks": ["road_speed_80_in_50"]}).jobs()[0]
 DRIVE = DriveFigures(1.5, None, 60.0, 9.0)
@@ -78,7 +78,7 @@ def test_whatever_is_added_to_a_row_has_a_default_so_that_older_lines_are_still_
     assert without == set(required.split())
 
 
-def test_lines_of_the_first_version_are_read():
+def test_lines_without_the_later_fields_are_read():
     row = from_line(EpisodeRow, json.dumps(OLD).encode())
     assert row.baseline_drive == DriveFigures(9.5, None, None, 50.0)
     assert (row.skills, row.tokens_in, row.attempts, row.held_out) == ((), 0, 1, False)

@@ -15,8 +15,8 @@ from automotive_cosim.contracts import Alert, AlertKind, Cruise, DrivingState, H
 from automotive_cosim.scenarios import Scenario, WeatherAt, load, open_scenario
 from automotive_cosim.traffic.base import EgoPlan, Event, Simulation, Traffic
 from automotive_cosim.traffic.fork import CAN_FORK, Forked, Simulations
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.options import Setup
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 

@@ -15,9 +15,9 @@ from automotive_cosim.contracts import EgoEnd, Reroute
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import read_network
 from tests.scripted.traffic import Scripted, Stretch
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 

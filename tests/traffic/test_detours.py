@@ -16,7 +16,7 @@ from automotive_cosim.formats.incidents import Closure, Incident, Roadworks
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.detours import Detours
-from automotive_cosim.traffic.in_process import InProcess
+from tests.traffic.in_process import InProcess
 
 CLOSED = "B2C2"
 

@@ -28,10 +28,10 @@ from automotive_cosim.scenarios import Scenario, Trip, load
 from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan, HaltAt, Traffic
 from automotive_cosim.traffic.ego import DRIVES_ON, PARKS, PASS_SHARE, RELEASED, SETS_OFF
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.profiles import PROFILES
 from automotive_cosim.traffic.road_weather import COMFORTABLE_MPS2
 from tests.scripted.traffic import Scripted, Stretch
+from tests.traffic.in_process import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 

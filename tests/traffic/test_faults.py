@@ -20,8 +20,8 @@ from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import CAN_FORK, Forked, Simulations
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.options import Setup
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 
@@ -465,12 +465,19 @@ def test_a_function_that_sumo_lost_is_named(monkeypatch: pytest.MonkeyPatch) -> 
         sumo.load_library()
 
 
-def test_missing_system_libraries_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    (tmp_path / "libsumo.py").write_text("raise ImportError('libGL.so.1: cannot open shared object file')")
+def test_missing_system_libraries_are_named(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """And what the library prints when it is imported is not shown."""
+    library = (
+        "print('Warning! pyarrow is installed')\nraise ImportError('libGL.so.1: cannot open shared object file')"
+    )
+    (tmp_path / "libsumo.py").write_text(library)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "libsumo", raising=False)
     with pytest.raises(SetupError, match=r"libGL\.so\.1.*apt-get install libgl1 libx11-6"):
         sumo.load_library()
+    assert capfd.readouterr() == ("", "")
 
 
 def test_the_callers_environment_stays(grid: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -17,8 +17,8 @@ from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import Advance, DriverAt, EgoPlan
 from automotive_cosim.traffic.congestion import JAM_BELOW
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess, InProcessTraffic
 from automotive_cosim.traffic.staging import STAGED
+from tests.traffic.in_process import InProcess, InProcessTraffic
 
 Edit = Callable[[Path], None]
 Variant = Callable[[Edit], Scenario]

@@ -10,10 +10,10 @@ from automotive_cosim.contracts import Hazards, SumoSignal
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
 from automotive_cosim.traffic.sumo import load_library
 from tests.scripted.traffic import Leader, Scripted, Stretch
+from tests.traffic.in_process import InProcess
 
 
 @pytest.mark.sumo

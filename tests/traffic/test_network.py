@@ -18,11 +18,11 @@ from automotive_cosim.errors import ScenarioError
 from automotive_cosim.scenarios import Scenario
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, Congestion, Route
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.network import Network, Shape, read_network
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sumo import LibSumo
 from automotive_cosim.traffic.ways import way_through
+from tests.traffic.in_process import InProcess
 
 EDGE = '<edge id="{id}" from="{a}" to="{b}" {more}>{lanes}{params}</edge>'
 LANE = '<lane id="{id}_{n}" index="{n}" speed="{speed}" length="100" shape="0,0 100,0"{more}/>'

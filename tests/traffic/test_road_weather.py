@@ -14,7 +14,6 @@ from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, Weather
 from automotive_cosim.scenarios import Scenario, Trip, WeatherAt, load
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.road_weather import (
     G_MPS2,
     GRIP_STEP_S,
@@ -24,6 +23,7 @@ from automotive_cosim.traffic.road_weather import (
     sight_speed_mps,
 )
 from tests.scripted.traffic import Scripted, Stretch
+from tests.traffic.in_process import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 

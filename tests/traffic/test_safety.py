@@ -14,8 +14,8 @@ from shapely import LineString, Point
 from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.instant import other_vehicle
+from tests.traffic.in_process import InProcess
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 

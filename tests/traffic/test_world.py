@@ -29,8 +29,8 @@ from automotive_cosim.contracts import (
 from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic
 from automotive_cosim.traffic.fork import Forked
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.sumo import load_library
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -16,7 +15,7 @@ from automotive_cosim.cli.batches import (
     words,
 )
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson
+from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.cli.study.shared import StudyFolder, driven, folder_of, raise_errors, tell_reading
 from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
@@ -95,7 +94,7 @@ def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
         told: Json = {"answer": answer(study), "warnings": warnings(study)}
         told |= {"drives": len(study.rows), "decisions": count, "excluded": kept_out, "errors": len(errors)}
         told |= {"seconds_a_decision": cost_s(study), "out": str(study.folder)}
-        typer.echo(json.dumps(told, ensure_ascii=False))
+        print_json(told)
     else:
         for table in (policies(study), parts(study), excluded(study)):
             if table.rows:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Annotated, Any
@@ -11,7 +10,7 @@ import typer
 
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson
+from automotive_cosim.cli.options import AsJson, print_json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import InfrastructureError
 from automotive_cosim.studies.settings import SuiteSettings
@@ -63,7 +62,7 @@ def suite(
     console.print(f"{page} written; every study has its own report beside it", soft_wrap=True)
     if as_json:
         rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
-        typer.echo(json.dumps({"networks": rows, "out": str(out)}, ensure_ascii=False))
+        print_json({"networks": rows, "out": str(out)})
     errors = [row for study in found for row in study.errors]
     if errors:
         from automotive_cosim.run.row import remedy

@@ -1,4 +1,4 @@
-"""libsumo in this process, one simulation at a time; ``fork.Forked`` keeps each in a process of its own."""
+"""libsumo in the process of the tests, where they reach the ``World``; ``fork.Forked`` must drive the same."""
 
 from __future__ import annotations
 
@@ -125,10 +125,6 @@ class InProcessTraffic:
         advance = self._drive.advance(duration_s)
         self._log.append(len(advance.states))
         return advance
-
-    def bare_step(self) -> None:
-        """One step of SUMO without reading anything, for benchmarks; branches and replays ignore it."""
-        self._world.bare_step()
 
     def request(self, request: RoadRequest) -> Answer:
         """See ``Traffic.request``."""
