@@ -43,13 +43,14 @@ class Signs:
     scenario shows another speed than the road was built with, the lower of both. A sign counts up to the far side
     of the junction at the end of its road, as the ego's limit does; lanes across it have it too."""
 
-    def __init__(self, sumo: LibSumo, network: Network) -> None:
+    def __init__(self, sumo: LibSumo, network: Network, variable: Iterable[str]) -> None:
+        """Keeps watch on the edges on which SUMO itself changes the limit."""
         self._sumo = sumo
         self._edges = network.edges
         self._kept: dict[str, _Kept] = {}
         self._over: dict[str, list[float]] = {}
         self._timed = {edge.edge_id for edge in network.edges.values() if edge.timed_limits}
-        self._variable = sorted(_variable(sumo) & network.edges.keys())
+        self._variable = sorted(variable)
         for edge_id in self._variable:
             self._keep(edge_id)
         self._seen: tuple[datetime, str] | None = None
@@ -201,8 +202,9 @@ class Signs:
             self._sumo.lane.setMaxSpeed(lane, limited if changed and not is_bend else min(built_mps, limited))
 
 
-def _variable(sumo: LibSumo) -> set[str]:
+def variable_edges(sumo: LibSumo, network: Network) -> frozenset[str]:
     """The edges with lanes whose speed SUMO changes."""
     signs, calibrators = sumo.variable_signs, sumo.calibrators
     edges = {lane.rpartition("_")[0] for sign in signs.getIDList() for lane in signs.getLanes(sign)}
-    return edges | {calibrators.getEdgeID(each) for each in calibrators.getIDList()}
+    edges |= {calibrators.getEdgeID(each) for each in calibrators.getIDList()}
+    return frozenset(edges & network.edges.keys())

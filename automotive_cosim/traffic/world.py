@@ -38,6 +38,7 @@ from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
 from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
+from automotive_cosim.traffic.signs import variable_edges
 from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
 from automotive_cosim.traffic.sumo import (
@@ -106,9 +107,10 @@ class World:
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE))
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
-        self.congestion = Congestion(self.network, lambda: self._sumo.on_lanes(self._not_like_cars))
+        variable = variable_edges(self._sumo, self.network)
+        self.congestion = Congestion(self.network, lambda: self._sumo.on_lanes(self._not_like_cars), variable)
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
-        self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO), scenario)
+        self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO, variable), scenario)
         self._has_incidents = self._incidents.are_left
         self._takes_any_route = takes_any_route(self._configuration, self.network)
         self._second_steps = max(1, round(1.0 / self.step_s))
