@@ -1,8 +1,8 @@
 """Traffic flow: smoothed speed per edge, and the resulting figures of the route ahead.
 
 Speeds are weighted by vehicles and smoothed over about a signal cycle: a red light is not a jam, and an empty edge
-is free. They count as a share of the limit in force, lane by lane: a lower limit is no jam, and traffic that was held
-back by a variable sign is not slow once that shows more. The route's sums are recomputed with each sample;
+is free. They count as a share of the limit in force, lane by lane: a lower limit is no jam, and traffic that was
+held back by a variable sign is not slow once that shows more. The route's sums are recomputed with each sample;
 evaluating them at a position costs a few additions.
 """
 

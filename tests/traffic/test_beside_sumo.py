@@ -22,10 +22,10 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.divert import divert
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.flow import SignalControl, control
-from automotive_cosim.traffic.in_process import InProcess
 from automotive_cosim.traffic.ledger import Ledger, own_choice
 from automotive_cosim.traffic.sumo import EGO, load_library
 from automotive_cosim.traffic.world import World
+from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
 
