@@ -212,7 +212,10 @@ class Router:
         """Travel time and edges of the quickest route by the weights; no edges if there is none."""
         time_s, edges = 0.0, (start,)
         for here, there in pairwise((start, *via, goal)):
-            found = self._sumo.find_route(here, there, self._type, NEVER_S)
+            try:
+                found = self._sumo.find_route(here, there, self._type, NEVER_S)
+            except self._sumo.refusals:  # a rerouter of the scenario's keeps cars out of that road now
+                return 0.0, ()
             if not found.edges:
                 return 0.0, ()
             time_s, edges = time_s + found.travelTime, (*edges, *found.edges[1:])

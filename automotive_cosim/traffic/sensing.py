@@ -113,7 +113,7 @@ class Sensor:
             self.position_m += odometer_m - self._odometer_m
         else:
             self._is_opposite = False
-            if edge_id != self.route.edge_ids[index]:
+            if (edge_id,) != self.route.edge_ids[index : index + 1]:
                 if tuple(edges := sumo.route(ego)) != self.route.edge_ids:
                     self.refresh()  # a rerouter of the scenario's has sent it another way
                 self._is_opposite = edge_id != edges[index]
