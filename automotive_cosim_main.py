@@ -35,6 +35,10 @@ def main() -> None:
     if sys.getfilesystemencoding() == "ascii" and os.name == "posix":  # names of files would not be text
         os.environ["PYTHONUTF8"] = "1"
         os.execv(sys.executable, [sys.executable, *sys.orig_argv[1:]])
+    if os.name == "nt":
+        from automotive_cosim.errors import NO_FORK
+
+        sys.exit(f"error: {NO_FORK}")
     heard = signal.getsignal(signal.SIGINT)
     if heard is signal.default_int_handler:  # where it is ignored from the start it stays ignored
         signal.signal(signal.SIGINT, signal.SIG_DFL)

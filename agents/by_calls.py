@@ -147,7 +147,6 @@ class OracleByCalls:
     channels: frozenset[Channel] = frozenset()
 
     def __init__(self) -> None:
-        """Nothing is known yet."""
         self._branch: Callable[[], Episode] | None = None
         self._player: CallPlayer | None = None
 

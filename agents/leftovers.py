@@ -75,7 +75,7 @@ def end_all(find: Callable[[], Iterable[int]], grace_s: float = 0.0) -> None:
             return
         for pid in (each for child in found for each in tree(child)) if passed_s >= grace_s else ():
             with suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, signal.SIGTERM if sys.platform == "win32" else signal.SIGKILL)
+                os.kill(pid, signal.SIGKILL)
         for pid in found:
             try:
                 os.waitpid(pid, os.WNOHANG)

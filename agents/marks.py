@@ -19,7 +19,7 @@ INK = (0, 0, 0)
 LABEL_PX = 15
 STEPS = 6
 """Steps of a number along each side of its box."""
-EDGE = 40.0
+EDGE = 40
 """Leap of brightness, of 255, that is a letter's edge rather than that of a surface."""
 
 
@@ -79,11 +79,12 @@ class Leaps:
     """How much is drawn in any part of a picture, from sums over its upper left parts."""
 
     def __init__(self, picture: npt.NDArray[np.uint8]) -> None:
-        grey = picture.mean(axis=2)
-        steps = np.zeros(grey.shape, np.int32)
-        steps[:, 1:] += np.abs(np.diff(grey, axis=1)) > EDGE
-        steps[1:, :] += np.abs(np.diff(grey, axis=0)) > EDGE
-        self._sums = np.pad(steps.cumsum(axis=0).cumsum(axis=1), ((1, 0), (1, 0)))
+        brightness = picture[:, :, 0].astype(np.int16) + picture[:, :, 1] + picture[:, :, 2]  # of 765
+        self._sums = sums = np.zeros([side + 1 for side in brightness.shape], np.int32)
+        sums[1:, 2:] += np.abs(np.diff(brightness, axis=1)) > 3 * EDGE
+        sums[2:, 1:] += np.abs(np.diff(brightness, axis=0)) > 3 * EDGE
+        for axis in (0, 1):
+            np.cumsum(sums, axis=axis, out=sums)
 
     def under(self, box: BoundingBox) -> int:
         """Number of leaps of brightness in the box, as at the edges of letters and lines."""

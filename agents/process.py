@@ -4,7 +4,7 @@ One process per worker, the *fork server*, imports this package and nothing of a
 episode. For each episode it forks a process, which makes one agent, is told what the driver says and what there is
 to see, and answers with actions. ``run.fork_server`` and ``run.outside`` are the other side.
 
-    worker ------------ fork server                 ("start" or "become", request), ("end", grace)   pickled
+    worker ------------ fork server                 ("start", request), ("end", grace)   pickled
       |                    | forks
       '---------------- agent's process             ("goal", words), ("seen", observation), ("reply", reply)
                                                     -> channels, action, refused, spent, ask, failed      JSON
@@ -13,7 +13,7 @@ What an agent asks its model goes to the worker, which asks the model: only what
 a model's error.
 
 The process has a session and an empty working folder of its own and no open file but the connection; what it starts
-ends with it. Where processes are not forked, the fork server becomes the agent's process, for one episode.
+ends with it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import numpy as np
 
@@ -99,8 +99,6 @@ class _AgentServer:
                 if kind == "start":
                     self._start(*arguments)
                     self._wire.send_json({"pid": self._child})
-                elif kind == "become":
-                    live(self._wire, *arguments)
                 else:
                     self._wire.send_json({"ended": self._end(*arguments)})
         except GoneError:
@@ -218,12 +216,9 @@ def _prctl(option: int, value: int) -> None:
 
 
 def main() -> None:
-    """Serves the connection whose descriptor is the first argument (on Windows, that comes through stdin)."""
-    if sys.platform == "win32":
-        connection: Any = socket.fromshare(sys.stdin.buffer.read())
-    else:
-        signal.signal(signal.SIGINT, signal.SIG_DFL)
-        connection = socket.socket(fileno=int(sys.argv[1]))
+    """Serves the connection whose descriptor is the first argument."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    connection = socket.socket(fileno=int(sys.argv[1]))
     gc.collect()
     gc.freeze()  # collecting garbage would copy every page that the agents' processes share
     _AgentServer(Wire(connection)).run()

@@ -92,7 +92,7 @@ class Wire:
         return _json(bytes(self._receive(time.monotonic() + within_s, LONGEST_BYTES)))
 
     def send_socket(self, connection: socket.socket) -> None:
-        """Sends a socket (not on Windows).
+        """Sends a socket.
 
         Raises:
             GoneError: the other side is gone.

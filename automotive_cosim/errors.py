@@ -33,6 +33,8 @@ CLOSE = 3
 """At most so many names that contain an unknown one are offered for it."""
 SURE = 0.6
 """A name as similar as this goes before those."""
+NO_FORK = "simulations are copied by fork, which needs Linux: on Windows use WSL, on macOS a container"
+"""What a ``SetupError`` says on other systems."""
 FEW = 5
 """Up to this number, all are named rather than one that is only a little similar."""
 LISTED = 20

@@ -7,16 +7,17 @@ marks it. Any other test that loads libsumo or runs one of SUMO's programs fails
 import gc
 import os
 import signal
-import socket
 import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import closing, contextmanager, suppress
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
+from multiprocessing import forkserver
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 from zlib import crc32
 
@@ -35,11 +36,13 @@ from automotive_cosim.contracts import (
     VehicleState,
 )
 from automotive_cosim.contracts.ids import resource_id as shown_id
-from automotive_cosim.traffic import remote
-from automotive_cosim.traffic.base import WarmUpProgress
+from automotive_cosim.run.fork_server import ForkServer
+from automotive_cosim.tasking.own_files import VARIABLE
+from automotive_cosim.tasks import CATALOGUE
+from automotive_cosim.tasks.folder import add_folder
 from automotive_cosim.traffic.fork import Simulations
-from automotive_cosim.traffic.options import Setup
 from tests import farm, preloaded
+from tests.farm import NO_LIBSUMO
 
 PROXIES = [f"{kind}_proxy" for kind in ("http", "https", "all")]
 for _name in (
@@ -52,9 +55,7 @@ for _name in (
 typer.main.get_command = cache(typer.main.get_command)
 
 OTHERS = "AUTOMOTIVE_COSIM_TEST_DATA"
-NO_LIBSUMO = Path(__file__).parent / "no_libsumo"
-"""What the children of a test find in the place of libsumo."""
-ABOUT_PROCESSES = {"test_faults", "test_confinement"}
+ABOUT_PROCESSES = {"test_faults", "test_confinement", "test_vetting"}
 """Modules whose simulations start as programs start them."""
 _forbidden = False
 
@@ -71,8 +72,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     for item in items:
-        if "sumo" in getattr(item, "fixturenames", ()):
-            item.add_marker("sumo")
+        for name in {"sumo", "proof"}.intersection(getattr(item, "fixturenames", ())):
+            item.add_marker(name)
     part, parts = map(int, (config.option.prove or "0/1").split("/"))
     if not 0 <= part <= parts:
         raise pytest.UsageError(
@@ -103,42 +104,35 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     if item.get_closest_marker("sumo"):
         with pytest.MonkeyPatch.context() as patch:
             if preloaded.POSSIBLE and item.path.stem not in ABOUT_PROCESSES:
-                patch.setattr(remote, "_popen", _popen)
-                if farm.ADDRESS in os.environ:
-                    patch.setattr(remote.RemoteProcess, "start", staticmethod(_started))
+                _ready()
+                farm.use(patch.setattr)
             return (yield)
     with _without_sumo():
         return (yield)
 
 
 @cache
-def _preloaded() -> preloaded.Preloaded:
-    return preloaded.Preloaded()
-
-
-def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> preloaded.Process:
-    return _preloaded().start(connection, complaints, alarm_s)
-
-
-_start = remote.RemoteProcess.start
-
-
-def _started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> Any:
-    return (farm.copied if farm.has(setup) else _start)(setup, progress, timeout_s)
+def _ready() -> None:
+    """Starts what simulations and the workers of evaluations are forked from."""
+    preloaded.Preloaded()
+    forkserver.set_forkserver_preload(["tests.readied"])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("PYTHONPATH", str(Path(__file__).parents[1]), prepend=os.pathsep)
+        forkserver.ensure_running()
 
 
 @contextmanager
 def _without_sumo() -> Iterator[None]:
     global _forbidden
     path = os.environ.get("PYTHONPATH")
-    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (str(NO_LIBSUMO), path)))
-    sys.path.insert(0, str(NO_LIBSUMO))  # which multiprocessing hands on
+    os.environ["PYTHONPATH"] = os.pathsep.join(filter(None, (NO_LIBSUMO, path)))
+    sys.path.insert(0, NO_LIBSUMO)  # which multiprocessing hands on
     _forbidden = True
     try:
         yield
     finally:
         _forbidden = False
-        sys.path.remove(str(NO_LIBSUMO))
+        sys.path.remove(NO_LIBSUMO)
         if path is None:
             del os.environ["PYTHONPATH"]
         else:
@@ -163,6 +157,11 @@ sys.addaudithook(_refuse_sumo)
 @pytest.fixture(scope="session")
 def sumo() -> None:
     """Asked for by every fixture that starts SUMO, or returns what does."""
+
+
+@pytest.fixture(scope="session")
+def proof() -> None:
+    """Asked for by every fixture that serves proofs, whose tests it marks."""
 
 
 PARIS = "Place: Paris, France\nSpeed limit here: 50 km/h (posted on Avenue Foch)"
@@ -307,6 +306,13 @@ def session() -> Callable[[int], list[str]]:
     return found
 
 
+@pytest.fixture(scope="session")
+def fork_server() -> Iterator[ForkServer]:
+    """Starts the agents' processes of all tests of a worker."""
+    with closing(ForkServer()) as shared:
+        yield shared
+
+
 @dataclass
 class Ran:
     code: int
@@ -316,9 +322,11 @@ class Ran:
 
 @pytest.fixture
 def cli(
-    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str], tmp_path, fork_server: ForkServer
 ) -> Iterator[Callable[..., Ran]]:
     """Runs ``automotive-cosim`` in an empty folder."""
+    lent = SimpleNamespace(start=fork_server.start, end=fork_server.end, close=lambda: None)
+    monkeypatch.setattr("automotive_cosim.run.outside.ForkServer", lambda: lent)
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("AUTOMOTIVE_COSIM_DEBUG", raising=False)
     terminated = signal.getsignal(signal.SIGTERM)
@@ -336,9 +344,29 @@ def cli(
 
 
 @pytest.fixture
+def own_tasks(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
+    """Adds a folder of tasks to the catalogue of this process; workers add that which ``--tasks-from`` names."""
+    shipped = dict(CATALOGUE._tasks)
+    monkeypatch.setenv(VARIABLE, "")
+
+    def add(folder: Path) -> None:
+        monkeypatch.setattr(CATALOGUE, "_tasks", {**shipped})
+        add_folder(CATALOGUE, folder)
+
+    return add
+
+
+@pytest.fixture
 def warm(simulations: Simulations, monkeypatch: pytest.MonkeyPatch) -> None:
-    """``automotive-cosim run`` takes the warm simulations that all tests share, instead of its own."""
+    """``automotive-cosim run`` takes the warm simulations that all tests share, instead of its own, and its film,
+    which takes most of the time, is an empty file."""
     import_module("automotive_cosim.envs.pool")  # has simulations of its own, whichever test imports it first
+
+    def unfilmed(film: Any, result: object) -> None:
+        if film._path.parent.is_dir():
+            film._path.touch()
+
+    monkeypatch.setattr("automotive_cosim.report.film.Film.finished", unfilmed)
 
     class Lent:
         held = staticmethod(simulations.held)

@@ -7,20 +7,26 @@ import socket
 import tempfile
 import threading
 from collections import defaultdict
+from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import CosimError
 from automotive_cosim.sumo_scenarios.build import ROOT
+from automotive_cosim.traffic import remote
 from automotive_cosim.traffic.base import WarmUpProgress
 from automotive_cosim.traffic.channel import ClosedError, MessageChannel
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.remote import RemoteProcess, _Complaints
+from tests import preloaded
 
 ADDRESS = "AUTOMOTIVE_COSIM_TEST_FARM"
 """Names the socket to the children of the process that has the farm."""
+NO_LIBSUMO = str(Path(__file__).parent / "no_libsumo")
+"""What the children of a test that must not start SUMO find in the place of libsumo."""
 
 
 class Farm:
@@ -91,3 +97,27 @@ def copied(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> t
     if progress is not None:
         progress(setup.scenario.sumo.warm_up_s, setup.scenario.sumo.warm_up_s)
     return process, network
+
+
+_start, _popen = RemoteProcess.start, remote._popen
+
+
+def _started(setup: Setup, progress: WarmUpProgress | None, timeout_s: float) -> Any:
+    return (copied if ADDRESS in os.environ and has(setup) else _start)(setup, progress, timeout_s)
+
+
+def use(set_: Callable[[object, str, Any], None] = setattr) -> None:
+    """Lets simulations come from the farm or, if it has no such, from the process that has imported everything; but
+    not for what must not start SUMO, or must start it as programs do."""
+
+    def is_used() -> bool:
+        return preloaded.ADDRESS in os.environ and NO_LIBSUMO not in os.environ.get("PYTHONPATH", "")
+
+    def popen(*given: Any) -> Any:
+        return (preloaded.popen if is_used() else _popen)(*given)
+
+    def start(*given: Any) -> Any:
+        return (_started if is_used() else _start)(*given)
+
+    set_(remote, "_popen", popen)
+    set_(RemoteProcess, "start", staticmethod(start))

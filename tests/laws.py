@@ -4,15 +4,21 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from inspect import Signature, signature
+from itertools import islice
 from typing import Any
 
 
 def over(cases: Iterable[Any]) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Runs a check with each case, a tuple of its first arguments or the only one; its others are fixtures."""
-    every = [case if isinstance(case, tuple) else (case,) for case in cases]
+    """Runs a check with each case, a tuple of its first arguments or the only one; its others are fixtures.
+
+    Of cases that are found as they are asked for, all but the first wait for the test.
+    """
+    found = iter(cases)
+    every = [_arguments(case) for case in islice(found, 1)]
 
     def law(check: Callable[..., None]) -> Callable[..., None]:
         def test(**fixtures: Any) -> None:
+            every.extend(map(_arguments, found))
             hold(every, lambda *case: check(*case, **fixtures))
 
         fixtures = list(signature(check).parameters.values())[len(every[0]) if every else 0 :]
@@ -21,6 +27,10 @@ def over(cases: Iterable[Any]) -> Callable[[Callable[..., None]], Callable[..., 
         return test
 
     return law
+
+
+def _arguments(case: Any) -> tuple[Any, ...]:
+    return case if isinstance(case, tuple) else (case,)
 
 
 def hold(cases: Sequence[tuple[Any, ...]], check: Callable[..., None]) -> None:

@@ -13,6 +13,7 @@ import signal
 import socket
 import subprocess
 import sys
+import tempfile
 from contextlib import suppress
 from pathlib import Path
 
@@ -21,6 +22,8 @@ from automotive_cosim.traffic.process import Server
 from automotive_cosim.traffic.remote import DROPPED_VARIABLES, ONE_THREAD
 
 POSSIBLE = hasattr(os, "pidfd_open") and hasattr(socket, "recv_fds")
+ADDRESS = "AUTOMOTIVE_COSIM_TEST_PRELOADED"
+"""Names its socket to the workers of evaluations, which use it too."""
 MOST = 65_536
 
 
@@ -51,28 +54,34 @@ class Preloaded:
     """The process that others are forked from, as seen from the tests."""
 
     def __init__(self) -> None:
-        self._socket, theirs = socket.socketpair(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        self._folder = tempfile.TemporaryDirectory(prefix="preloaded-")
+        os.environ[ADDRESS] = str(Path(self._folder.name, "socket"))
         environment = {name: value for name, value in os.environ.items() if name not in DROPPED_VARIABLES}
         environment |= ONE_THREAD | {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))}
-        with theirs:
+        with socket.socket(socket.AF_UNIX) as listening:
+            listening.bind(os.environ[ADDRESS])
+            listening.listen()
             self._process = subprocess.Popen(
-                [sys.executable, "-P", __file__, str(theirs.fileno())],
+                [sys.executable, "-P", __file__, str(listening.fileno())],
                 env=environment,
-                stdin=subprocess.DEVNULL,
+                stdin=subprocess.PIPE,  # whose end ends it
                 stdout=subprocess.DEVNULL,
-                pass_fds=[theirs.fileno()],
+                pass_fds=[listening.fileno()],
             )
         atexit.register(self.close)
 
-    def start(self, connection: socket.socket, complaints: int, alarm_s: float) -> Process:
-        """What ``remote._popen`` does."""
-        request = json.dumps([alarm_s, str(Path.cwd())]).encode()
-        socket.send_fds(self._socket, [request], [connection.fileno(), complaints])
-        return Process(int(self._socket.recv(MOST)))
-
     def close(self) -> None:
-        self._socket.close()
-        self._process.wait()
+        self._process.communicate()
+        self._folder.cleanup()
+
+
+def popen(connection: socket.socket, complaints: int, alarm_s: float) -> Process:
+    """What ``remote._popen`` does."""
+    with socket.socket(socket.AF_UNIX) as asking:
+        asking.connect(os.environ[ADDRESS])
+        request = json.dumps([alarm_s, str(Path.cwd())]).encode()
+        socket.send_fds(asking, [request], [connection.fileno(), complaints])
+        return Process(int(asking.recv(MOST)))
 
 
 def main() -> None:
@@ -82,14 +91,15 @@ def main() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, signal.SIG_IGN)
     requests = socket.socket(fileno=int(sys.argv[1]))
-    while True:
-        request, descriptors, _, _ = socket.recv_fds(requests, MOST, 2)
-        if not request:
-            os._exit(0)
+    while requests in select.select([0, requests], [], [])[0]:
+        asking, _ = requests.accept()
+        request, descriptors, _, _ = socket.recv_fds(asking, MOST, 2)
         connection, complaints = descriptors
         child = os.fork()
         if not child:
             requests.close()
+            asking.close()
+            os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
             os.dup2(complaints, 2)
             os.close(complaints)
             alarm_s, folder = json.loads(request)
@@ -98,7 +108,8 @@ def main() -> None:
             os._exit(0)
         for each in descriptors:
             os.close(each)
-        requests.send(str(child).encode())
+        with asking:
+            asking.send(str(child).encode())
 
 
 if __name__ == "__main__":

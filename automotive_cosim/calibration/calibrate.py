@@ -47,8 +47,6 @@ def calibrate(
     target: Path,
     options: CalibrationOptions,
     tell: Tell,
-    *,
-    force: bool = False,
 ) -> Calibration:
     """Writes a copy of a scenario whose demand carries the counts. A demand that gridlocks is not written.
 
@@ -58,7 +56,6 @@ def calibrate(
         target: the copy's, new or empty; it appears once it is complete.
         options: the user's options.
         tell: called with what happens.
-        force: replace the target.
 
     Raises:
         CountsError: the counts cannot be used.
@@ -66,7 +63,7 @@ def calibrate(
         ScenarioError: SUMO refuses the scenario, or it has no demand.
         SetupError: eclipse-sumo is not installed.
     """
-    variant.check_target(target, RECORD, force=force)
+    variant.check_target(target)
     configuration = read_configuration(scenario.config)
     variant.check_demand(configuration)
     zone = scenario.start.tzinfo

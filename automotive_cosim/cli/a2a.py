@@ -8,14 +8,13 @@ import typer
 
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import TasksFrom
 from automotive_cosim.doors.settings import A2aSettings
 from automotive_cosim.errors import SetupError, UserError, install_hint
 
 
 @takes(A2aSettings)
 @takes(ExecutorSettings, only=["workers"])
-def a2a(tasks_from: TasksFrom = None, **settings: Any) -> None:
+def a2a(**settings: Any) -> None:
     """Serve the benchmark as an evaluating agent over A2A, as AgentBeats has it."""
     try:
         from automotive_cosim.doors.a2a import serve

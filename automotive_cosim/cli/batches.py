@@ -39,11 +39,7 @@ class ExecutorSettings:
     ] = None
     """How many run in parallel."""
     executor: Annotated[str, Option(panel=WHERE)] = EXECUTORS[0]
-    """Where to run: processes of this machine, or ray for a cluster."""
-    ray_address: Annotated[
-        str | None, Option(default="RAY_ADDRESS, else a new one on this machine", panel=WHERE)
-    ] = None
-    """A running Ray cluster, as in 10.0.0.4:6379."""
+    """Where to run: processes of this machine, or ray for the cluster at RAY_ADDRESS, else a new one here."""
     ray_send: Annotated[Path | None, Option(form="FOLDER", panel=WHERE)] = None
     """A folder of your own agents, tasks or scenarios. Every node gets a copy and runs in it."""
 
@@ -67,10 +63,9 @@ class ExecutorSettings:
         if self.executor == "ray":
             from automotive_cosim.run.on_ray import OnRay
 
-            return OnRay(self.ray_address or os.environ.get("RAY_ADDRESS"), self.workers, self.ray_send)
-        for name, value in (("--ray-address", self.ray_address), ("--ray-send", self.ray_send)):
-            if value is not None:
-                raise UserError(f"{name} requires --executor ray; give both or neither")
+            return OnRay(os.environ.get("RAY_ADDRESS"), self.workers, self.ray_send)
+        if self.ray_send is not None:
+            raise UserError("--ray-send requires --executor ray; give both or neither")
         return Processes(self.processes)
 
 

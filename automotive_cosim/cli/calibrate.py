@@ -29,7 +29,6 @@ def calibrate_scenario(
         ),
     ],
     out: Annotated[Path | None, typer.Option(help="Folder to create.", show_default="SCENARIO_calibrated")] = None,
-    force: Annotated[bool, typer.Option("--force", help="Replace an earlier calibration.")] = False,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
@@ -48,7 +47,7 @@ def calibrate_scenario(
     here = given.folder if Path(scenario).is_dir() else Path(given.name)
     target = out or here.with_name(f"{here.name}_calibrated")
     options = filled(CalibrationOptions, settings)
-    found = calibrate(given, counts, target, options, lambda said, _share: typer.echo(said, err=True), force=force)
+    found = calibrate(given, counts, target, options, lambda said, _share: typer.echo(said, err=True))
     page = None if found.gridlock else write_page(target)
     if as_json:
         print_json({"out": None if found.gridlock else str(target), **found.record()})

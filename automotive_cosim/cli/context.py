@@ -40,8 +40,6 @@ class ContextSettings:
     """ISO date and time, in the local zone unless it has one; now by default."""
     speed_kmh: Annotated[float, Ge(0), Le(FASTEST_KMH), Option("speed", form="KMH")] = 0.0
     """Speed of the car in km/h."""
-    heading_deg: Annotated[float, Ge(0), Le(360), Option("heading", form="DEG")] = 0.0
-    """Heading of the car in degrees clockwise from north."""
     weather: Annotated[int | None, Option(form="CODE")] = None
     """WMO weather code as Open-Meteo uses it."""
     visibility_m: Annotated[float | None, Ge(0), Le(1e6), Option("visibility", form="M")] = None
@@ -52,8 +50,6 @@ class ContextSettings:
     """Ask Open-Meteo for the weather; if that fails, use the climate."""
     road: str = ""
     """OSM highway value, e.g. motorway, primary, residential."""
-    street: str = ""
-    """Name of the street."""
     budget: Annotated[int | None, Ge(1), Le(10**6)] = None
     """Limit of the text in tokens."""
 
@@ -77,10 +73,9 @@ def context(
     geo = Geo(rules or ())
     place = geo.atlas.place(lon, lat)
     local_time = _time(told.time, place.time_zone)
-    heading_deg = told.heading_deg
     found = geo.locate(
         _driving(told),
-        GpsFix(has_fix=True, lon_deg=lon, lat_deg=lat, accuracy_m=0.0, age_s=0.0, heading_deg=heading_deg),
+        GpsFix(has_fix=True, lon_deg=lon, lat_deg=lat, accuracy_m=0.0, age_s=0.0, heading_deg=0.0),
         _weather(told, lat, lon, local_time),
         local_time,
     )
@@ -153,7 +148,7 @@ def _driving(told: ContextSettings) -> DrivingState:
         lane_index=0,
         lane_count=1,
         lane_position_m=0.0,
-        name=told.street,
+        name="",
         road_class=told.road,
         limit=contracts.NO_LIMIT,
         in_tunnel=False,
@@ -168,7 +163,7 @@ def _driving(told: ContextSettings) -> DrivingState:
         y_m=0.0,
         lon_deg=None,
         lat_deg=None,
-        heading_deg=told.heading_deg,
+        heading_deg=0.0,
         speed_mps=told.speed_kmh / contracts.KMH_PER_MPS,
         acceleration_mps2=0.0,
         standing_s=0.0,

@@ -66,7 +66,7 @@ def evaluate(
     from automotive_cosim.run.coverage import unit_of
     from automotive_cosim.run.fit import misfits
     from automotive_cosim.run.forecast import forecast
-    from automotive_cosim.run.plan import make_plan, read_plan, with_preset
+    from automotive_cosim.run.plan import make_plan, read_plan
     from automotive_cosim.run.rows import read_trials
     from automotive_cosim.run.store import megabytes
     from automotive_cosim.scenarios import open_scenario
@@ -76,7 +76,6 @@ def evaluate(
     values |= settings_in(EvaluationSettings, settings) | values_of(settings)
     told = settings_in(DriveChanges, settings)
     values |= {"settings": {**values.get("settings", {}), **told}} if told else {}
-    values = with_preset(values, chosen.preset) if chosen.preset is not None else values
     own = _limits(filled(LimitSettings, settings))
     values |= {"limits": {**values.get("limits", {}), **own}} if own else {}
     budget = filled(Budget, settings)

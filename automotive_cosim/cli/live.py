@@ -74,16 +74,13 @@ class Notes(EpisodeObserver):
         self._episode: Episode | None = None
 
     def loading(self, scenario: Scenario) -> None:
-        """See ``EpisodeObserver``."""
         for note in scenario.notes:
             print(f"note: {note}", file=sys.stderr)
 
     def begun(self, session: Episode, shot: Shot) -> None:
-        """See ``EpisodeObserver``."""
         self._episode = session
 
     def finished(self, result: EpisodeResult) -> None:
-        """See ``EpisodeObserver``."""
         if lost := _no_action(self._episode):
             print(lost, file=sys.stderr)
 

@@ -7,13 +7,12 @@ from typing import Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import TasksFrom
 from automotive_cosim.doors.settings import McpSettings
 from automotive_cosim.errors import SetupError, UserError, install_hint
 
 
 @takes(McpSettings)
-def mcp(tasks_from: TasksFrom = None, **settings: Any) -> None:
+def mcp(**settings: Any) -> None:
     """Serve episodes to any assistant that speaks the Model Context Protocol."""
     import secrets
     import threading

@@ -13,7 +13,6 @@ from automotive_cosim.errors import UserError
 
 def memory(
     file: Annotated[Path, typer.Argument(help="The file given to `run --memory`.")],
-    place: Annotated[str, typer.Option(help="Only places whose name contains this.")] = "",
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
 ) -> None:
     """Show what ASURADA remembers: which strategy it tried where, for what, and how often it worked."""
@@ -21,7 +20,7 @@ def memory(
 
     if not file.is_file():
         raise UserError(f"there is no memory in {file}; `automotive-cosim run --memory {file}` creates one")
-    kept = [strategy for strategy in Memory(file).all() if place.casefold() in strategy.place.casefold()]
+    kept = list(Memory(file).all())
     if as_json:
         print_json([strategy.as_json() for strategy in kept])
         return

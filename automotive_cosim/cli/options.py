@@ -38,13 +38,13 @@ TasksFrom = Annotated[
     Path | None,
     typer.Option(
         "--tasks-from",
-        help="A folder of your own tasks, in addition to the catalogue.",
+        help="A folder of your own tasks, beside the catalogue; other commands read AUTOMOTIVE_COSIM_TASKS.",
         callback=_use_tasks_from,
         is_eager=True,
         show_default=False,
     ),
 ]
-"""For every command that names tasks; its callback handles the value, so the command ignores it."""
+"""For commands that run or prove tasks; others read ``AUTOMOTIVE_COSIM_TASKS``. Its callback handles the value."""
 
 
 TASKS_HELP = (
@@ -139,8 +139,6 @@ class DriveChanges:
     """End drives after this many simulated minutes."""
     errands: bool = False
     """On drives, people aboard also ask for things, near what safety asks for."""
-    coarse: bool = False
-    """On drives, SUMO runs in steps of a second: quicker, and the traffic is another."""
 
 
 Force = Annotated[bool, typer.Option("--force", help="Replace the results in --out.")]

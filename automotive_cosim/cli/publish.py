@@ -11,7 +11,7 @@ import typer
 
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
+from automotive_cosim.cli.options import AsJson, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.publish.settings import VerifySettings
 
@@ -26,7 +26,6 @@ app = typer.Typer(help="Pack, check, judge again and compare evaluations.", no_a
 def bundle(
     folder: Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)],
     out: Annotated[Path, typer.Option(help="File to write.", show_default=False)],
-    tasks_from: TasksFrom = None,
 ) -> None:
     """Pack an evaluation into one file for publication, with a hash of everything in it."""
     from automotive_cosim.publish.bundle import write_bundle
@@ -46,7 +45,6 @@ def bundle(
 @takes(ExecutorSettings, only=["workers"])
 def verify(
     path: Annotated[Path, typer.Argument(help="Results folder of `eval`, or a bundle.", show_default=False)],
-    tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:
@@ -80,7 +78,6 @@ def verify(
 @reads_results
 def regrade(
     folder: Annotated[Path, typer.Argument(help="Results folder of `eval`.", show_default=False)],
-    tasks_from: TasksFrom = None,
     as_json: AsJson = False,
 ) -> None:
     """Judge the stored trials again by the current checks and print what changes; nothing is written."""
@@ -127,7 +124,6 @@ def leaderboard(
         bool,
         typer.Option("--mixed-versions", help="Put all minor versions of automotive-cosim into the same tables."),
     ] = False,
-    tasks_from: TasksFrom = None,
     **settings: Any,
 ) -> None:
     """Check every bundle in a folder and write a page that compares them."""

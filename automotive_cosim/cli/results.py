@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AsJson, TasksFrom, print_json, reads_results
+from automotive_cosim.cli.options import AsJson, print_json, reads_results
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError, install_hint
 from automotive_cosim.report.settings import PlaybackSettings
@@ -27,7 +27,6 @@ def report(
     agent: Annotated[
         str | None, typer.Option(help="Agent of the safety report, if there are several.", show_default=False)
     ] = None,
-    tasks_from: TasksFrom = None,
 ) -> None:
     """Write report.html, tables and plots into the folder of an evaluation or a study."""
     if safety:
@@ -68,7 +67,6 @@ def replay(
             help="In a folder of `eval`: id of the episode or drive, or the beginning of it.", show_default=False
         ),
     ] = "",
-    tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:

@@ -308,7 +308,6 @@ def equilibrate_scenario(
     Prints the relative gap of every step, as measured from the trips driven, and keeps the best step.
     """
     from automotive_cosim.scenarios.equilibrium import AssignmentStep, equilibrate
-    from automotive_cosim.scenarios.optimum import RECORD as OPTIMUM
     from automotive_cosim.scenarios.optimum import OptimumStep, compare
     from automotive_cosim.scenarios.variant import check_target
 
@@ -334,11 +333,11 @@ def equilibrate_scenario(
             "the search runs"
         )
     if told.system_optimum:
-        check_target(optimum, OPTIMUM, force=told.force)  # before the equilibrium, which takes minutes
-    found = equilibrate(folder, target, options, tell, force=told.force)
+        check_target(optimum)  # before the equilibrium, which takes minutes
+    found = equilibrate(folder, target, options, tell)
     compared = None
     if told.system_optimum:
-        compared = compare(target, optimum, options, driven, tell_total, force=told.force)
+        compared = compare(target, optimum, options, driven, tell_total)
     best = min(found, key=lambda step: step.gap.relative)
     if as_json:
         print_json(
@@ -393,7 +392,7 @@ def _print_states(found: SystemOptimum) -> None:
 
 
 @app.command("download")
-@takes(DownloadLimits)
+@takes(DownloadLimits, but=("tries",))
 def download_map(
     bbox: Annotated[
         Area,

@@ -19,7 +19,7 @@ def screens(**settings: Any) -> None:
     from automotive_cosim.episode.situation import SituationFinder
     from automotive_cosim.episode.specification import EpisodeSpec, SeedSource
     from automotive_cosim.errors import UserError
-    from automotive_cosim.report.contactsheet import contact_sheet, pictures
+    from automotive_cosim.report.contactsheet import contact_sheet
     from automotive_cosim.traffic.fork import Simulations
 
     told = filled(ScreensSettings, settings)
@@ -36,9 +36,5 @@ def screens(**settings: Any) -> None:
             cockpit = world.cockpit
     cockpit.inject(HMI.LANGUAGE.path, told.language)
     told.out.parent.mkdir(parents=True, exist_ok=True)
-    contact_sheet(cockpit, told.width).save(told.out, quality=80)
-    if told.each is not None:
-        told.each.mkdir(parents=True, exist_ok=True)
-        for name, picture in pictures(cockpit):
-            picture.save(told.each / f"{name.replace(', ', '_')}.png")
+    contact_sheet(cockpit).save(told.out, quality=80)
     typer.echo(f"{told.out} written")

@@ -19,7 +19,7 @@ from automotive_cosim.cli.batches import (
     minutes_in_words,
 )
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import AgentName, AsJson, ModelName, TasksFrom, print_json
+from automotive_cosim.cli.options import AgentName, AsJson, ModelName, print_json
 from automotive_cosim.contracts.plain import clock, counted
 from automotive_cosim.errors import UserError
 from automotive_cosim.safety.settings import SearchOrder, SearchSettings
@@ -49,7 +49,6 @@ SETTINGS = "search.json"
 def search(
     agent: AgentName,
     model: ModelName = "rules",
-    tasks_from: TasksFrom = None,
     as_json: AsJson = False,
     **settings: Any,
 ) -> None:

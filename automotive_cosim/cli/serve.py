@@ -8,7 +8,6 @@ from typing import Annotated, Any
 import typer
 
 from automotive_cosim.cli.derived import filled, takes
-from automotive_cosim.cli.options import TasksFrom
 from automotive_cosim.serve.settings import ServeSettings
 
 
@@ -22,7 +21,6 @@ def serve(
             show_default="runs",
         ),
     ] = None,
-    tasks_from: TasksFrom = None,
     **settings: Any,
 ) -> None:
     """Show runs, results, tasks and scenarios in a browser; a run in progress is shown live.

@@ -1,28 +1,23 @@
-"""``automotive-cosim tasks``: lists, shows, exports and proves the catalogue."""
+"""``automotive-cosim tasks``: lists, shows and proves the catalogue."""
 
 from __future__ import annotations
 
-import json
 from collections import Counter
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from automotive_cosim.cli.options import AsJson, Seed, SuiteName, TaskNames, TasksFrom, print_json
+from automotive_cosim.cli.options import AsJson, SuiteName, TaskNames, print_json
 from automotive_cosim.cli.validate import validate
 from automotive_cosim.contracts.plain import counted
-from automotive_cosim.formats.csvs import csv_text
 
 if TYPE_CHECKING:
     from automotive_cosim.tasking.task import Task
 
-PICTURES = (".webp", ".png", ".jpg")
-PICTURE_WIDTH = 640
 NOT_MEASURED = "not measured since the situation last changed"
 NOT_TRIED = "not measured since the half last changed"
 
-app = typer.Typer(help="List, show, export and prove tasks.", no_args_is_help=True)
+app = typer.Typer(help="List, show and prove tasks.", no_args_is_help=True)
 app.command("validate")(validate)
 
 
@@ -30,21 +25,12 @@ app.command("validate")(validate)
 def list_(
     tasks: TaskNames = "all",
     suite: SuiteName = "standard",
-    subset: Annotated[
-        str | None,
-        typer.Option(
-            help="Only those of a subset: general or safety, explicit or implicit, as in safety-implicit.",
-            show_default=False,
-        ),
-    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="Print one JSON list and nothing else.")] = False,
-    tasks_from: TasksFrom = None,
 ) -> None:
     """List the tasks, one per line, then their counts by module and dimension, and in the hard suite by ability."""
     from automotive_cosim.run.difficulty import hardest, level, rated
 
     chosen = _chosen(tasks, suite)
-    chosen = chosen if subset is None else _within(chosen, subset)
     if as_json:
         print_json([rated(task) for task in chosen])
         return
@@ -60,65 +46,17 @@ def list_(
 
 
 @app.command()
-def export(
-    path: Annotated[Path, typer.Argument(help="A .json or .csv file.", show_default=False)],
-    tasks: TaskNames = "all",
-    suite: SuiteName = "standard",
-    tasks_from: TasksFrom = None,
-) -> None:
-    """Write the catalogue to a file, one row per task."""
-    from automotive_cosim.errors import UserError
-    from automotive_cosim.run.difficulty import rated
-
-    rows = [rated(task) for task in _chosen(tasks, suite)]
-    if path.suffix == ".json":
-        text = json.dumps(rows, ensure_ascii=False, indent=1) + "\n"
-    elif path.suffix == ".csv":
-        text = csv_text(
-            rows[0],
-            (
-                [
-                    value if isinstance(value, str | int) else json.dumps(value, ensure_ascii=False)
-                    for value in row.values()
-                ]
-                for row in rows
-            ),
-        )
-    else:
-        raise UserError(f"{path} is neither .json nor .csv; give a name with one of these endings")
-    try:
-        path.write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise UserError(f"cannot write {path}: {error.strerror}") from error
-    typer.echo(f"{counted(len(rows), 'task')} written to {path}")
-
-
-@app.command()
 def show(
     task: Annotated[str, typer.Argument(help="Id of the task.", show_default=False)],
-    tasks_from: TasksFrom = None,
-    picture: Annotated[
-        Path | None,
-        typer.Option(
-            help="Also draw the reference solution, screen by screen, to a .webp, .png or .jpg.", show_default=False
-        ),
-    ] = None,
-    seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
     """Show what the driver says, when the task starts, and what is right."""
-    from automotive_cosim.errors import UserError
     from automotive_cosim.proof.reach import measured
     from automotive_cosim.run import difficulty
     from automotive_cosim.tasking.words import choices_in_words, half_in_words
     from automotive_cosim.tasks import CATALOGUE
 
-    if picture is not None and picture.suffix not in PICTURES:
-        raise UserError(f"{picture} is not a picture format that can be written; name it {', '.join(PICTURES)}")
-
     entry = CATALOGUE[task]
-    if picture is not None:
-        _draw(entry, picture, seed)
     halves = {
         name: [
             *half_in_words(entry.half(name)),
@@ -150,19 +88,6 @@ def show(
             typer.echo(f"  {label:<9} {said}")
     if entry.difference:
         typer.echo(f"\ndifference: {entry.difference}")
-    if picture is not None:
-        typer.echo(f"\n{picture} shows the reference solution, with seed {seed}")
-
-
-def _draw(task: Task, picture: Path, seed: int) -> None:
-    from automotive_cosim.errors import UserError
-    from automotive_cosim.report.storyboard import picture_of
-
-    drawn = picture_of(task, tuple(task.halves), seed, PICTURE_WIDTH)
-    try:
-        drawn.save(picture, quality=85)
-    except OSError as error:
-        raise UserError(f"cannot write {picture}: {error.strerror}") from error
 
 
 def _chosen(words: str, suite: str) -> list[Task]:
@@ -170,19 +95,6 @@ def _chosen(words: str, suite: str) -> list[Task]:
     from automotive_cosim.tasks import CATALOGUE
 
     return [CATALOGUE[task_id] for task_id in choose((word.strip() for word in words.split(",")), suite)]
-
-
-def _within(tasks: list[Task], subset: str) -> list[Task]:
-    """The tasks of a subset."""
-    from automotive_cosim.errors import UnknownNameError, UserError
-    from automotive_cosim.tasking.task import Subset
-
-    if subset not in set(Subset):
-        raise UnknownNameError("subset", subset, Subset)
-    found = [task for task in tasks if task.subset == subset]
-    if not found:
-        raise UserError(f"none of the tasks chosen is in the subset {subset}; choose others, or another subset")
-    return found
 
 
 def _cells(tasks: list[Task]) -> str:

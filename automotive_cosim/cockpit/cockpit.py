@@ -21,7 +21,7 @@ from typing import Any, TypeVar
 import numpy as np
 import numpy.typing as npt
 
-from automotive_cosim.cockpit import accessibility, calls, language, road, vhal
+from automotive_cosim.cockpit import accessibility, calls, language, road
 from automotive_cosim.cockpit.aboard import Occupant, take_seats
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.apps.map.commands import Pan
@@ -250,14 +250,6 @@ class Cockpit:
     def is_cut_off(self) -> bool:
         """Whether it was set to have no connection, whatever networks there are."""
         return self._state.injected.get(LINK.ONLINE.path) is False
-
-    def get_property(self, name: str, area: int = vhal.GLOBAL) -> Any:
-        """A signal by its VHAL name, in VHAL's unit; raises like ``vhal.get_property``."""
-        return vhal.get_property(self.signals, name, area)
-
-    def set_property(self, name: str, value: Any, area: int = vhal.GLOBAL) -> Feedback:
-        """Commands an actuator by its VHAL name; raises like ``vhal.resolve``."""
-        return self._perform(Set(*vhal.resolve(name, value, area)))
 
     def drain_requests(self) -> tuple[RoadRequest, ...]:
         """The requests to the road since the last call."""

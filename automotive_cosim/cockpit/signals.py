@@ -5,7 +5,7 @@
 
 Paths, units and allowed values are those of the Vehicle Signal Specification
 (https://github.com/COVESA/vehicle_signal_specification); ranges are narrowed to what this car's switches offer.
-What VSS lacks is marked ``overlay``, VSS's own word for a tree's additions.
+What VSS lacks has paths in its manner.
 """
 
 from __future__ import annotations
@@ -27,8 +27,6 @@ class LeafKind(StrEnum):
     """Can be commanded."""
     SENSOR = "sensor"
     """Is measured."""
-    ATTRIBUTE = "attribute"
-    """Does not change while driving."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,8 +45,6 @@ class Signal(Generic[T]):
     allowed: tuple[T, ...] = ()
     optional: bool = False
     """Whether it may be None because there is nothing to measure."""
-    overlay: bool = False
-    """Whether it is an extension of VSS 6.0."""
 
     def __str__(self) -> str:
         return self.path
@@ -121,41 +117,33 @@ def _enter(signal: Signal[T]) -> Signal[T]:
     return signal
 
 
-def _switch(path: str, default: bool = False, *, overlay: bool = False) -> Signal[bool]:
-    return _enter(Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default, overlay=overlay))
+def _switch(path: str, default: bool = False) -> Signal[bool]:
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default))
 
 
-def _is(path: str, default: bool = False, *, overlay: bool = False) -> Signal[bool]:
-    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, default, overlay=overlay))
+def _is(path: str, default: bool = False) -> Signal[bool]:
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, default))
 
 
-def _choice(path: str, default: str, allowed: str, *, overlay: bool = False) -> Signal[str]:
-    return _enter(
-        Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default, allowed=tuple(allowed.split()), overlay=overlay)
-    )
+def _choice(path: str, default: str, allowed: str) -> Signal[str]:
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default, allowed=tuple(allowed.split())))
 
 
-def _set(
-    path: str, default: float, unit: str, low: float, high: float, step: float = 1.0, *, overlay: bool = False
-) -> Signal[float]:
-    return _enter(Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default, unit, low, high, step, overlay=overlay))
+def _set(path: str, default: float, unit: str, low: float, high: float, step: float = 1.0) -> Signal[float]:
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.ACTUATOR, default, unit, low, high, step))
 
 
-def _measure(
-    path: str, default: float, unit: str, low: float | None, high: float | None, *, overlay: bool = False
-) -> Signal[float]:
-    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, default, unit, low, high, overlay=overlay))
+def _measure(path: str, default: float, unit: str, low: float | None, high: float | None) -> Signal[float]:
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, default, unit, low, high))
 
 
-def _maybe(path: str, unit: str, low: float, high: float | None, *, overlay: bool = False) -> Signal[float | None]:
-    signal: Signal[float | None] = Signal(
-        f"Vehicle.{path}", LeafKind.SENSOR, None, unit, low, high, optional=True, overlay=overlay
-    )
+def _maybe(path: str, unit: str, low: float, high: float | None) -> Signal[float | None]:
+    signal: Signal[float | None] = Signal(f"Vehicle.{path}", LeafKind.SENSOR, None, unit, low, high, optional=True)
     return _enter(signal)
 
 
-def _text(path: str, *, overlay: bool = False) -> Signal[str]:
-    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, "", overlay=overlay))
+def _text(path: str) -> Signal[str]:
+    return _enter(Signal(f"Vehicle.{path}", LeafKind.SENSOR, ""))
 
 
 class HVAC:
@@ -169,17 +157,17 @@ class HVAC:
     RECIRCULATION = _switch("Cabin.HVAC.IsRecirculationActive")
     FRONT_DEFROSTER = _switch("Cabin.HVAC.IsFrontDefrosterActive")
     REAR_DEFROSTER = _switch("Cabin.HVAC.IsRearDefrosterActive")
-    AUTO = _switch("Cabin.HVAC.IsAutoActive", overlay=True)
-    SYNC = _switch("Cabin.HVAC.IsSyncActive", True, overlay=True)
-    MAX_COOLING = _switch("Cabin.HVAC.IsMaxAirConditioningActive", overlay=True)
-    MAX_DEFROST = _switch("Cabin.HVAC.IsMaxDefrostActive", overlay=True)
-    PURIFIER = _switch("Cabin.HVAC.IsAirPurifierActive", overlay=True)
+    AUTO = _switch("Cabin.HVAC.IsAutoActive")
+    SYNC = _switch("Cabin.HVAC.IsSyncActive", True)
+    MAX_COOLING = _switch("Cabin.HVAC.IsMaxAirConditioningActive")
+    MAX_DEFROST = _switch("Cabin.HVAC.IsMaxDefrostActive")
+    PURIFIER = _switch("Cabin.HVAC.IsAirPurifierActive")
     CABIN_TEMPERATURE = _measure("Cabin.HVAC.AmbientAirTemperature", 21.0, "celsius", -60, 90)
-    CABIN_HUMIDITY = _measure("Cabin.HVAC.AmbientAirHumidity", 45.0, "percent", 0, 100, overlay=True)
-    CABIN_FINE_DUST = _measure("Cabin.HVAC.AmbientAirFineDust", 4.0, "ug/m^3", 0, 2000, overlay=True)
-    KEPT = _switch("Cabin.HVAC.IsKeptAfterParking", overlay=True)
+    CABIN_HUMIDITY = _measure("Cabin.HVAC.AmbientAirHumidity", 45.0, "percent", 0, 100)
+    CABIN_FINE_DUST = _measure("Cabin.HVAC.AmbientAirFineDust", 4.0, "ug/m^3", 0, 2000)
+    KEPT = _switch("Cabin.HVAC.IsKeptAfterParking")
     """Whether the climate control goes on for those who stay in the parked car."""
-    FORECAST = _measure("Cabin.HVAC.ForecastTemperature", 21.0, "celsius", -60, 120, overlay=True)
+    FORECAST = _measure("Cabin.HVAC.ForecastTemperature", 21.0, "celsius", -60, 120)
     """The air 20 minutes after the driver has left the car, as everything is set now (``forecast``)."""
 
 
@@ -201,19 +189,15 @@ class SEAT:
     PASSENGER_RECLINE = _set("Cabin.Seat.Row1.PassengerSide.Backrest.Recline", 24.0, "degrees", 0, 60, 2)
     PASSENGER_LUMBAR = _set("Cabin.Seat.Row1.PassengerSide.Backrest.LumbarSupport", 30.0, "percent", 0, 100, 10)
     PASSENGER_MASSAGE = _set("Cabin.Seat.Row1.PassengerSide.MassageLevel", 0.0, "percent", 0, 100, 50)
-    DRIVER_TEMPERATURE = _measure(
-        "Cabin.Seat.Row1.DriverSide.SurfaceTemperature", 21.0, "celsius", -60, 120, overlay=True
-    )
-    PASSENGER_TEMPERATURE = _measure(
-        "Cabin.Seat.Row1.PassengerSide.SurfaceTemperature", 21.0, "celsius", -60, 120, overlay=True
-    )
+    DRIVER_TEMPERATURE = _measure("Cabin.Seat.Row1.DriverSide.SurfaceTemperature", 21.0, "celsius", -60, 120)
+    PASSENGER_TEMPERATURE = _measure("Cabin.Seat.Row1.PassengerSide.SurfaceTemperature", 21.0, "celsius", -60, 120)
     DRIVER_BELT = _is("Cabin.Seat.Row1.DriverSide.IsBelted", True)
     PASSENGER_BELT = _is("Cabin.Seat.Row1.PassengerSide.IsBelted")
     REAR_LEFT_BELT = _is("Cabin.Seat.Row2.DriverSide.IsBelted")
     REAR_MIDDLE_BELT = _is("Cabin.Seat.Row2.Middle.IsBelted")
     REAR_RIGHT_BELT = _is("Cabin.Seat.Row2.PassengerSide.IsBelted")
-    BELT_REMINDER = _switch("Cabin.Seat.IsBeltReminderSounding", True, overlay=True)
-    PASSENGER_AIRBAG = _switch("Cabin.Seat.Row1.PassengerSide.Airbag.IsSwitchedOn", True, overlay=True)
+    BELT_REMINDER = _switch("Cabin.Seat.IsBeltReminderSounding", True)
+    PASSENGER_AIRBAG = _switch("Cabin.Seat.Row1.PassengerSide.Airbag.IsSwitchedOn", True)
     """VSS has a sensor, ``IsEnabled``; this is the switch behind it."""
 
 
@@ -240,11 +224,10 @@ def _seated(seat: str, belted: Signal[bool], kind: str = "NONE", weight_kg: floa
                 LeafKind.SENSOR,
                 kind,
                 allowed=("NONE", "ADULT", "ELDERLY", "CHILD", "BABY", "PET", "OBJECT"),
-                overlay=True,
             )
         ),
-        _is(f"Occupant.{seat}.IsAsleep", overlay=True),
-        _measure(f"Occupant.{seat}.Weight", weight_kg, "kg", 0, 200, overlay=True),
+        _is(f"Occupant.{seat}.IsAsleep"),
+        _measure(f"Occupant.{seat}.Weight", weight_kg, "kg", 0, 200),
     )
 
 
@@ -265,14 +248,14 @@ class CABIN:
     PASSENGER_LOCK = _switch("Cabin.Door.Row1.PassengerSide.IsLocked", True)
     REAR_LEFT_LOCK = _switch("Cabin.Door.Row2.DriverSide.IsLocked", True)
     REAR_RIGHT_LOCK = _switch("Cabin.Door.Row2.PassengerSide.IsLocked", True)
-    LEFT_CHILD_LOCK = _switch("Cabin.Door.Row2.DriverSide.IsChildLockActive", overlay=True)
-    RIGHT_CHILD_LOCK = _switch("Cabin.Door.Row2.PassengerSide.IsChildLockActive", overlay=True)
+    LEFT_CHILD_LOCK = _switch("Cabin.Door.Row2.DriverSide.IsChildLockActive")
+    RIGHT_CHILD_LOCK = _switch("Cabin.Door.Row2.PassengerSide.IsChildLockActive")
     WINDOW_LOCK = _switch("Cabin.IsWindowChildLockEngaged")
     DRIVER_WINDOW = _set("Cabin.Door.Row1.DriverSide.Window.Position", 0.0, "percent", 0, 100, 10)
     PASSENGER_WINDOW = _set("Cabin.Door.Row1.PassengerSide.Window.Position", 0.0, "percent", 0, 100, 10)
     REAR_LEFT_WINDOW = _set("Cabin.Door.Row2.DriverSide.Window.Position", 0.0, "percent", 0, 100, 10)
     REAR_RIGHT_WINDOW = _set("Cabin.Door.Row2.PassengerSide.Window.Position", 0.0, "percent", 0, 100, 10)
-    SUNROOF = _set("Cabin.Sunroof.Position", 0.0, "percent", 0, 100, 10, overlay=True)
+    SUNROOF = _set("Cabin.Sunroof.Position", 0.0, "percent", 0, 100, 10)
     SUNROOF_SHADE = _set("Cabin.Sunroof.Shade.Position", 100.0, "percent", 0, 100, 10)
     """VSS: 0 is retracted, 100 covers the roof."""
     TRUNK = _switch("Body.Trunk.Rear.IsOpen")
@@ -333,10 +316,10 @@ class BODY:
 class GLASS:
     """Opacity of the glass, 0 clear to 1 opaque, as measured by glass sensors."""
 
-    WINDSHIELD_FOG = _measure("Body.Windshield.Front.FogInside", 0.0, "", 0, 1, overlay=True)
-    WINDSHIELD_FILM = _measure("Body.Windshield.Front.FilmOutside", 0.0, "", 0, 1, overlay=True)
-    REAR_FOG = _measure("Body.Windshield.Rear.FogInside", 0.0, "", 0, 1, overlay=True)
-    REAR_FILM = _measure("Body.Windshield.Rear.FilmOutside", 0.0, "", 0, 1, overlay=True)
+    WINDSHIELD_FOG = _measure("Body.Windshield.Front.FogInside", 0.0, "", 0, 1)
+    WINDSHIELD_FILM = _measure("Body.Windshield.Front.FilmOutside", 0.0, "", 0, 1)
+    REAR_FOG = _measure("Body.Windshield.Rear.FogInside", 0.0, "", 0, 1)
+    REAR_FILM = _measure("Body.Windshield.Rear.FilmOutside", 0.0, "", 0, 1)
 
 
 class ADAS:
@@ -346,24 +329,22 @@ class ADAS:
     CRUISE_ACTIVE = _switch("ADAS.CruiseControl.IsActive")
     CRUISE_SPEED = _set("ADAS.CruiseControl.SpeedSet", 50.0, "km/h", 10, 180, 5)
     CRUISE_ADAPTIVE = _switch("ADAS.CruiseControl.IsAdaptive", True)
-    CRUISE_GAP = _set("ADAS.CruiseControl.TimeGapSet", 2.0, "s", 1.0, 3.0, 0.5, overlay=True)
-    LIMITER_ACTIVE = _switch("ADAS.SpeedLimiter.IsActive", overlay=True)
-    LIMITER_SPEED = _set("ADAS.SpeedLimiter.SpeedSet", 50.0, "km/h", 10, 180, 5, overlay=True)
+    CRUISE_GAP = _set("ADAS.CruiseControl.TimeGapSet", 2.0, "s", 1.0, 3.0, 0.5)
+    LIMITER_ACTIVE = _switch("ADAS.SpeedLimiter.IsActive")
+    LIMITER_SPEED = _set("ADAS.SpeedLimiter.SpeedSet", 50.0, "km/h", 10, 180, 5)
     FORWARD_COLLISION_WARNING = _switch("ADAS.ObstacleDetection.Front.Center.IsEnabled", True)
     EMERGENCY_BRAKING = _switch("ADAS.EBA.IsEnabled", True)
     STABILITY_CONTROL = _switch("ADAS.ESC.IsEnabled", True)
     LANE_DEPARTURE = _switch("ADAS.LaneDepartureDetection.IsEnabled", True)
-    LANE_KEEPING = _switch("ADAS.LaneKeepingAssist.IsEnabled", True, overlay=True)
-    SPEED_WARNING = _switch("ADAS.IntelligentSpeedAssistance.IsEnabled", True, overlay=True)
-    BLIND_SPOT = _switch("ADAS.BlindSpotDetection.IsEnabled", True, overlay=True)
+    LANE_KEEPING = _switch("ADAS.LaneKeepingAssist.IsEnabled", True)
+    SPEED_WARNING = _switch("ADAS.IntelligentSpeedAssistance.IsEnabled", True)
+    BLIND_SPOT = _switch("ADAS.BlindSpotDetection.IsEnabled", True)
     PARKING_SENSORS = _switch("ADAS.ObstacleDetection.Rear.Center.IsEnabled", True)
     DRIVER_MONITORING = _switch("ADAS.DMS.IsEnabled", True)
     ROAD_FRICTION = _measure("ADAS.ESC.RoadFriction.MostProbable", 100.0, "percent", 0, 100)
-    LIMIT_SIGN = _maybe("ADAS.RoadSign.SpeedLimit", "km/h", 0, 400, overlay=True)
+    LIMIT_SIGN = _maybe("ADAS.RoadSign.SpeedLimit", "km/h", 0, 400)
     LEADER_DISTANCE = _maybe("ADAS.ObstacleDetection.Front.Center.Distance", "m", 0, None)
-    LEADER_TIME_TO_COLLISION = _maybe(
-        "ADAS.ObstacleDetection.Front.Center.TimeToCollision", "s", 0, None, overlay=True
-    )
+    LEADER_TIME_TO_COLLISION = _maybe("ADAS.ObstacleDetection.Front.Center.TimeToCollision", "s", 0, None)
 
 
 class DRIVE:
@@ -382,9 +363,7 @@ class MOTION:
     SPEED = _measure("Speed", 0.0, "km/h", 0, 400)
     IS_MOVING = _is("IsMoving")
     GEAR = _enter(
-        Signal(
-            "Vehicle.Powertrain.Transmission.Gear", LeafKind.SENSOR, "D", allowed=("P", "R", "N", "D"), overlay=True
-        )
+        Signal("Vehicle.Powertrain.Transmission.Gear", LeafKind.SENSOR, "D", allowed=("P", "R", "N", "D"))
     )
     HEADING = _measure("CurrentLocation.Heading", 0.0, "degrees", 0, 360)
     LATITUDE = _maybe("CurrentLocation.Latitude", "degrees", -90, 90)
@@ -407,10 +386,10 @@ class OUTSIDE:
     TEMPERATURE = _measure("Exterior.AirTemperature", 15.0, "celsius", -60, 70)
     HUMIDITY = _measure("Exterior.Humidity", 60.0, "percent", 0, 100)
     LIGHT = _measure("Exterior.LightIntensity", 100.0, "percent", 0, 100)
-    VISIBILITY = _measure("Exterior.Visibility", 20_000.0, "m", 0, None, overlay=True)
-    WIND = _measure("Exterior.WindSpeed", 0.0, "km/h", 0, 400, overlay=True)
-    GLARE = _measure("Exterior.Glare", 0.0, "percent", 0, 100, overlay=True)
-    FINE_DUST = _measure("Exterior.FineDust", 8.0, "ug/m^3", 0, 2000, overlay=True)
+    VISIBILITY = _measure("Exterior.Visibility", 20_000.0, "m", 0, None)
+    WIND = _measure("Exterior.WindSpeed", 0.0, "km/h", 0, 400)
+    GLARE = _measure("Exterior.Glare", 0.0, "percent", 0, 100)
+    FINE_DUST = _measure("Exterior.FineDust", 8.0, "ug/m^3", 0, 2000)
     """Particles under 2.5 micrometres."""
 
 
@@ -419,17 +398,17 @@ class MEDIA:
 
     ACTION = _choice("Cabin.Infotainment.Media.Action", "STOP", "STOP PLAY")
     VOLUME = _set("Cabin.Infotainment.Media.Volume", 30.0, "percent", 0, 100, 5)
-    MUTED = _switch("Cabin.Infotainment.Media.IsMuted", overlay=True)
+    MUTED = _switch("Cabin.Infotainment.Media.IsMuted")
     SOURCE = _choice("Cabin.Infotainment.Media.Played.Source", "BLUETOOTH", "BLUETOOTH FM DAB USB INTERNET")
     SELECTED = _enter(Signal("Vehicle.Cabin.Infotainment.Media.SelectedURI", LeafKind.ACTUATOR, ""))
     """Chosen media; what plays now is ``PLAYED``."""
-    SHUFFLE = _switch("Cabin.Infotainment.Media.IsShuffleActive", overlay=True)
-    REPEAT = _switch("Cabin.Infotainment.Media.IsRepeatActive", overlay=True)
-    BASS = _set("Cabin.Infotainment.Media.Equalizer.Bass", 0.0, "dB", -10, 10, 1, overlay=True)
-    MIDDLE = _set("Cabin.Infotainment.Media.Equalizer.Middle", 0.0, "dB", -10, 10, 1, overlay=True)
-    TREBLE = _set("Cabin.Infotainment.Media.Equalizer.Treble", 0.0, "dB", -10, 10, 1, overlay=True)
-    BALANCE = _set("Cabin.Infotainment.Media.Balance", 0.0, "percent", -100, 100, 10, overlay=True)
-    FADER = _set("Cabin.Infotainment.Media.Fader", 0.0, "percent", -100, 100, 10, overlay=True)
+    SHUFFLE = _switch("Cabin.Infotainment.Media.IsShuffleActive")
+    REPEAT = _switch("Cabin.Infotainment.Media.IsRepeatActive")
+    BASS = _set("Cabin.Infotainment.Media.Equalizer.Bass", 0.0, "dB", -10, 10, 1)
+    MIDDLE = _set("Cabin.Infotainment.Media.Equalizer.Middle", 0.0, "dB", -10, 10, 1)
+    TREBLE = _set("Cabin.Infotainment.Media.Equalizer.Treble", 0.0, "dB", -10, 10, 1)
+    BALANCE = _set("Cabin.Infotainment.Media.Balance", 0.0, "percent", -100, 100, 10)
+    FADER = _set("Cabin.Infotainment.Media.Fader", 0.0, "percent", -100, 100, 10)
     PLAYED = _text("Cabin.Infotainment.Media.Played.URI")
     TRACK = _text("Cabin.Infotainment.Media.Played.Track")
     ARTIST = _text("Cabin.Infotainment.Media.Played.Artist")
@@ -438,9 +417,9 @@ class MEDIA:
 class CALL:
     """Incoming calls and messages."""
 
-    RINGING = _text("Cabin.Infotainment.Call.Ringing", overlay=True)
+    RINGING = _text("Cabin.Infotainment.Call.Ringing")
     """The caller; empty without one."""
-    PARTNER = _text("Cabin.Infotainment.Call.Partner", overlay=True)
+    PARTNER = _text("Cabin.Infotainment.Call.Partner")
     """The other party of the present call."""
     PHONE = _enter(
         Signal(
@@ -448,11 +427,10 @@ class CALL:
             LeafKind.SENSOR,
             "AWAY",
             allowed=("AWAY", "CRADLE", "HAND"),
-            overlay=True,
         )
     )
     """Where the phone that the driver uses is, as the interior camera sees it."""
-    UNREAD = _measure("Cabin.Infotainment.Message.Unread", 0.0, "", 0, None, overlay=True)
+    UNREAD = _measure("Cabin.Infotainment.Message.Unread", 0.0, "", 0, None)
     """Number of senders with unread messages."""
 
 
@@ -461,38 +439,38 @@ class VOICE:
 
     GUIDANCE = _choice("Cabin.Infotainment.Navigation.Mute", "UNMUTED", "UNMUTED ALERT_ONLY MUTED")
     GUIDANCE_VOLUME = _set("Cabin.Infotainment.Navigation.Volume", 50.0, "percent", 0, 100, 5)
-    CALL_VOLUME = _set("Cabin.Infotainment.Call.Volume", 50.0, "percent", 0, 100, 5, overlay=True)
-    TOUCH_SOUNDS = _switch("Cabin.Infotainment.HMI.IsTouchSoundActive", True, overlay=True)
+    CALL_VOLUME = _set("Cabin.Infotainment.Call.Volume", 50.0, "percent", 0, 100, 5)
+    TOUCH_SOUNDS = _switch("Cabin.Infotainment.HMI.IsTouchSoundActive", True)
 
 
 class HMI:
     """The display itself."""
 
     BRIGHTNESS = _set("Cabin.Infotainment.HMI.Brightness", 70.0, "percent", 0, 100, 10)
-    REAR_SCREEN = _set("Cabin.Infotainment.HMI.RearBrightness", 0.0, "percent", 0, 100, 10, overlay=True)
+    REAR_SCREEN = _set("Cabin.Infotainment.HMI.RearBrightness", 0.0, "percent", 0, 100, 10)
     """The screen for those behind; at 0 it is off."""
     DAY_NIGHT = _choice("Cabin.Infotainment.HMI.DayNightMode", "DAY", "DAY NIGHT")
-    DAY_NIGHT_AUTO = _switch("Cabin.Infotainment.HMI.IsDayNightAuto", True, overlay=True)
+    DAY_NIGHT_AUTO = _switch("Cabin.Infotainment.HMI.IsDayNightAuto", True)
     DISTANCE_UNIT = _choice("Cabin.Infotainment.HMI.DistanceUnit", "KILOMETERS", "KILOMETERS MILES")
     TEMPERATURE_UNIT = _choice("Cabin.Infotainment.HMI.TemperatureUnit", "C", "C F")
     PRESSURE_UNIT = _choice("Cabin.Infotainment.HMI.TirePressureUnit", "BAR", "BAR KPA PSI")
     TIME_FORMAT = _choice("Cabin.Infotainment.HMI.TimeFormat", "HR_24", "HR_24 HR_12")
-    CONTRAST = _measure("Cabin.Infotainment.HMI.ContrastRatio", 50.0, "ratio", 1, 2000, overlay=True)
+    CONTRAST = _measure("Cabin.Infotainment.HMI.ContrastRatio", 50.0, "ratio", 1, 2000)
     """Contrast of white to black under the light that falls on the display."""
-    LANGUAGE = _choice("Cabin.Infotainment.HMI.CurrentLanguage", "en", "en fr de ja", overlay=True)
+    LANGUAGE = _choice("Cabin.Infotainment.HMI.CurrentLanguage", "en", "en fr de ja")
 
 
 class LINK:
     """Connectivity and privacy."""
 
     ONLINE = _is("Connectivity.IsConnectivityAvailable", True)
-    MOBILE_DATA = _switch("Connectivity.Cellular.IsEnabled", True, overlay=True)
-    WIFI = _switch("Connectivity.WiFi.IsEnabled", overlay=True)
-    HOTSPOT = _switch("Connectivity.WiFi.IsHotspotActive", overlay=True)
-    BLUETOOTH = _switch("Connectivity.Bluetooth.IsEnabled", True, overlay=True)
-    SHARE_POSITION = _switch("Connectivity.Privacy.IsPositionShared", overlay=True)
-    SHARE_DRIVING = _switch("Connectivity.Privacy.IsDrivingDataShared", overlay=True)
-    VOICE_ASSISTANT = _switch("Connectivity.Privacy.IsMicrophoneEnabled", True, overlay=True)
+    MOBILE_DATA = _switch("Connectivity.Cellular.IsEnabled", True)
+    WIFI = _switch("Connectivity.WiFi.IsEnabled")
+    HOTSPOT = _switch("Connectivity.WiFi.IsHotspotActive")
+    BLUETOOTH = _switch("Connectivity.Bluetooth.IsEnabled", True)
+    SHARE_POSITION = _switch("Connectivity.Privacy.IsPositionShared")
+    SHARE_DRIVING = _switch("Connectivity.Privacy.IsDrivingDataShared")
+    VOICE_ASSISTANT = _switch("Connectivity.Privacy.IsMicrophoneEnabled", True)
 
 
 def named(path: str) -> Signal[Any]:

@@ -56,7 +56,6 @@ class _Stoppable(Processes):
     stop: threading.Event = field(default_factory=threading.Event)
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
-        """See ``Executor.wait``."""
         end_s = time.monotonic() + timeout_s
         while not self.stop.is_set():
             left_s = max(0.0, end_s - time.monotonic())

@@ -39,21 +39,17 @@ class Observers(Observer):
         self.looks = bool(self._lookers)
 
     def loading(self, scenario: Scenario) -> None:
-        """See ``Observer.loading``."""
         for each in self._observers:
             each.loading(scenario)
 
     def warming(self, scenario: str, done_s: float, total_s: float) -> None:
-        """See ``Observer.warming``."""
         for each in self._observers:
             each.warming(scenario, done_s, total_s)
 
     def looked(self, snapshot: RoadSnapshot) -> None:
-        """See ``Observer.looked``."""
         for each in self._lookers:
             each.looked(snapshot)
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """See ``Observer.moved``."""
         for each in self._observers:
             each.moved(moment, cockpit)

@@ -88,7 +88,6 @@ class Climate:
         self._within_km = within_km
 
     def report(self, lon_deg: float, lat_deg: float, local_time: datetime) -> Report:
-        """See ``WeatherSource.report``."""
         hour = local_time.astimezone(UTC).replace(minute=0, second=0, microsecond=0)
         solar_time = hour + timedelta(hours=lon_deg / 15)
         norm = climate_norm(lon_deg, lat_deg, solar_time.month, self._within_km)
@@ -192,7 +191,6 @@ class OpenMeteo:
         self._timeout_s = timeout_s
 
     def report(self, lon_deg: float, lat_deg: float, local_time: datetime) -> Report:
-        """See ``WeatherSource.report``."""
         hour = local_time.astimezone(UTC).replace(minute=0, second=0, microsecond=0, tzinfo=None)
         try:
             return Report(_weather(self._fetch(lon_deg, lat_deg, hour), hour), "Open-Meteo")

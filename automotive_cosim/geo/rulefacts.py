@@ -10,7 +10,7 @@ from __future__ import annotations
 import unicodedata
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from datetime import UTC, date, datetime, time
+from datetime import date, datetime, time
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -53,31 +53,6 @@ class RuleFacts:
     phenomena: frozenset[str] | None
     visibility_m: float | None
     after_sunset: bool | None
-
-
-COUNTRY_ROAD = RuleFacts(
-    local_time=datetime(2026, 11, 1, 12, tzinfo=UTC),
-    lon_deg=None,
-    lat_deg=None,
-    street="",
-    road_class="primary",
-    motorway=False,
-    dual_carriageway=False,
-    expressway=False,
-    built_up=False,
-    lit=None,
-    centre_line=True,
-    lanes=1,
-    tunnel=False,
-    speed_kmh=0.0,
-    standing=True,
-    oncoming_m=None,
-    leader_m=None,
-    phenomena=frozenset(),
-    visibility_m=20_000.0,
-    after_sunset=False,
-)
-"""The plainest facts: alone on a rural road without a name, at noon in clear weather; others differ from it."""
 
 
 @dataclass(frozen=True, slots=True)

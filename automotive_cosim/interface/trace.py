@@ -80,7 +80,6 @@ class Hash:
     """The trace's hash, updated step by step, so the end of a long episode need not wait for it."""
 
     def __init__(self, steps: Iterable[Step] = ()) -> None:
-        """Starts with these steps."""
         self._digest = hashlib.sha256()
         self.count = 0
         """Number of steps taken in so far."""

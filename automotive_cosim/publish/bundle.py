@@ -52,7 +52,7 @@ def write_bundle(folder: Path, out: Path) -> Contents:
         raise UserError(f"{folder} has no episodes yet ({found}); rerun its `eval` command")
     if found.problem:
         raise UserError(
-            f"{folder} cannot be bundled: {found.problem}; give --tasks-from the folder it was run with"
+            f"{folder} cannot be bundled: {found.problem}; set AUTOMOTIVE_COSIM_TASKS to the folder it was run with"
         )
     for name in (*manifest["plan"]["scenarios"], *manifest["plan"]["agents"]):
         if PurePosixPath(name).is_absolute() or PureWindowsPath(name).is_absolute():

@@ -6,6 +6,7 @@ that was asked to check it goes on.
 
 from __future__ import annotations
 
+import resource
 import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
@@ -25,7 +26,7 @@ T = TypeVar("T")
 
 
 class LimitedProcesses:
-    """Some processes with limits, on systems that have them (``setrlimit``)."""
+    """Some processes with limits (``setrlimit``)."""
 
     def __init__(self, path: Path, count: int = 1) -> None:
         """Starts nothing before the first call.
@@ -81,8 +82,6 @@ def _bytes(path: Path) -> int:
 def _limit_memory(more_bytes: int) -> None:
     if sys.platform != "linux":
         return
-    import resource
-
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
     most = pages * resource.getpagesize() + more_bytes
     hard = resource.getrlimit(resource.RLIMIT_AS)[1]
@@ -90,12 +89,9 @@ def _limit_memory(more_bytes: int) -> None:
 
 
 def _call(path: Path, seconds: int, what: Callable[..., T], given: tuple[Any, ...]) -> T:
-    if sys.platform != "win32":
-        import resource
-
-        hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
-        most = int(time.process_time()) + 1 + seconds
-        resource.setrlimit(resource.RLIMIT_CPU, (most if hard < 0 else min(most, hard), hard))
+    hard = resource.getrlimit(resource.RLIMIT_CPU)[1]
+    most = int(time.process_time()) + 1 + seconds
+    resource.setrlimit(resource.RLIMIT_CPU, (most if hard < 0 else min(most, hard), hard))
     try:
         return what(*given)
     except UserError as error:  # whose class may not be made again from its words

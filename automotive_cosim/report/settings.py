@@ -54,7 +54,3 @@ class ScreensSettings:
     """Language of the screens: en, fr, de or ja."""
     screen: str = "1280x720"
     """Size of the screen: 1280x720, 1920x720 or 1080x1920."""
-    width: Annotated[int, Ge(160), Le(1280)] = 400
-    """Width of each screen in pixels, 160 to 1280."""
-    each: Path | None = None
-    """Folder for a full-size picture of each screen."""

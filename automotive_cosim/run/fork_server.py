@@ -14,7 +14,6 @@ from automotive_cosim.agents.leftovers import SWEEP_S, children, end_all, strang
 from automotive_cosim.agents.process import AgentRequest
 from automotive_cosim.agents.wire import GoneError, Wire
 from automotive_cosim.errors import InfrastructureError
-from automotive_cosim.traffic.fork import CAN_FORK
 
 ANSWER_S = 300.0
 """Wall time in which a fork server has to answer. It starts in a second, or a minute on a crowded machine; one that
@@ -50,7 +49,7 @@ class ForkServer:
 
     def end(self, grace_s: float = 0.0) -> str:
         """Ends the agent's process and all that it has started; returns how it ended, if by itself."""
-        if self._wire is not None and CAN_FORK:
+        if self._wire is not None:
             try:
                 self._wire.send_object(("end", grace_s), END_S)
                 return str(self._wire.receive_json(grace_s + END_S).get("ended", ""))
@@ -65,7 +64,7 @@ class ForkServer:
             return
         for pid in tree(self._popen.pid):
             with suppress(ProcessLookupError, PermissionError):
-                os.kill(pid, signal.SIGTERM if sys.platform == "win32" else signal.SIGKILL)
+                os.kill(pid, signal.SIGKILL)
         self._popen.wait()
         self._wire.close()
         self._wire = self._popen = None
@@ -76,9 +75,7 @@ class ForkServer:
             take_orphans()
             self._known = frozenset(children())
             self._wire, self._popen = _started()
-        self._wire.send_object(("start" if CAN_FORK else "become", request), ANSWER_S)
-        if not CAN_FORK:
-            return self._wire
+        self._wire.send_object(("start", request), ANSWER_S)
         ours, theirs = socket.socketpair()
         with theirs:
             self._wire.send_socket(theirs)
@@ -104,22 +101,14 @@ def _started() -> tuple[Wire, subprocess.Popen[bytes]]:
     command = [sys.executable, "-P", "-m", "automotive_cosim.agents.process", str(theirs.fileno())]
     nowhere = subprocess.DEVNULL
     with theirs:
-        if sys.platform == "win32":
-            popen = subprocess.Popen(
-                command, stdin=subprocess.PIPE, stdout=nowhere, stderr=nowhere, env=environment
-            )
-            assert popen.stdin is not None
-            with popen.stdin as pipe:
-                pipe.write(theirs.share(popen.pid))
-        else:
-            popen = subprocess.Popen(
-                command,
-                stdin=nowhere,
-                stdout=nowhere,
-                stderr=nowhere,
-                env=environment,
-                cwd="/",
-                pass_fds=[theirs.fileno()],
-                start_new_session=True,
-            )
+        popen = subprocess.Popen(
+            command,
+            stdin=nowhere,
+            stdout=nowhere,
+            stderr=nowhere,
+            env=environment,
+            cwd="/",
+            pass_fds=[theirs.fileno()],
+            start_new_session=True,
+        )
     return Wire(ours), popen

@@ -7,6 +7,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from pathlib import Path
 from typing import Annotated, Any, Generic, TypeVar
 
@@ -125,7 +126,6 @@ class PlannedJob(ABC, Generic[SetupT]):
 
     @property
     def warm_up_weight(self) -> float:
-        """See ``Job``."""
         return warm_up_s(self.scenario) / WARM_UP_S
 
     @property
@@ -318,8 +318,12 @@ def failed(job: TrialJob, kind: str, why: str) -> EpisodeRow | DriveTrialRow:
 def file_name(exactly: Iterable[str]) -> str:
     """Readable words, then a digest of everything."""
     exactly = tuple(exactly)
-    words = "-".join(re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name) for word in exactly)
-    return f"{words[:150]}-{digest(exactly)[:8]}"
+    return f"{'-'.join(map(_readable, exactly))[:150]}-{digest(exactly)[:8]}"
+
+
+@lru_cache(4096)
+def _readable(word: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_.]+", "_", Path(word).name)
 
 
 def digest(value: object) -> str:

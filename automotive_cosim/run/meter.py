@@ -54,9 +54,7 @@ class Spent:
 class MeterHandle(Protocol):
     """The meter, wherever it is; it can be sent to a worker."""
 
-    def wait_s(self, model: str, per_minute: float) -> float:
-        """See ``Turns``."""
-        ...
+    def wait_s(self, model: str, per_minute: float) -> float: ...
 
     def spend(self, tokens: int, usd: float) -> None:
         """Notes what an answer has cost."""
@@ -86,18 +84,15 @@ class Meter(LocalTurns):
         self._tokens, self._usd = before.tokens, before.usd
 
     def spend(self, tokens: int, usd: float) -> None:
-        """See ``MeterHandle``."""
         with self._lock:
             self._tokens += tokens
             self._usd += usd
 
     def spent(self) -> Spent:
-        """See ``MeterHandle``."""
         with self._lock:
             return Spent(self._tokens, self._usd)
 
     def refusal(self) -> str:
-        """See ``MeterHandle``."""
         budget, spent = self._budget, self.spent()
         if budget.tokens is not None and spent.tokens >= budget.tokens:
             return f"the evaluation's budget is spent: {spent.tokens:,} of {budget.tokens:,} tokens"
@@ -190,20 +185,16 @@ class MeterClient:
         return MeterClient, (self._address, self._key)
 
     def wait_s(self, model: str, per_minute: float) -> float:
-        """See ``Turns``."""
         return float(self._asked("wait_s", model, per_minute))
 
     def spend(self, tokens: int, usd: float) -> None:
-        """See ``MeterHandle``."""
         self._asked("spend", tokens, usd)
 
     def spent(self) -> Spent:
-        """See ``MeterHandle``."""
         found: Spent = self._asked("spent")
         return found
 
     def refusal(self) -> str:
-        """See ``MeterHandle``."""
         return str(self._asked("refusal"))
 
     def _asked(self, name: str, *given: Any) -> Any:

@@ -110,7 +110,6 @@ class OnRay:
         return _Actor(opener, folder)
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
-        """See ``Executor.wait``."""
         ready: Sequence[Any]
         ready, _ = ray.wait(list(handles), num_returns=1, timeout=timeout_s, fetch_local=False)
         return ready

@@ -38,8 +38,6 @@ from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasking.task import Task
 from automotive_cosim.tasks import CATALOGUE
 
-PRESETS: Mapping[str, Json] = {"2026": {"limits": {"steps": 10}}}
-"""Values of a plan by the name of the preset: the authors' newer edition allows ten steps."""
 MOST_RUNS = 10_000_000
 """At a second each, four months."""
 SPARE_TRAFFIC = (1_000_001, 1_000_002)
@@ -189,7 +187,7 @@ class Plan(EvaluationSettings):
         if (most := prod(map(len, lists)) * self.repeats) > MOST_RUNS:
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
         every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives(), *self._single())
-        jobs = {job.id: job for job in every if self.split in (BOTH, job.split)}
+        jobs = {job.id: job for job in every if self.split == BOTH or self.split == job.split}
         return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
 
     def episodes(self) -> tuple[EpisodeJob, ...]:
@@ -383,18 +381,6 @@ def with_files(values: dict[str, Any]) -> dict[str, Any]:
     if not isinstance(given := values.get("prompt"), list):
         return values
     return values | {"prompt": [resolved(each) if isinstance(each, str) else each for each in given]}
-
-
-def with_preset(values: Mapping[str, Any], name: str) -> dict[str, Any]:
-    """The values of a plan, with those of a preset in place of its own.
-
-    Raises:
-        UnknownNameError: there is no such preset.
-    """
-    if name not in PRESETS:
-        raise UnknownNameError("preset", name, PRESETS)
-    preset = PRESETS[name]
-    return {**values, **preset, "limits": {**values.get("limits", {}), **preset["limits"]}}
 
 
 def make_plan(values: Mapping[str, Any]) -> Plan:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import multiprocessing
 import os
 import signal
-import sys
 import threading
 from collections.abc import Mapping, Sequence
 from contextlib import AbstractContextManager, suppress
@@ -22,7 +21,7 @@ from automotive_cosim.run.settings import Budget
 from automotive_cosim.run.stage import JobStage, telling
 
 if TYPE_CHECKING:
-    from multiprocessing.context import ForkServerContext, SpawnContext
+    from multiprocessing.context import ForkServerContext
 
 PRELOADED = ["automotive_cosim.agents", "pydantic"]
 """What workers have from the process that they are forked from: most of what they import, but nothing that depends
@@ -49,11 +48,9 @@ class Processes:
         return served(Meter(budget, before))
 
     def start(self, opener: Opener[J, R], folder: Path) -> _Process[J, R]:
-        """See ``Executor.start``."""
         return _Process(opener, folder)
 
     def wait(self, handles: Sequence[Any], timeout_s: float) -> Sequence[Any]:
-        """See ``Executor.wait``."""
         return connection.wait(handles, timeout_s)
 
 
@@ -111,11 +108,8 @@ class _Process(Generic[J, R]):
             end_all(lambda: strangers(self._known), ORPHANS_S)
 
 
-def _context() -> SpawnContext | ForkServerContext:
-    """On Linux workers are forked from a process that has imported most of the package, and start in a third of the
-    time; elsewhere each imports all."""
-    if sys.platform != "linux":
-        return multiprocessing.get_context("spawn")
+def _context() -> ForkServerContext:
+    """Workers are forked from a process that has imported most of the package, and start in a third of the time."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(PRELOADED)
     return context

@@ -135,7 +135,6 @@ class Recorder(AnyTrialObserver):
         return self._lines is not None
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """See ``Collector.moved``."""
         if self._collector is not None:
             self._collector.moved(moment, cockpit)
 

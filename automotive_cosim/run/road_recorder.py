@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import fcntl
 import gzip
 import json
 import math
-import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
@@ -38,9 +38,6 @@ from automotive_cosim.run.road import FORMAT
 from automotive_cosim.run.words import limit_kmh
 from automotive_cosim.traffic.base import Traffic
 from automotive_cosim.traffic.lookout import LOOK_RADIUS_M
-
-if sys.platform != "win32":
-    import fcntl
 
 AHEAD_M = 200.0
 """Lanes come into sight this much before they can have a vehicle on them; new ones are sought as often."""
@@ -298,12 +295,7 @@ class _ShapeIndex:
 
 
 def is_being_written(path: Path) -> bool:
-    """Whether a running program is writing that file; the system knows, however the program ends.
-
-    Always false on Windows.
-    """
-    if sys.platform == "win32":
-        return False
+    """Whether a running program is writing that file; the system knows, however the program ends."""
     try:
         with open_file(path) as file:
             fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
@@ -316,9 +308,8 @@ def is_being_written(path: Path) -> bool:
 
 def mark_as_written(file: IO[bytes]) -> None:
     """Marks a file as being written, until it is closed or the program ends."""
-    if sys.platform != "win32":
-        with suppress(OSError):  # some file systems have no locks; there it looks finished
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    with suppress(OSError):  # some file systems have no locks; there it looks finished
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def along(line: Sequence[tuple[float, float]], position_m: float) -> tuple[float, float]:

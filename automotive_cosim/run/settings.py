@@ -113,8 +113,6 @@ class PlanSettings:
 
     plan: Path | None = None
     """TOML file with the plan; options override it."""
-    preset: str | None = None
-    """A set of limits: 2026 is ten steps, as in the authors' newer edition."""
     out: Annotated[Path | None, Option(default="runs/eval-<digest of the plan>")] = None
     """Results folder; an existing one is resumed."""
     dry_run: bool = False

@@ -86,25 +86,20 @@ class StageObserver(TrialObserver[Any, Any]):
     _has_begun = False
 
     def loading(self, scenario: Scenario) -> None:
-        """See ``Observer.loading``."""
         doing(f"loading {scenario.name}", is_warm_up=True)
 
     def warming(self, scenario: str, done_s: float, total_s: float) -> None:
-        """See ``Observer.warming``."""
         warming_up(done_s, total_s)
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """See ``Observer.moved``."""
         if not self._has_begun:
             doing("driving to the hand-over")
 
     def begun(self, session: Any, shot: Shot) -> None:
-        """See ``TrialObserver.begun``."""
         self._has_begun = True
         doing("agent at work", "step 0")
 
     def stepped(self, shot: Shot) -> None:
-        """See ``TrialObserver.stepped``."""
         doing("agent at work", f"step {len(shot.session.steps) - 1}")
 
 
@@ -114,12 +109,10 @@ class DriveStageObserver(StageObserver):
     _session: Session | None = None
 
     def begun(self, session: Session, shot: Shot) -> None:
-        """See ``TrialObserver.begun``."""
         self._session = session
         doing("agent on watch", share=0.0)
 
     def moved(self, moment: Moment, cockpit: Cockpit) -> None:
-        """See ``Observer.moved``."""
         if self._session is not None and (most_s := self._session.setup.max_sim_s):
             done_s = min(self._session.seconds, most_s)
             doing("agent on watch", f"{done_s:.0f} of {most_s:.0f} s", share=done_s / most_s)

@@ -9,12 +9,12 @@ lock              held while an evaluation writes here
 
 from __future__ import annotations
 
+import fcntl
 import gzip
 import json
 import os
 import platform
 import subprocess
-import sys
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
@@ -352,18 +352,11 @@ def _locked(folder: Path) -> Iterator[None]:
     """Locks the folder; the system releases the lock however this process ends."""
     with (folder / "lock").open("w") as file:
         try:
-            if sys.platform == "win32":
-                import msvcrt
-
-                msvcrt.locking(file.fileno(), msvcrt.LK_NBLCK, 1)
-            else:
-                import fcntl
-
-                try:
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-                except BlockingIOError:  # perhaps a page is checking at this instant whether it is locked
-                    time.sleep(LOOK_S)
-                    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:  # perhaps a page is checking at this instant whether it is locked
+                time.sleep(LOOK_S)
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
         except OSError as error:
             raise UserError(
                 f"another evaluation is writing to {folder}; wait for it, or give --out another folder"

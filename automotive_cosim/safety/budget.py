@@ -101,9 +101,7 @@ class SearchLimit:
         return self.meter.spent()
 
     def wait_s(self, model: str, per_minute: float) -> float:
-        """See ``MeterHandle``."""
         return self.meter.wait_s(model, per_minute)
 
     def spend(self, tokens: int, usd: float) -> None:
-        """See ``MeterHandle``."""
         self.meter.spend(tokens, usd)

@@ -47,7 +47,6 @@ class RandomSampler:
     """Draws every point by itself."""
 
     def __init__(self, space: Space, budget: int, rng: np.random.Generator) -> None:
-        """Draws from ``rng``."""
         self._space, self._rng = space, rng
 
     def ask(self) -> tuple[SearchPoint, bool]:

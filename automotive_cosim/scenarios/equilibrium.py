@@ -71,8 +71,6 @@ def equilibrate(
     target: Path,
     options: EquilibriumSettings,
     tell: Callable[[AssignmentStep], None],
-    *,
-    force: bool = False,
 ) -> tuple[AssignmentStep, ...]:
     """Writes a copy of a scenario whose demand is the best step's; returns all steps.
 
@@ -81,14 +79,13 @@ def equilibrate(
         target: the copy's, new or empty; it appears once it is complete.
         options: when to end.
         tell: called after every step.
-        force: replace the target.
 
     Raises:
         UserError: the target exists, or the demand has stops or persons.
         ScenarioError: it is no scenario, or SUMO refuses it.
         SetupError: eclipse-sumo is not installed.
     """
-    variant.check_target(target, RECORD, force=force)
+    variant.check_target(target)
     scenario = opened(folder, options)
     configuration = read_configuration(scenario.config)
     variant.check_demand(configuration)

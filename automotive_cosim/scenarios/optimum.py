@@ -108,8 +108,6 @@ def compare(
     options: EquilibriumSettings,
     seeds: Sequence[int],
     tell: Callable[[OptimumStep], None],
-    *,
-    force: bool,
 ) -> SystemOptimum:
     """Looks for a system optimum from an equilibrium on, and drives both with seeds of their own.
 
@@ -119,7 +117,6 @@ def compare(
         options: as for the equilibrium; its gap is not used.
         seeds: with which both are driven, two or more, none of them that of the search.
         tell: called after every step.
-        force: replace the target.
 
     Raises:
         UserError: the target exists.
@@ -128,7 +125,7 @@ def compare(
     """
     if find_spec("scipy") is None:
         raise SetupError(f"a system optimum requires scipy: {install_hint('report')}")
-    variant.check_target(target, RECORD, force=force)
+    variant.check_target(target)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-optimum-") as scratch:
         path = Path(scratch) / ROUTES
         begun = _equilibrium(folder, options, Path(scratch))

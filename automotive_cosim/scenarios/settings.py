@@ -38,8 +38,6 @@ class OptimumSettings:
 
     out: Annotated[Path | None, Option(default="FOLDER_equilibrium")] = None
     """Folder to create."""
-    force: bool = False
-    """Replace an earlier equilibrium."""
     system_optimum: bool = False
     """Then search for routes with a lower total travel time, and compare."""
     seeds: Annotated[tuple[int, ...] | None, Option(default="the ten after --seed")] = None

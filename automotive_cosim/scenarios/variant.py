@@ -25,14 +25,14 @@ OF_GIVEN_DEMAND = frozenset({"scale", "device.rerouting.probability", "device.re
 """Options that would change a demand that is complete and keeps its routes."""
 
 
-def check_target(target: Path, record: str, *, force: bool) -> None:
-    """Refuses a folder that is not empty, unless it is to be replaced and has the record of such a copy.
+def check_target(target: Path) -> None:
+    """Refuses a folder that is not empty.
 
     Raises:
-        UserError: it must not be replaced.
+        UserError: it is not.
     """
-    if target.exists() and any(target.iterdir()) and not (force and (target / record).is_file()):
-        raise UserError(f"{target} exists; give --out another folder, or --force to replace what this command made")
+    if target.exists() and any(target.iterdir()):
+        raise UserError(f"{target} exists; give --out another folder, or delete that one")
 
 
 def check_demand(configuration: Configuration) -> None:

@@ -17,7 +17,6 @@ class StudyObservers:
     """Locks the files of what is observed; nothing is written into them."""
 
     def __init__(self, patience_s: float = PATIENCE_S) -> None:
-        """Starts without observers."""
         self._patience_s = patience_s
         self._marked: dict[Path, tuple[IO[bytes], threading.Timer]] = {}
         self._lock = threading.Lock()

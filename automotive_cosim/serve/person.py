@@ -127,7 +127,6 @@ class Preview:
     """
 
     def __init__(self) -> None:
-        """Nothing to show yet."""
         self._cockpit: Cockpit | None = None
         """A copy of the real one, ahead of it only by the waiting acts."""
 

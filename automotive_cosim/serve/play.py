@@ -400,7 +400,6 @@ class _ShownScreen:
     """The screen that the page shows, as a JPEG with a number that changes with it."""
 
     def __init__(self) -> None:
-        """Starts empty."""
         self.look = 0
         self.jpeg = b""
         self._screenshot: npt.NDArray[np.uint8] | None = None

@@ -158,7 +158,6 @@ class PlayedEpisodes(PlayedRows[EpisodeRow]):
         self._append(row)
 
     def plan_of(self, rows: Sequence[EpisodeRow]) -> Json:
-        """See ``PlayedRows.plan_of``."""
         return people_plan(
             sorted({row.task for row in rows}),
             sorted({row.model for row in rows}),
@@ -194,7 +193,6 @@ class PlayedDrives(PlayedRows[DriveTrialRow]):
         self._append(row)
 
     def plan_of(self, rows: Sequence[DriveTrialRow]) -> Json:
-        """See ``PlayedRows.plan_of``."""
         plan = Plan(
             drives=tuple(sorted({row.family for row in rows})),
             agents=(HUMAN,),

@@ -301,6 +301,7 @@ class WebServer(ThreadingHTTPServer):
     """Serves a site to anyone with its token."""
 
     daemon_threads = True
+    request_queue_size = 128  # of five, the rest of a burst is tried again after seconds
 
     def __init__(
         self,

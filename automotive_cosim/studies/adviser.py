@@ -42,7 +42,6 @@ class Quickest:
     """Advises the route that is quickest by the memory, if that is noticed."""
 
     def advise(self, day: AdvisedDay) -> Routes:
-        """See ``Adviser``."""
         known = day.memory
         return {
             trip.id: way

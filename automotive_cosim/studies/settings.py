@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import KW_ONLY, asdict, dataclass, fields
+from dataclasses import KW_ONLY, asdict, dataclass
 from typing import Annotated, ClassVar, Literal
 
 from annotated_types import Ge, Le, MinLen
@@ -139,29 +139,6 @@ class RerouteSettings(DrivenSettings):
     """Store the ego's position in every future, step by step."""
     agent_steps: Annotated[int, Ge(1), Le(100)] = 12
     """Maximum number of an agent's actions per decision."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class SuiteSettings(RerouteSettings):
-    """What a suite sets: one study of rerouting on several networks."""
-
-    scenarios: Annotated[tuple[str, ...], MinLen(1)] = ("grid", "paris_centre")
-    """Names or folders of scenarios, .sumocfg or .net.xml; shipped stands for all shipped ones."""
-    warm_ups_s: Annotated[tuple[WarmUpTime, ...], SCENARIOS_OWN] = ()
-    """Seconds of traffic before the first departure; each is a separate study."""
-    departures_s: Annotated[tuple[Annotated[float, Ge(0), Le(86_400)], ...], MinLen(1)] = (0.0, 300.0)
-    """When the ego departs, each time in its own copy of the traffic: seconds after the warm-up."""
-    policies: Annotated[tuple[str, ...], MinLen(1)] = ("never", "always", "delay:60", "best")
-    """Policies; the table shows always and best."""
-    per_drive: Annotated[int, Ge(1), Le(50)] = 2
-    """Maximum number of decisions per drive."""
-    replicates: Annotated[int, Ge(1), Le(100)] | Literal["auto"] = 2
-    """How many times each future is driven, or auto."""
-
-    def of_each(self) -> Json:
-        """What is the same in every study."""
-        own = ("scenario", "warm_up_s", "scenarios", "warm_ups_s")
-        return {each.name: getattr(self, each.name) for each in fields(self) if each.name not in own}
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

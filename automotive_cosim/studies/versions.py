@@ -63,22 +63,22 @@ class Pair:
 
 
 def pairs(first: Path, second: Path) -> tuple[Pair, ...]:
-    """The studies of two folders; of two suites, those of the same network, wherever it stands in the list.
+    """The studies of two folders; of several networks, those of the same one, wherever it stands in the list.
 
     Raises:
         UserError: a folder has no study, or the two have none in common.
     """
     if (first / "manifest.json").is_file() or (second / "manifest.json").is_file():
         return (_pair(f"{first} and {second}", first, second),)
-    ones, twos = _suite(first), _suite(second)
+    ones, twos = _networks(first), _networks(second)
     common = [name for name in ones if name in twos]
     if not common:
         raise UserError(f"{first} and {second} have no study in common; give two folders of `study`")
     return tuple(_pair(name, ones[name], twos[name]) for name in common)
 
 
-def _suite(folder: Path) -> dict[str, Path]:
-    """A suite's studies by the name of their network; with its place in the list, if there are several."""
+def _networks(folder: Path) -> dict[str, Path]:
+    """The studies by the name of their network; with its place in the list, if there are several of it."""
     paths = sorted(path.parent for path in folder.glob("*/manifest.json"))
     short = {path: path.name.lstrip("0123456789").removeprefix("_") for path in paths}
     often = Counter(short.values())

@@ -65,7 +65,7 @@ class MessageChannel:
         return pickle.loads(self._read(length, waits_on))
 
     def send_socket(self, connection: socket.socket) -> None:
-        """Sends a socket to the process on the other side (not on Windows)."""
+        """Sends a socket to the process on the other side."""
         try:
             socket.send_fds(self._socket, [b"s"], [connection.fileno()])
         except OSError as error:

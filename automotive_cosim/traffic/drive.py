@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from typing import Protocol
 
 from automotive_cosim.contracts import Answer, DrivingState, RoadRequest, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.traffic.base import Advance, Event
 from automotive_cosim.traffic.ego import Driver
 from automotive_cosim.traffic.instant import Instant
-
-Call = int | RoadRequest
-"""One call of a drive, for replays: a number of steps or a request."""
 
 
 class Stepper(Protocol):
@@ -23,17 +20,11 @@ class Stepper(Protocol):
         """The instant after one step, and its events; the last has its end set."""
         ...
 
-    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
-        ...
+    def alternatives(self, age_s: float) -> tuple[RouteOption, ...]: ...
 
-    def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
-        ...
+    def look(self) -> RoadSnapshot: ...
 
-    def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
-        ...
+    def shapes(self) -> RoadShapes: ...
 
 
 class EgoDrive:
@@ -76,25 +67,13 @@ class EgoDrive:
         return events if self.has_ended else events + driver.tick(self._now)
 
     def request(self, request: RoadRequest) -> Answer:
-        """See ``Traffic.request``."""
         return self._driver.request(request, self.state)
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
         return () if self._now.end is not None else self._road.alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
         return RoadSnapshot(self.state.time_s, (), ()) if self._now.end is not None else self._road.look()
 
     def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
         return self._road.shapes()
-
-    def replay(self, calls: Sequence[Call], beat: Callable[[], None] | None = None) -> None:
-        """Repeats the calls of an equal drive."""
-        for call in calls:
-            if isinstance(call, int):
-                self.advance(call * self._road.step_s, beat)
-            else:
-                self.request(call)

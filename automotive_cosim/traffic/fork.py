@@ -1,8 +1,7 @@
 """Simulations in processes of their own: warmed up once, then an exact copy for every drive and branch.
 
-Where the platform can fork, a copy is a fork, which takes milliseconds however long the warm-up took. Elsewhere
-(Windows, or with ``by_replay``) each copy is a new process that loads, warms up with the same seed and repeats the
-calls so far: the same states, only slower.
+A copy is a fork, which takes milliseconds however long the warm-up took. SUMO's files are reopened through
+``/proc``, which only Linux has.
 """
 
 from __future__ import annotations
@@ -27,23 +26,19 @@ from automotive_cosim.contracts import (
     RoadSnapshot,
     RouteOption,
 )
-from automotive_cosim.errors import SetupError, TrafficError
+from automotive_cosim.errors import NO_FORK, SetupError, TrafficError
 from automotive_cosim.formats.incidents import Closure, Incident
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
 from automotive_cosim.traffic.chance import Fresh, Trial
 from automotive_cosim.traffic.divert import Edges
-from automotive_cosim.traffic.drive import Call
 from automotive_cosim.traffic.flow import Advice, FlowSummary, SignalControl
 from automotive_cosim.traffic.options import Setup
 from automotive_cosim.traffic.profiles import profile
 from automotive_cosim.traffic.remote import TIMEOUT_S, RemoteProcess
 from automotive_cosim.traffic.steering import KEEPS_ROUTE
 from automotive_cosim.traffic.wire import Packed, pack_state, unpack_advance, unpack_snapshot, unpack_state
-
-CAN_FORK = sys.platform == "linux"
-"""Files are reopened through /proc, which only Linux has."""
 
 
 class Forked:
@@ -57,7 +52,6 @@ class Forked:
         *,
         allow_unprojected: bool = False,
         timeout_s: float = TIMEOUT_S,
-        by_replay: bool = not CAN_FORK,
         outputs: Path | None = None,
         flow_s: float | None = None,
         alike: Forked | None = None,
@@ -70,7 +64,6 @@ class Forked:
             progress: called with the progress of the warm-up.
             allow_unprojected: accept a network without projection, with lon and lat None.
             timeout_s: processor time without a sign of life after which a simulation counts as hung.
-            by_replay: make copies by replaying everything instead of forking.
             outputs: an empty folder for SUMO's own outputs; the warm traffic writes to ``warm`` in it, each drive
                 and branch to its ``drive-N``, from the start of the simulation, complete when it is closed.
             flow_s: write the flow on every edge in intervals of this length instead, from the end of the warm-up.
@@ -78,13 +71,13 @@ class Forked:
 
         Raises:
             ScenarioError: the scenario cannot be loaded.
-            SetupError: libsumo is missing or unsuitable.
+            SetupError: libsumo is missing or unsuitable, or the system is not Linux.
             TrafficError: the process died or hung.
         """
+        if sys.platform != "linux":
+            raise SetupError(NO_FORK)
         setup = Setup(scenario, seed, allow_unprojected, outputs, flow_s)
-        self._source: _Source = _Source(
-            setup, timeout_s, by_replay=by_replay, progress=progress, alike=None if alike is None else alike._source
-        )
+        self._source: _Source = _Source(setup, timeout_s, progress, None if alike is None else alike._source)
         self._is_closed = False
         self._fresh: Fresh | None = None
 
@@ -108,12 +101,7 @@ class Forked:
         Args:
             consumptions: also of what every vehicle emits and consumes.
             tracks: also of where the ego is.
-
-        Raises:
-            SetupError: the platform cannot fork.
         """
-        if self._source.by_replay:
-            raise SetupError("studies branch a running simulation, which requires fork: use Linux")
         self._source.warm_call("keep_ledger", consumptions, tracks)
 
     def run_on(self, duration_s: float) -> TrafficSummary:
@@ -156,13 +144,9 @@ class Forked:
 class RemoteTraffic:
     """One drive in a process of its own."""
 
-    def __init__(
-        self, source: _Source, process: RemoteProcess, plan: EgoPlan, calls: Sequence[Call], state: Packed
-    ) -> None:
+    def __init__(self, source: _Source, process: RemoteProcess, state: Packed) -> None:
         self._source = source
         self._process = process
-        self._plan = plan
-        self._calls = list(calls)
         self._state = unpack_state(state)
         self._started_s: float | None = None
         self.is_steered = False
@@ -185,37 +169,30 @@ class RemoteTraffic:
         return self._process.pid
 
     def start(self, duration_s: float) -> None:
-        """See ``Traffic.start``."""
         if self._started_s is None:
             self._process.send("advance", duration_s)
             self._started_s = duration_s
 
     def advance(self, duration_s: float) -> Advance:
-        """See ``Traffic.advance``."""
         self.start(duration_s)
         assert duration_s == self._started_s, "another advance was started"
         self._started_s = None
         advance = unpack_advance(self._process.receive())
         if advance.states:
             self._state = advance.states[-1]
-        self._remember(len(advance.states))
         return advance
 
     def request(self, request: RoadRequest) -> Answer:
-        """See ``Traffic.request``."""
         answer: Answer = self._process.call("request", request)
         kept = not answer.accepted or answer.reason == KEEPS_ROUTE
         self.is_steered = self.is_steered or not (isinstance(request, Reroute) and kept)
-        self._remember(request)
         return answer
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
         options: tuple[RouteOption, ...] = self._process.call("alternatives", age_s)
         return options
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
         return unpack_snapshot(self._process.call("look"))
 
     def shapes(self) -> RoadShapes:
@@ -295,19 +272,13 @@ class RemoteTraffic:
 
     def branch(self) -> RemoteTraffic:
         """An exact copy that is independent from this instant, even if this one is closed."""
-        if self._source.by_replay:
-            return self._source.departed(self._plan, self._calls)
-        return self._source.branched(self._process, self._plan, self._state)
+        return self._source.branched(self._process, self._state)
 
     def close(self) -> None:
         """See ``Traffic.close``; what it is settling is not waited for."""
         if self._is_settling:
             self._process.kill()
         self._process.close()
-
-    def _remember(self, call: Call) -> None:
-        if self._source.by_replay:
-            self._calls.append(call)
 
 
 class RemoteFlow:
@@ -368,12 +339,9 @@ class _Source:
         self,
         setup: Setup,
         timeout_s: float,
-        *,
-        by_replay: bool,
-        progress: WarmUpProgress | None = None,
-        alike: _Source | None = None,
+        progress: WarmUpProgress | None,
+        alike: _Source | None,
     ) -> None:
-        self.by_replay = by_replay
         self._setup = setup
         self._timeout_s = timeout_s
         self._drives = 0
@@ -384,9 +352,7 @@ class _Source:
         self._warm: RemoteProcess | None
         self.network: RoadNetwork
         if alike is None:
-            self._warm, self.network = RemoteProcess.start(
-                self._writing("drive-1" if by_replay else "warm"), progress, timeout_s
-            )
+            self._warm, self.network = RemoteProcess.start(self._writing("warm"), progress, timeout_s)
         else:
             with alike._lock:
                 self._warm = alike._copied()
@@ -396,18 +362,16 @@ class _Source:
                 self._warm.close()
                 raise
 
-    def departed(self, plan: EgoPlan, calls: Sequence[Call] = ()) -> RemoteTraffic:
-        """A drive in a process of its own, after the calls."""
+    def departed(self, plan: EgoPlan) -> RemoteTraffic:
+        """A drive in a process of its own."""
         with self._lock:
-            process = self._taken() if self.by_replay else self._copied()
+            process = self._copied()
         try:
             state = process.call("depart", plan)
-            if calls:
-                state = process.call("replay", calls)
         except BaseException:
             process.close()
             raise
-        return RemoteTraffic(self, process, plan, calls, state)
+        return RemoteTraffic(self, process, state)
 
     def flowing(self) -> RemoteFlow:
         """A copy without an ego."""
@@ -415,9 +379,9 @@ class _Source:
             process = self._copied()
             return RemoteFlow(process, self._outputs_of(self._drives))
 
-    def branched(self, process: RemoteProcess, plan: EgoPlan, state: DrivingState) -> RemoteTraffic:
+    def branched(self, process: RemoteProcess, state: DrivingState) -> RemoteTraffic:
         """A drive that continues from where another one is."""
-        return RemoteTraffic(self, process.fork(self._next_outputs()), plan, (), pack_state(state))
+        return RemoteTraffic(self, process.fork(self._next_outputs()), pack_state(state))
 
     def warm_call(self, name: str, *arguments: object) -> Any:
         """Calls the warm process itself, and any that takes its place."""
@@ -446,7 +410,7 @@ class _Source:
             return 0
         try:
             pages = Path(f"/proc/{self._warm.pid}/statm").read_text(encoding="ascii").split()[1]
-        except OSError:  # it has died, or the platform does not say
+        except OSError:  # it has died
             return 0
         return int(pages) * os.sysconf("SC_PAGE_SIZE")
 
@@ -464,8 +428,7 @@ class _Source:
         """The warm process, started again if it has died."""
         if self._warm is None or self._warm.is_broken:
             self.close()
-            name = f"drive-{self._drives + 1}" if self.by_replay else "warm"
-            self._warm, _ = RemoteProcess.start(self._writing(name), None, self._timeout_s)
+            self._warm, _ = RemoteProcess.start(self._writing("warm"), None, self._timeout_s)
             for call, arguments in self._warm_calls:
                 self._warm.call(call, *arguments)
         return self._warm
@@ -484,17 +447,6 @@ class _Source:
 
     def _outputs_of(self, drive: int) -> Path | None:
         return self._writing(f"drive-{drive}").outputs
-
-    def _taken(self) -> RemoteProcess:
-        """A warm process of its own."""
-        process, self._warm = self._ready(), None
-        self._drives += 1
-        return process
-
-
-def replayed(setup: Setup, plan: EgoPlan, calls: Sequence[Call]) -> RemoteTraffic:
-    """A drive in a new process that repeats one elsewhere."""
-    return _Source(setup, TIMEOUT_S, by_replay=True).departed(plan, calls)
 
 
 class Simulations:
@@ -529,7 +481,7 @@ class Simulations:
         """
         setup = Setup(scenario, seed, allow_unprojected)
         if setup not in self._kept:
-            same = (kept for other, kept in self._kept.items() if CAN_FORK and other.traffic == setup.traffic)
+            same = (kept for other, kept in self._kept.items() if other.traffic == setup.traffic)
             self._kept[setup] = Forked(
                 scenario, seed, progress, allow_unprojected=allow_unprojected, alike=next(same, None)
             )

@@ -104,12 +104,10 @@ class FutureDrive:
 
     @property
     def network(self) -> RoadNetwork:
-        """See ``Traffic.network``."""
         return self._future.begin.network
 
     @property
     def state(self) -> DrivingState:
-        """See ``Traffic.state``."""
         return self._state if self._own is None else self._own.state
 
     def start(self, duration_s: float) -> None:
@@ -118,7 +116,6 @@ class FutureDrive:
             self._own.start(duration_s)
 
     def advance(self, duration_s: float) -> Advance:
-        """See ``Traffic.advance``."""
         if self._own is not None:
             return self._own.advance(duration_s)
         passed = self._future.known(self._done, duration_s)
@@ -128,25 +125,20 @@ class FutureDrive:
         return Advance(tuple(state for state, _ in passed), tuple(each for _, events in passed for each in events))
 
     def request(self, request: RoadRequest) -> Answer:
-        """See ``Traffic.request``."""
         return self._now().request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
         if self._own is not None:
             return self._own.alternatives(age_s)
         return self._future.alternatives(self._done, age_s)
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
         return self._now().look()
 
     def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
         return self._future.begin.shapes()
 
     def branch(self) -> Traffic:
-        """See ``Traffic.branch``."""
         return FutureDrive(self._future, self._done, self._state) if self._own is None else self._own.branch()
 
     def close(self) -> None:

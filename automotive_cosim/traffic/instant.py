@@ -40,9 +40,7 @@ class Instant(Protocol):
         ...
 
     @property
-    def end(self) -> EgoEnd | None:
-        """See ``DrivingState.end``."""
-        ...
+    def end(self) -> EgoEnd | None: ...
 
     @property
     def state(self) -> DrivingState:
@@ -58,7 +56,6 @@ class KnownInstant:
 
     @property
     def time_s(self) -> float:
-        """See ``Instant``."""
         return self.state.time_s
 
     @property
@@ -132,12 +129,10 @@ class Seen:
 
     @property
     def limit_mps(self) -> float | None:
-        """See ``Instant``."""
         return self.lane.limit.mps
 
     @property
     def state(self) -> DrivingState:
-        """See ``Instant``."""
         if self.made is None:
             self.made = self._make()
         return self.made

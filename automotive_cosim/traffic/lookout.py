@@ -26,7 +26,6 @@ class Lookout:
     """Takes snapshots around one vehicle."""
 
     def __init__(self, sumo: LibSumo, vehicle: str) -> None:
-        """Reads nothing yet."""
         self._sumo = sumo
         self._vehicle = vehicle
         self._lights: Sequence[str] | None = None

@@ -68,7 +68,6 @@ class StagedVehicle(StagedIncident):
         self._since_s = incident.from_s
 
     def begin(self) -> str:
-        """See ``StagedIncident``."""
         incident = self._incident
         speed = f"{incident.speed_kmh / KMH_PER_MPS:.2f}"
         self._car = self._stage.car("scripted", incident.route, self._lane, incident.position_m, speed)
@@ -78,7 +77,6 @@ class StagedVehicle(StagedIncident):
         return ""
 
     def tick(self, local_time: datetime) -> str:
-        """See ``StagedIncident``."""
         sumo = self._stage.sumo
         if self._car in sumo.vehicle_ids():
             while self._left and self._left[0].at_s <= self._since_s:
@@ -163,7 +161,6 @@ class StagedBraking(StagedIncident):
         self._left_s = 0.0
 
     def tick(self, local_time: datetime) -> str:
-        """See ``StagedIncident``."""
         if self._left_s < 0:
             return ""
         if self._braking:
@@ -198,7 +195,6 @@ class StagedBraking(StagedIncident):
         return "the vehicle ahead brakes"
 
     def end(self) -> str:
-        """See ``StagedIncident``."""
         if self._braking:
             self._release()
         return ""
@@ -299,7 +295,6 @@ class StagedCutIn(StagedIncident):
         self._kept: _KeptInLane | None = None
 
     def tick(self, local_time: datetime) -> str:
-        """See ``StagedIncident``."""
         stage, incident = self._stage, self._incident
         if self._left_s is not None:
             if self._left_s > 1.0:
@@ -333,7 +328,6 @@ class StagedCutIn(StagedIncident):
         return "a vehicle cuts in ahead"
 
     def end(self) -> str:
-        """See ``StagedIncident``."""
         if self._car and (self._left_s is None or self._left_s > 0):
             self._release()
         if self._kept is not None:
@@ -358,7 +352,6 @@ class StagedCutOut(StagedIncident):
         self._kept: _KeptInLane | None = None
 
     def tick(self, local_time: datetime) -> str:
-        """See ``StagedIncident``."""
         if self._is_over:
             if self._kept is not None:
                 self._kept.tick()
@@ -420,7 +413,6 @@ class StagedCutOut(StagedIncident):
         return "the vehicle ahead cuts out before a standing car"
 
     def end(self) -> str:
-        """See ``StagedIncident``."""
         if self._standing and not self._is_over:
             with suppress(*self._stage.sumo.refusals):  # it may have left
                 self._release()
@@ -435,5 +427,4 @@ class StagedCutOut(StagedIncident):
         self._stage.sumo.vehicle.setSpeed(self._leader, -1.0)
 
     def reported(self, slow: Mapping[str, float]) -> RoadIncident | None:
-        """See ``StagedIncident``."""
         return self._standing if self._is_over else None

@@ -8,6 +8,7 @@ program that uses it; one that hangs is ended by its alarm.
 from __future__ import annotations
 
 import faulthandler
+import fcntl
 import gc
 import os
 import shutil
@@ -31,16 +32,13 @@ from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, f
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
 from automotive_cosim.traffic.divert import Edges, divert
-from automotive_cosim.traffic.drive import Call, EgoDrive
+from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.flow import Advice, Advisor, FlowSummary, SignalControl, control
 from automotive_cosim.traffic.ledger import Ledger, own_choice, settle
 from automotive_cosim.traffic.options import OUTPUTS, Setup
 from automotive_cosim.traffic.sumo import load_library
 from automotive_cosim.traffic.wire import Packed, pack_advance, pack_snapshot, pack_state
 from automotive_cosim.traffic.world import World
-
-if sys.platform != "win32":
-    import fcntl
 
 BEAT_S = 1.0
 """Wall time between two signs of life during a long call."""
@@ -173,12 +171,6 @@ class Server:
         """Reads the lanes and junctions."""
         assert self._drive is not None
         return self._drive.shapes()
-
-    def do_replay(self, calls: Sequence[Call]) -> Packed:
-        """Repeats the calls of a drive; returns the state it ends in."""
-        assert self._drive is not None
-        self._drive.replay(calls, self._beat)
-        return pack_state(self._drive.state)
 
     # --- calls of studies ---------------------------------------------------------------------------------
 
@@ -315,14 +307,12 @@ class Server:
         One that waits for good uses no processor time, so the wall clock ends it, much later.
         """
         limit_s = limit_s or self._hang_limit_s
-        if sys.platform != "win32":
-            signal.setitimer(signal.ITIMER_PROF, limit_s)
-            signal.setitimer(signal.ITIMER_REAL, WAITING_FACTOR * limit_s)
+        signal.setitimer(signal.ITIMER_PROF, limit_s)
+        signal.setitimer(signal.ITIMER_REAL, WAITING_FACTOR * limit_s)
 
     def _stop_alarm(self) -> None:
-        if sys.platform != "win32":
-            signal.setitimer(signal.ITIMER_PROF, 0)
-            signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        signal.setitimer(signal.ITIMER_REAL, 0)
 
 
 def reopen_files() -> None:
@@ -362,15 +352,11 @@ def copy_outputs(folder: Path) -> None:
 
 
 def main() -> None:
-    """Serves the connection whose descriptor is the first argument (on Windows, that comes through stdin)."""
+    """Serves the connection whose descriptor is the first argument."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     faulthandler.enable()
-    if sys.platform == "win32":
-        connection = socket.fromshare(sys.stdin.buffer.read())
-    else:
-        signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # no need to wait for children
-        connection = socket.socket(fileno=int(sys.argv[1]))
-    Server(MessageChannel(connection), float(sys.argv[2])).run()
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # no need to wait for children
+    Server(MessageChannel(socket.socket(fileno=int(sys.argv[1]))), float(sys.argv[2])).run()
     os._exit(0)  # without tearing down the simulation
 
 

@@ -65,7 +65,6 @@ class _PoorRoad:
     to_place_m: float = 0.0
 
     def lasts(self, view: RoadView) -> bool:
-        """See ``AdviceReason``."""
         return view.is_poor
 
 
@@ -77,7 +76,6 @@ class _LowerLimit:
     to_place_m: float
 
     def lasts(self, view: RoadView) -> bool:
-        """See ``AdviceReason``."""
         if view.limit_mps == self.limit_mps:
             self.to_place_m = 0.0
         elif self.to_place_m > 0.0 and view.next_limit_mps == self.limit_mps and view.to_limit_m is not None:
@@ -96,7 +94,6 @@ class _StandingAhead:
     to_place_m: float
 
     def lasts(self, view: RoadView) -> bool:
-        """See ``AdviceReason``."""
         away_m = view.to_standing_m
         if self.to_place_m > 0.0 and away_m is not None and away_m <= self.to_place_m + PASSED_M:
             self.to_place_m = away_m
@@ -112,7 +109,6 @@ class _JamAhead:
     to_place_m: float
 
     def lasts(self, view: RoadView) -> bool:
-        """See ``AdviceReason``."""
         self.to_place_m = view.to_jam_m or 0.0
         return view.is_near(view.to_jam_m)
 

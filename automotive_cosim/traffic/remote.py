@@ -221,7 +221,7 @@ class RemoteProcess:
         """Ends the process at once."""
         if self._popen is not None:
             self._popen.kill()
-        elif self.pid and sys.platform != "win32":
+        elif self.pid:
             with suppress(ProcessLookupError):
                 os.kill(self.pid, signal.SIGKILL)
 
@@ -259,14 +259,6 @@ def _popen(connection: socket.socket, complaints: int, alarm_s: float) -> subpro
         str(connection.fileno()),
         str(alarm_s),
     ]
-    if sys.platform == "win32":
-        process = subprocess.Popen(
-            command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=complaints
-        )
-        assert process.stdin is not None
-        with process.stdin as pipe:
-            pipe.write(connection.share(process.pid))
-        return process
     return subprocess.Popen(
         command,
         env=environment,

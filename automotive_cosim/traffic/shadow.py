@@ -57,20 +57,16 @@ class SharedTraffic:
 
     @property
     def network(self) -> RoadNetwork:
-        """See ``Traffic.network``."""
         return self._traffic.network
 
     @property
     def state(self) -> DrivingState:
-        """See ``Traffic.state``."""
         return self._traffic.state
 
     def start(self, duration_s: float) -> None:
-        """See ``Traffic.start``."""
         self._traffic.start(duration_s)
 
     def advance(self, duration_s: float) -> Advance:
-        """See ``Traffic.advance``."""
         passed = self._traffic.advance(duration_s)
         for shadow in self._shadows:
             shadow.see(passed)
@@ -83,18 +79,15 @@ class SharedTraffic:
         return self._traffic.request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
-        """See ``Traffic.alternatives``."""
         options = self._traffic.alternatives(age_s)
         for shadow in self._shadows:
             shadow.hear(self.state.time_s, age_s, options)
         return options
 
     def look(self) -> RoadSnapshot:
-        """See ``Traffic.look``."""
         return self._traffic.look()
 
     def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
         return self._traffic.shapes()
 
     def branch(self) -> SharedTraffic:
@@ -131,12 +124,10 @@ class Shadow:
 
     @property
     def network(self) -> RoadNetwork:
-        """See ``Traffic.network``."""
         return self._shared.network
 
     @property
     def state(self) -> DrivingState:
-        """See ``Traffic.state``."""
         return self._state
 
     def start(self, duration_s: float) -> None:
@@ -187,7 +178,6 @@ class Shadow:
         return self._now().look()
 
     def shapes(self) -> RoadShapes:
-        """See ``Traffic.shapes``."""
         return self._shared.shapes()
 
     def branch(self) -> Traffic:
@@ -199,7 +189,6 @@ class Shadow:
         return self._now().branch()
 
     def close(self) -> None:
-        """See ``Traffic.close``."""
         self._shared.dismiss(self)
         if self._own is not None:
             self._own.close()

@@ -79,7 +79,6 @@ class SumoPedals:
         sumo.set_max_speed(ego_id, FASTEST_MPS)
 
     def set_speed_factor(self, factor: float) -> None:
-        """See ``pedals.Pedals``."""
         self._factor = factor
         self._sumo.set_speed_factor(self._ego, factor)
 
@@ -88,19 +87,15 @@ class SumoPedals:
         self._top_mps = speed_mps
 
     def set_headway(self, headway_s: float) -> None:
-        """See ``pedals.Pedals``."""
         self._sumo.set_headway(self._ego, headway_s)
 
     def set_imperfection(self, imperfection: float) -> None:
-        """See ``pedals.Pedals``."""
         self._sumo.set_imperfection(self._ego, imperfection)
 
     def set_overtaking(self, readiness: float) -> None:
-        """See ``pedals.Pedals``."""
         self._sumo.set_parameter(self._ego, "laneChangeModel.lcSpeedGain", f"{readiness:g}")
 
     def set_grip(self, friction: float) -> None:
-        """See ``pedals.Pedals``."""
         hardest_mps2 = friction * G_MPS2
         service_mps2 = min(self._service_mps2, hardest_mps2)
         vehicle = self._sumo.vehicle
@@ -109,7 +104,6 @@ class SumoPedals:
         vehicle.setEmergencyDecel(self._ego, hardest_mps2)
 
     def set_traction(self, friction: float) -> None:
-        """See ``pedals.Pedals``."""
         self._sumo.vehicle.setAccel(self._ego, min(self._own_mps2, friction * G_MPS2 / 2))
 
     def set_braking(self, deceleration_mps2: float) -> None:
@@ -117,7 +111,6 @@ class SumoPedals:
         self._service_mps2 = deceleration_mps2
 
     def set_hazards(self, on: bool) -> None:
-        """See ``pedals.Pedals``."""
         self._sumo.set_signals(self._ego, HAZARD_SIGNAL if on else -1)
 
     def apply(self) -> None:
@@ -163,7 +156,6 @@ class SumoPedals:
         raise RefusedError(say("there is no place to stop on the rest of the route"))
 
     def is_parked(self) -> bool:
-        """See ``pedals.Pedals``."""
         return bool(self._sumo.vehicle.isStoppedParking(self._ego))
 
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
@@ -178,7 +170,6 @@ class SumoPedals:
         return True
 
     def standing_ahead_m(self) -> float | None:
-        """See ``pedals.Pedals``."""
         return self._sensor.route.standing_ahead_m(self._sensor.position_m)
 
     def leave_corridor(self, leave: bool) -> str:

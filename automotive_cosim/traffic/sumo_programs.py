@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import subprocess
-import sys
 from collections.abc import Callable, Mapping, Sequence
 from importlib.metadata import Distribution, PackageNotFoundError, distribution, version
 from pathlib import Path
@@ -42,7 +41,7 @@ def program(name: str) -> Path:
     Raises:
         SetupError: it is not installed.
     """
-    path = home() / "bin" / (f"{name}.exe" if sys.platform == "win32" else name)
+    path = home() / "bin" / name
     if not path.is_file():
         raise SetupError(f"eclipse-sumo is installed without {name}; install it again: {INSTALL}")
     return path

@@ -403,7 +403,6 @@ class _EgoRoad:
         """The newest instant."""
 
     def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
-        """See ``drive.Road``."""
         self._pedals.apply()
         sampled = self._world.step()
         end, events = self._mishaps()
@@ -429,15 +428,12 @@ class _EgoRoad:
         return self.now, events
 
     def alternatives(self, age_s: float) -> tuple[RouteOption, ...]:
-        """See ``drive.Road``."""
         return self._pedals.alternatives(age_s)
 
     def look(self) -> RoadSnapshot:
-        """See ``drive.Stepper``."""
         return self._lookout.look()
 
     def shapes(self) -> RoadShapes:
-        """See ``drive.Stepper``."""
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
 
     def _go_on(self, round_: Round) -> tuple[Event, ...]:

@@ -77,7 +77,6 @@ def test_what_is_kept_can_be_shown(cli, tmp_path):
     text = cli("show", "memory", "kept.sqlite").out
     assert kept[0]["goal"] in text
     assert "2 of 2" in text
-    assert cli("show", "memory", "kept.sqlite", "--place", "Nowhere").out == "0 strategies\n"
 
 
 def test_a_missing_memory_is_told_and_not_made(cli, tmp_path):

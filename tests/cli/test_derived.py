@@ -40,7 +40,7 @@ from automotive_cosim.run.settings import (
 from automotive_cosim.safety.settings import SearchOrder, SearchSettings
 from automotive_cosim.scenarios.settings import EquilibriumSettings, OptimumSettings
 from automotive_cosim.serve.settings import ServeSettings
-from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings, SuiteSettings
+from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
 from tests.laws import over
 
 COMMANDS = (
@@ -59,12 +59,11 @@ COMMANDS = (
     ("search", SearchSettings, set()),
     ("search", ExecutorSettings, set()),
     ("scenarios import", ImportOptions, set()),
-    ("scenarios download", DownloadLimits, set()),
+    ("scenarios download", DownloadLimits, {"tries"}),
     ("scenarios equilibrate", EquilibriumSettings, set()),
     ("scenarios equilibrate", OptimumSettings, set()),
     ("scenarios calibrate", CalibrationOptions, set()),
-    ("study reroute", RerouteSettings, set()),
-    ("study suite", SuiteSettings, {"scenario", "warm_up_s"}),
+    ("study reroute", RerouteSettings, {"scenario", "warm_up_s", "limit_s", "agent_steps"}),
     ("study congestion", CongestionSettings, set()),
     ("study days", DaysSettings, set()),
     ("tasks validate", ProofSettings, set()),

@@ -78,9 +78,10 @@ def test_a_plain_installation_sets_no_arabic_and_is_ready_all_the_same(monkeypat
     assert "libfribidi0" in found.fix
 
 
-def test_a_system_without_fork_is_limited_not_refused(monkeypatch):
+def test_a_system_without_fork_is_told_what_to_use(monkeypatch):
     monkeypatch.delattr(os, "fork")
-    assert doctor._processes().state is doctor.Health.LIMITED
+    found = doctor._processes()
+    assert (found.state, found.fix) == (doctor.Health.MISSING, "use Linux; on Windows WSL, on macOS a container")
 
 
 def test_little_memory_and_little_disk_are_limits(monkeypatch):

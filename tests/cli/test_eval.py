@@ -90,7 +90,6 @@ def test_an_agent_that_fails_is_judged_and_told(cli, tmp_path):
         (("--agents", "t3a", "--pictures", "some"), "no choice of pictures"),
         (("--agents", "t3a", "--workers", "0"), "whole number"),
         (("--agents", "t3a", "--executor", "rya"), "did you mean 'ray'?"),
-        (("--agents", "t3a", "--ray-address", "10.0.0.4:6379"), "--ray-address requires --executor ray"),
         (("--agents", "t3a", "--ray-send", "."), "--ray-send requires --executor ray"),
         (("--agents", "t3a", "--scenarios", ""), "--scenarios is empty"),
         (("--plan", "none.toml"), "none.toml"),
@@ -125,8 +124,9 @@ def test_a_folder_that_cannot_be_written_is_one_line(cli):
 
 
 @pytest.mark.sumo
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
-@pytest.mark.parametrize("in_background", [False, True], ids=["ctrl-c", "nohup, then kill"])
+@pytest.mark.parametrize(
+    "in_background", [False, pytest.param(True, marks=pytest.mark.proof)], ids=["ctrl-c", "nohup, then kill"]
+)
 def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_background):
     """In the background SIGINT is ignored from the start, and stays so: Ctrl-C is for another program."""
     process = program(
@@ -139,7 +139,7 @@ def test_a_stop_says_how_to_go_on(program, tmp_path, until, session, in_backgrou
     def episodes() -> int:
         return lines.read_bytes().count(b"\n") if lines.is_file() else 0
 
-    until(lambda: episodes() >= 2)
+    until(lambda: episodes() >= 1)
     os.killpg(process.pid, signal.SIGINT)
     if in_background:
         ended = episodes()

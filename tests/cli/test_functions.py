@@ -3,8 +3,6 @@
 import json
 import re
 
-import pytest
-
 from automotive_cosim.cockpit.registry import by_any_name
 
 
@@ -16,20 +14,19 @@ def test_it_lists_every_function_in_words_and_in_the_form_of_each_api(cli):
     assert ran.out.splitlines()[-1].startswith(f"{len(every)} functions")
     assert 60 <= len(every) <= 90
     for option, schema, inside in (
-        ("--openai", "parameters", "function"),
-        ("--mcp", "inputSchema", ""),
-        ("--anthropic", "input_schema", ""),
+        ("openai", "parameters", "function"),
+        ("mcp", "inputSchema", ""),
+        ("anthropic", "input_schema", ""),
     ):
-        told = json.loads(cli("show", "functions", option).out)
+        told = json.loads(cli("show", "functions", "--tools", option).out)
         flat = [each[inside] if inside else each for each in told]
         assert [(each["name"], each[schema]) for each in flat] == [(e["name"], e["parameters"]) for e in every]
 
 
-@pytest.mark.parametrize("options", [("--json", "--mcp"), ("--openai", "--anthropic")])
-def test_two_forms_are_refused(cli, options):
-    ran = cli("show", "functions", *options)
+def test_an_unknown_form_is_refused(cli):
+    ran = cli("show", "functions", "--tools", "opnai")
     assert (ran.code, ran.out) == (2, "")
-    assert "give one of them" in ran.err
+    assert "did you mean 'openai'" in ran.err
 
 
 def test_every_name_that_opens_an_app_is_listed(cli):

@@ -3,7 +3,6 @@ import subprocess
 import sys
 
 import pytest
-from PIL import Image
 from typer.main import get_command
 
 from automotive_cosim import __version__
@@ -71,23 +70,6 @@ def test_a_task_is_shown_with_its_words_and_halves(task, cli):
     assert text.count("  won by    ") == len(CATALOGUE[task].halves)
 
 
-@pytest.mark.sumo
-@pytest.mark.parametrize("task", ["hvac_fan_max", "road_over_the_line"])
-def test_a_picture_shows_the_reference_solution(cli, tmp_path, task):
-    path = tmp_path / "task.png"
-    assert f"{path} shows the reference solution" in cli("tasks", "show", task, "--picture", str(path)).out
-    with Image.open(path) as picture:
-        lines = sum(-(-(len(CATALOGUE[task].half(half).moves) + 2) // 3) for half in CATALOGUE[task].halves)
-        assert picture.width > 3 * 640
-        assert picture.height >= lines * 360
-
-
-def test_a_picture_that_cannot_be_written_is_refused_at_once(cli, tmp_path):
-    ran = cli("tasks", "show", "hvac_fan_max", "--picture", str(tmp_path / "task.txt"))
-    assert (ran.code, ran.out) == (2, "")
-    assert "name it .webp, .png, .jpg" in ran.err
-
-
 @pytest.mark.parametrize(
     ("error", "code"),
     [(TriggerNotReachedError("the light\nwas red"), 3), (KeyboardInterrupt(), 130)],
@@ -106,7 +88,7 @@ def test_other_ends_have_codes_of_their_own(cli, monkeypatch, error, code):
 
 OTHERS = {
     ("a2a",), ("mcp",), ("serve",), ("measures",), ("report",), ("show", "screens"), ("show", "schema"),
-    ("tasks", "export"), ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
+    ("scenarios", "render"), ("scenarios", "import"), ("scenarios", "day"),
     ("scenarios", "download"), ("publish", "bundle"), ("publish", "leaderboard"),
     ("export",),
 }  # fmt: skip

@@ -1,3 +1,4 @@
+import io
 import json
 import os
 import re
@@ -8,7 +9,6 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from PIL import Image
 
 from automotive_cosim.tasks import CATALOGUE
 
@@ -22,7 +22,7 @@ KEYS = {
 PROGRAM = (sys.executable, "-c", "from automotive_cosim.cli.main import main; main()")
 
 
-def test_json_prints_one_object_and_the_record_has_a_film_of_every_step(cli, tmp_path):
+def test_json_prints_one_object_and_the_record_is_whole(cli, tmp_path):
     ran = cli("run", "--json", *GRID, "--agent", "oracle")
     assert ran.code == 0
     assert ran.err == ""
@@ -34,11 +34,6 @@ def test_json_prints_one_object_and_the_record_has_a_film_of_every_step(cli, tmp
     assert folder.parent == tmp_path / "runs"
     left = {path.name for path in folder.iterdir()}
     assert left == {"trial.json", "steps.jsonl", "screenshots", "road.jsonl.gz", "episode.webp", "summary.html"}
-    film = folder / "episode.webp"
-    assert film.stat().st_size < 5e6
-    with Image.open(film) as image:
-        assert image.n_frames > told["steps"] + 1
-        assert image.size == (960, 540)
 
 
 def test_without_a_terminal_it_tells_in_plain_lines(cli):
@@ -87,17 +82,14 @@ def test_a_trigger_out_of_reach_is_no_failure_and_leaves_no_folder(cli, tmp_path
     assert not list(tmp_path.iterdir())
 
 
-def test_a_terminal_that_knows_ascii_alone_gets_the_whole_record(tmp_path):
-    done = subprocess.run(
-        [*PROGRAM, "run", *GRID, "--agent", "oracle", "--out", "out"],
-        cwd=tmp_path, env=os.environ | {"PYTHONIOENCODING": "ascii"}, capture_output=True, check=True,
-    )  # fmt: skip
-    assert done.stderr == b""
-    assert b"the driver says: ?" in done.stdout
+def test_a_terminal_that_knows_ascii_alone_gets_the_whole_record(cli, tmp_path, monkeypatch):
+    monkeypatch.setattr("sys.stdout", io.TextIOWrapper(io.FileIO(1, "w", closefd=False), encoding="ascii"))
+    done = cli("run", *GRID, "--agent", "oracle", "--out", "out")
+    assert (done.code, done.err) == (0, "")
+    assert "the driver says: ?" in done.out
     assert (tmp_path / "out" / "summary.html").is_file()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
 def test_ctrl_c_while_the_command_line_loads_ends_it_in_silence(program, tmp_path):
     (tmp_path / "gymnasium.py").write_text(
         "import os, signal\nos.kill(os.getpid(), signal.SIGINT)\nwhile True: pass\n"
@@ -135,12 +127,17 @@ def long_run(program, tmp_path, until):
     return process
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for another process")
-@pytest.mark.parametrize("to_group", [True, False], ids=["as a terminal does", "to the program alone"])
-def test_ctrl_c_keeps_what_was_recorded_and_ends_every_process(long_run, tmp_path, to_group, until, session):
-    (os.killpg if to_group else os.kill)(long_run.pid, signal.SIGINT)
+@pytest.mark.parametrize(
+    ("send", "what", "code"),
+    [(os.killpg, signal.SIGINT, 130), (os.kill, signal.SIGTERM, 143)],
+    ids=["ctrl-c, to all", "a request to end, to the program alone"],
+)
+def test_a_signal_keeps_what_was_recorded_and_ends_every_process(
+    long_run, tmp_path, send, what, code, until, session
+):
+    send(long_run.pid, what)
     _, err = long_run.communicate(timeout=30)
-    assert long_run.returncode == 130
+    assert long_run.returncode == code
     assert "Traceback" not in err
     assert "out" in err
     lines = (tmp_path / "out" / "steps.jsonl").read_text(encoding="utf-8").splitlines()
@@ -161,9 +158,8 @@ def test_a_kill_keeps_the_steps_and_leaves_no_process(long_run, tmp_path, until,
     until(lambda: not session(long_run.pid))
 
 
-@pytest.mark.usefixtures("warm")
 def test_the_lines_of_a_drive_are_in_the_order_of_their_times(cli, tmp_path):
-    (tmp_path / "wait.jsonl").write_text('{"action_type": "wait", "seconds": 10}\n' * 5, encoding="utf-8")
+    (tmp_path / "wait.jsonl").write_text('{"action_type": "wait", "seconds": 10}\n' * 2, encoding="utf-8")
     told = cli("run", "--scenario", "grid", "--task", "hvac_fan_max", "--actions", "wait.jsonl").out
     live = told.partition("the driver says")[2].partition("not solved")[0]
     times = [float(found) for found in re.findall(r"^ *([+-]\d+\.\d) s  ", live, re.MULTILINE)]
@@ -173,15 +169,17 @@ def test_the_lines_of_a_drive_are_in_the_order_of_their_times(cli, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("act", "said"), [("raise KeyError('seat')", "raised KeyError: 'seat'"), ("return None", "NoneType")]
+    ("act", "said", "more", "told"),
+    [
+        ("raise KeyError('seat')", "raised KeyError: 'seat'", (), "out"),
+        ("return None", "NoneType", ("--json",), "err"),
+    ],
 )
-def test_an_agent_that_gives_no_action_is_told_with_the_reason(cli, tmp_path, monkeypatch, act, said):
+def test_an_agent_that_gives_no_action_is_told_with_the_reason(cli, tmp_path, act, said, more, told):
     name = f"none_{act[:5]}"
     (tmp_path / f"{name}.py").write_text(
         f"class Agent:\n    def reset(self, goal): ...\n    def act(self, seen): {act}\n"
     )
-    for more, told in (((), "out"), (("--json", "--force"), "err")):
-        ran = cli("run", *more, *GRID, "--agent", f"{name}:Agent", "--out", "out", "--most-steps", "2")
-        lines = [line for line in getattr(ran, told).splitlines() if said in line]
-        assert len(lines) == 1, ran
-        assert "gave no action in 2 steps, at first: " in lines[0]
+    ran = cli("run", *more, *GRID, "--agent", f"{name}:Agent", "--out", "out", "--most-steps", "2")
+    (line,) = [line for line in getattr(ran, told).splitlines() if said in line]
+    assert "gave no action in 2 steps, at first: " in line

@@ -41,14 +41,17 @@ def test_no_gps_runs_to_the_end_with_map_film_and_page(cli, flat, tmp_path):
     result = _episode(cli(*RUN, "--scenario", flat, "--no-gps", "--out", "out"))
     assert result["success"]
     for name in ("trial.json", "steps.jsonl", "episode.webp", "summary.html"):
-        assert (tmp_path / "out" / name).stat().st_size > 1000
+        assert 1000 < (tmp_path / "out" / name).stat().st_size < 5e6
+    with Image.open(tmp_path / "out/episode.webp") as film:
+        assert film.size == (960, 540)
+        assert film.n_frames > result["steps"] + 1
     steps = [json.loads(line) for line in (tmp_path / "out" / "steps.jsonl").read_text().splitlines()]
     assert all(step["gps"] is None for step in steps)
     assert all(step["context"].startswith("Place: unknown") for step in steps)
     assert json.loads((tmp_path / "out" / "trial.json").read_text())["manifest"]["setup"]["gps"] is False
 
 
-@pytest.mark.sumo
+@pytest.mark.usefixtures("warm")
 def test_a_plain_network_runs_and_says_what_was_assumed(cli, flat):
     ran = cli(*RUN, "--scenario", flat / "grid.net.xml")
     result = _episode(ran)
@@ -60,7 +63,7 @@ def test_a_plain_network_runs_and_says_what_was_assumed(cli, flat):
     assert "no traffic of its own" in ran.err
 
 
-@pytest.mark.sumo
+@pytest.mark.usefixtures("warm")
 def test_origin_and_places(cli):
     here = _episode(cli(*RUN, "--scenario", "grid"))
     there = _episode(cli(*RUN, "--scenario", "grid", "--origin", "-3.7,40.4"))

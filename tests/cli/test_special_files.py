@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import signal
 import socket
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -18,7 +17,7 @@ from automotive_cosim.cli.main import app
 from automotive_cosim.errors import UserError
 from tests.laws import over
 
-pytestmark = [pytest.mark.sumo, pytest.mark.skipif(sys.platform == "win32", reason="has no such files")]
+pytestmark = pytest.mark.sumo
 
 PATIENCE_S = 30
 """A command that waits for a writer waits for ever; nothing here takes more than a second of its own."""

@@ -175,12 +175,10 @@ def test_a_reader_that_has_had_enough_is_no_failed_check() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(os.name != "posix", reason="names of files are text on Windows")
-@pytest.mark.parametrize("name", ["gr\u00f6\u00dfe", "gr\udcf6"])
-def test_a_name_of_any_letters_ends_without_a_traceback(tmp_path: Path, name: str) -> None:
+def test_a_name_of_any_letters_ends_without_a_traceback(tmp_path: Path) -> None:
     surroundings = {**os.environ, "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"}
     done = subprocess.run(
-        [sys.executable, "-m", "automotive_cosim_main", "report", tmp_path / name],
+        [sys.executable, "-m", "automotive_cosim_main", "report", tmp_path / "gr\u00f6\u00dfe\udcf6"],
         capture_output=True,
         env=surroundings,
     )

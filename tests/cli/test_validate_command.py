@@ -20,7 +20,7 @@ from automotive_cosim.proof.settings import PartOf
         (("--part", "11/10"), "not a part"),
         (("--part", "third"), "not a part"),
         (("--tasks", "hvac_fan_max", "--part", "2/10"), "--part 2/10 contains none of 1 task"),
-        (("--out", "file"), "file is a file"),
+        (("--tasks", "hvac_fan_max", "--out", "file"), "file is a file"),
     ],
 )
 def test_bad_input_is_one_line(cli, tmp_path, words, said):

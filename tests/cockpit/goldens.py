@@ -12,7 +12,9 @@ import lzma
 import sys
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import asdict, fields, replace
+from itertools import product
 from pathlib import Path
+from zlib import crc32
 
 import numpy as np
 
@@ -47,17 +49,25 @@ def moved(cockpit: Cockpit, motion: Motion) -> None:
 
 
 def listings(
-    views_of: Mapping[str, tuple[View, ...]], languages: tuple[str, ...], motions: Iterable[Motion] = Motion
+    views_of: Mapping[str, tuple[View, ...]],
+    languages: tuple[str, ...],
+    motions: Iterable[Motion] = Motion,
+    *,
+    part: int = 1,
 ) -> Iterator[tuple[str, Listing]]:
-    """Each view's name, side of the road, motion and language, and its elements."""
+    """Each view's name, side of the road, motion and language, and its elements; or one in so many of them."""
     for side, found in views_of.items():
-        for view in found:
-            for motion in motions:
+        for view, motion, language in product(found, motions, languages):
+            if is_of(name := f"{view.name}, {side} hand, {motion}, {language}", part):
                 there = view.cockpit.copy()
                 moved(there, motion)
-                for language in languages:
-                    there.inject(HMI.LANGUAGE.path, language)
-                    yield f"{view.name}, {side} hand, {motion}, {language}", list(map(line, there.elements()))
+                there.inject(HMI.LANGUAGE.path, language)
+                yield name, list(map(line, there.elements()))
+
+
+def is_of(name: str, part: int) -> bool:
+    """Whether a list is one of a part of all, in which each view, language, side and motion is."""
+    return crc32(name.encode()) % part == 0
 
 
 def line(element: Element) -> str:
@@ -69,13 +79,14 @@ def line(element: Element) -> str:
     return json.dumps(plain(told | {"box": box}), ensure_ascii=False)
 
 
-def made(languages: tuple[str, ...] = HMI.LANGUAGE.allowed) -> dict[str, Listing]:
+def made(part: int = 1) -> dict[str, Listing]:
     """The present lists."""
+    languages = HMI.LANGUAGE.allowed
     found = {side: views(left_hand=side == "left") for side in ("right", "left")}
-    lists = dict(listings(found, languages))
+    lists = dict(listings(found, languages, part=part))
     for size, side, language in ((ScreenSize.WIDE, "right", "en"), (ScreenSize.PORTRAIT, "left", languages[-1])):
         resized = {f"{size}, {side}": tuple(fitted(view, size) for view in found[side])}
-        lists |= dict(listings(resized, (language,), (Motion.PARKED,)))
+        lists |= dict(listings(resized, (language,), (Motion.PARKED,), part=part))
     return lists
 
 
@@ -86,10 +97,10 @@ def fitted(view: View, size: ScreenSize) -> View:
     return replace(view, cockpit=there)
 
 
-def stored() -> dict[str, Listing]:
+def stored(part: int = 1) -> dict[str, Listing]:
     """The stored lists."""
     known: dict[str, Listing] = json.loads(lzma.decompress(FILE.read_bytes()))
-    return known
+    return {name: listing for name, listing in known.items() if is_of(name, part)}
 
 
 def differences(known: Mapping[str, Listing], now: Mapping[str, Listing]) -> Iterator[str]:

@@ -4,17 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
 
 from automotive_cosim.cockpit.aboard import company
 from automotive_cosim.cockpit.app import Where
 from automotive_cosim.cockpit.cockpit import Cockpit
-from automotive_cosim.cockpit.registry import apps, apps_in
+from automotive_cosim.cockpit.registry import apps
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, GLASS, HVAC, LIGHTS, MEDIA, MOTION, difference
 from automotive_cosim.contracts import (
     Alert,
@@ -441,57 +438,6 @@ def test_two_copies_left_alone_stay_alike(cockpit: Cockpit, around: Surroundings
             one.sense(replace(around, driving=driving), 1.0)
     assert difference(cockpit.signals.snapshot(), twin.signals.snapshot()) == {}
     assert cockpit.screenshot().tobytes() == twin.screenshot().tobytes()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", [1, 2, 3])
-def test_thousands_of_random_touches_break_nothing(make: Make, around: Surroundings, seed: int) -> None:
-    rng = np.random.default_rng(seed)
-    cockpit = make(seed)
-    directions = tuple(Direction)
-    visited, names = set(), tuple(apps())
-    for step in range(2000):
-        x, y = int(rng.integers(-20, 1300)), int(rng.integers(-20, 740))
-        way = directions[int(rng.integers(4))]
-        touches: tuple[Callable[[], Any], ...] = (
-            lambda x=x, y=y: cockpit.tap(x, y),
-            lambda x=x, y=y: cockpit.tap(x, y),
-            lambda x=x, y=y: cockpit.double_tap(x, y),
-            lambda x=x, y=y, way=way: cockpit.swipe(x, y, way),
-            lambda way=way: cockpit.scroll(None, way),
-            lambda x=x, y=y: cockpit.long_press(x, y),
-            cockpit.back,
-        )
-        assert touches[int(rng.integers(len(touches)))]().text
-        visited.add(cockpit.screen)
-        if step % 20 == 0:
-            cockpit.open_app(names[step // 20 % len(names)])
-            speed = float(rng.choice([0.0, 5.0, 30.0]))
-            moved = replace(around.driving, time_s=900.0 + step, speed_mps=speed)
-            cockpit.sense(replace(around, driving=moved, sun_elevation_deg=float(rng.uniform(-30, 30))), 1.0)
-            for signal in cockpit.signals:
-                assert signal.check(cockpit.signals[signal]) == cockpit.signals[signal]
-            for request in cockpit.drain_requests():
-                cockpit.answered(request, Answer(bool(rng.integers(2)), "So it is."))
-        if step % 100 == 0:
-            cockpit.screenshot()
-    assert visited >= {app.name for app in apps_in(Where.DOCK)}
-
-
-@pytest.mark.slow
-@settings(max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
-@given(text=st.text(max_size=150), more=st.text(max_size=150))
-def test_any_text_can_be_typed_shown_and_said(make: Make, around: Surroundings, text: str, more: str) -> None:
-    cockpit = make(surroundings=at_rest(around))
-    cockpit.open_app("map")
-    press(cockpit, "map.search")
-    assert cockpit.type_text(text).code is OK
-    assert cockpit.type_text(more, clear=True).code is OK
-    cockpit.key_enter()
-    cockpit.open_app(text)
-    cockpit.alert(Alert(AlertKind.WEATHER, Severity.INFO, text))
-    assert cockpit.screenshot().shape == (720, 1280, 3)
-    assert all(len(element.text) <= 240 for element in cockpit.elements())
 
 
 def test_a_long_press_on_plus_goes_several_steps_and_stops_at_the_end(cockpit: Cockpit) -> None:

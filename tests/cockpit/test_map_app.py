@@ -233,7 +233,7 @@ def test_a_frame_drawn_in_part_is_the_frame_drawn_anew(make: Make, around: Surro
     for size, scale in ((ScreenSize.STANDARD, 1.0), (ScreenSize.STANDARD, 0.75), (ScreenSize.PORTRAIT, 1.0)):
         width, height = round(size.width * scale), round(size.height * scale)
         cockpit, now = make(size=size, width=width), around
-        for step in range(60):
+        for step in range(27):
             if rng.random() < 0.3:
                 cockpit.open_app(str(rng.choice(list(apps()))))
             else:

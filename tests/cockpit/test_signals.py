@@ -9,18 +9,22 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.signals import (
     ACTUATORS,
     ADAS,
     CATALOGUE,
     HVAC,
     LIGHTS,
+    MOTION,
+    TYRE,
     LeafKind,
     Signal,
     Signals,
     difference,
     named,
 )
+from automotive_cosim.contracts import Surroundings
 from automotive_cosim.errors import SignalError, UnknownNameError, UserError
 from tests.laws import over
 
@@ -101,3 +105,38 @@ def test_copies_are_independent() -> None:
 def test_what_can_be_commanded_are_the_actuators() -> None:
     assert set(ACTUATORS) == {path for path, signal in CATALOGUE.items() if signal.kind is LeafKind.ACTUATOR}
     assert set(Signals().commanded()) == set(ACTUATORS)
+
+
+def test_reset_restores_every_signal() -> None:
+    signals = Signals()
+    start = signals.snapshot()
+    for signal in signals:
+        if signal.allowed:
+            signals[signal] = next(value for value in signal.allowed if value != signal.default)
+        elif isinstance(signal.default, bool):
+            signals[signal] = not signal.default
+        elif isinstance(signal.default, str):
+            signals[signal] = "something else"
+        else:
+            signals[signal] = signal.high if signal.default != signal.high and signal.maximum else signal.low + 1.0
+    assert difference(start, signals.snapshot()).keys() == CATALOGUE.keys()
+    signals.reset()
+    assert signals.snapshot() == start
+
+
+def test_an_injected_sensor_goes_on_reading_its_value(cockpit: Cockpit, around: Surroundings) -> None:
+    cockpit.inject(TYRE.REAR_LEFT.path, 140.0)
+    cockpit.inject(MOTION.SPEED.path, 0.0)
+    cockpit.inject(HVAC.FAN_SPEED.path, 80.0)
+    twin = cockpit.copy()
+    for one in (cockpit, twin):
+        one.sense(around, 5.0)
+        assert one.signals[TYRE.REAR_LEFT] == 140.0
+        assert one.vehicle_state().speed_kmh == 0.0
+    cockpit.inject(HVAC.FAN_SPEED.path, 20.0)
+    cockpit.sense(around, 1.0)
+    assert cockpit.signals[HVAC.FAN_SPEED] == 20.0
+    with pytest.raises(SignalError, match="0 to 2550 kPa"):
+        cockpit.inject(TYRE.REAR_LEFT.path, 2600.0)
+    with pytest.raises(UnknownNameError):
+        cockpit.inject("Vehicle.Tyre", 1.0)

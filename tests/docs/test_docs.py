@@ -1,14 +1,14 @@
 """README and docs say what is so: every command in them is understood, and every block is run.
 
-As it stands where that is quick, on the small grid where it is not, and with ``--dry-run`` or ``--help`` where it
-needs what only the reader has.
+As it stands where that is quick, on the small grid or with ``--dry-run`` where it is not, and not at all where it
+needs what only the reader has, or another test runs it.
 """
 
 import re
 import shlex
 import shutil
-import subprocess
 import sys
+from collections import Counter
 from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import fields
@@ -25,6 +25,7 @@ from automotive_cosim.interface.functions import functions
 from automotive_cosim.tasking.own_files import VARIABLE
 from automotive_cosim.tasking.sets import Suite
 from automotive_cosim.tasks import CATALOGUE
+from docs import tables
 from tests.laws import over
 
 TOP = Path(__file__).parents[2]
@@ -34,6 +35,11 @@ LOOKED_UP = {"glossary", "api", "CONTRIBUTING"}
 """Pages beside docs/reference that nobody reads from beginning to end."""
 MOST_WORDS = 1_000
 PROGRAM = re.compile(r"^(?:\S*/)?automotive-cosim\b")
+
+
+LINKED = [*TOP.glob("*.md"), *PAGES, *TOP.glob("[!.]*/README.md"), *TOP.glob("sumo_scenarios/*/*.md")]
+"""Every page that a reader of a checkout opens."""
+LINK = re.compile(r"\]\(([^)\s]+)\)|(?:href|src)=\"([^\"]+)\"")
 
 
 def blocks(page: Path) -> Iterator[tuple[str, str]]:
@@ -105,55 +111,66 @@ def test_a_guide_can_be_read_in_five_minutes(page):
     assert len(prose.split()) <= MOST_WORDS, "move what is looked up to docs/reference"
 
 
+def without_code(page):
+    return re.sub(r"^( *)```.*?^\1```|^    [^\n]*$", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)
+
+
+def anchors(page):
+    """The anchors of a page's headings, as code hosts and the site name them."""
+    named: Counter[str] = Counter()
+    for title in re.findall(r"^#+ (.+)$", without_code(page), re.MULTILINE):
+        words = re.sub(r"\]\(.*?\)|[^\w\- ]", "", title.strip().lower()).replace(" ", "-")
+        named[words] += 1
+        yield words if named[words] == 1 else f"{words}-{named[words] - 1}"
+
+
+@over(dict.fromkeys(LINKED))
+def test_every_link_leads_to_a_page_and_a_heading_of_the_checkout(page):
+    assert set(re.findall(r"^```\{(.+)\}", page.read_text("utf-8"), re.MULTILINE)) <= {"eval-rst"}
+    text = re.sub(r"`[^`\n]*`", "", without_code(page))
+    links = {link for found in LINK.findall(text) for link in found if link and "://" not in link}
+    for link in links:
+        path, _, anchor = link.partition("#")
+        target = page.parent / path if path else page
+        assert target.exists(), link
+        assert not {"_made", "_site"} & set(target.parts), f"{link} exists only after `make docs`"
+        assert not anchor or anchor in anchors(target), link
+
+
+@pytest.mark.slow
+@over(tables.pages())
+def test_the_tables_of_a_page_are_what_the_code_says(page):
+    assert not tables.stale(page), "`python -m docs.tables` makes them anew"
+
+
+def test_every_table_stands_on_a_page():
+    placed = [mark[2] for page in tables.pages() for mark in tables.MARKED.finditer(page.read_text("utf-8"))]
+    assert sorted(placed) == sorted(tables.MADE)
+
+
 # --- run -------------------------------------------------------------------------------------------------
 
-SMALL = ("--scenario", "grid", "--task", "hvac_fan_max", "--half", "first", "--agent", "oracle", "--force")
+GRID = ("--scenario", "grid", "--task", "hvac_fan_max")
 """The last of several values of an option counts."""
+LAST = ("--force", "--out", "runs/last")
 AS_IT_IS = ()
 DRY = ("--dry-run",)
-HELP = ("--help",)
+NOT_RUN = None
 
-TREATED: list[tuple[str, tuple[str, ...], str]] = [
-    (r"eval .*failures/", HELP, "needs a search; tests/safety/test_trying.py has one"),
-    (
-        r"(search|measures)",
-        HELP,
-        "takes minutes; tests/safety and tests/measures try them",
-    ),
-    (r"export", HELP, "needs a recorded drive; tests/exchange has one"),
-    (r"eval .*--executor ray", HELP, "needs a cluster; tests/run/test_on_ray.py has one"),
+TREATED: list[tuple[str, tuple[str, ...] | None, str]] = [
+    (r"eval .*failures/", NOT_RUN, "needs a search; tests/safety/test_trying.py has one"),
+    (r"(search|measures)", NOT_RUN, "takes minutes; tests/safety and tests/measures try them"),
+    (r"export", NOT_RUN, "needs a recorded drive; tests/exchange has one"),
+    (r"eval .*--executor ray", NOT_RUN, "needs a cluster; tests/run/test_on_ray.py has one"),
     (r"eval ", DRY, "takes minutes; `ran` below is an evaluation on the grid"),
-    (r"study reroute --scenario resco", HELP, "needs the scenario of others"),
-    (r"study (congestion|days|compare)", HELP, "takes minutes; tests/studies run them"),
-    (r"study suite", HELP, "needs a network of the reader's; tests/studies run one"),
+    (r"study reroute --scenario (resco|shipped,)", NOT_RUN, "needs networks of others"),
+    (r"study (congestion|days|compare)", NOT_RUN, "takes minutes; tests/studies run them"),
     (r"study reroute", DRY, "takes minutes; tests/studies run studies"),
-    (r"run .*--model '?replay/", ("--force", "--out", "runs/last"), ""),
-    (r"run .*--model", HELP, "asks a language model"),
-    (r"run .*(city|my|any)\.(net|sumocfg)", HELP, "needs a network of the reader's"),
-    (r"run --pair", HELP, "takes half a minute; test_hero.py runs it"),
-    (r"run .*--agent caller", ("--scenario", "grid", "--force", "--out", "runs/last"), ""),
-    (r"run --agent (my_package|\$agent)", HELP, "needs what only the reader has"),
-    (r"run --scenario hamlet --task road_speed_80_in_50", HELP, "takes five seconds; test_examples.py runs it"),
-    (r"run .*--(scenario (hamlet|grid)|task my_)", ("--force", "--out", "runs/last"), ""),
-    (r"run --agent my_", (*SMALL[:4], "--force", "--out", "runs/last"), "takes ten seconds in its own scenario"),
-    (
-        r"run",
-        (*SMALL, "--out", "runs/last"),
-        "takes ten seconds in its own scenario; tests/cli/test_run.py runs it",
-    ),
+    (r"run .*(--model '?replay/|--agent (my_agent:|caller --interface functions --see))", LAST, ""),
+    (r"run --agent my_agents:", (*GRID, *LAST), "takes ten seconds in its own scenario"),
+    (r"run .*--task my_seat_warmer", LAST, ""),
+    (r"run", NOT_RUN, "needs what only the reader has, or takes ten seconds in its own scenario; tests/cli run it"),
     (r"tasks validate", ("--gates", "start", "--seeds", "0"), "all gates take minutes; tests/proof tries them"),
-    (r"drive [a-z]", HELP, "takes a minute; tests/drives drives"),
-    (r"report runs/hunt", HELP, "needs a search; tests/safety/test_trying.py has one"),
-    (r"report runs/drives", HELP, "needs drives of minutes; tests/run/test_drives.py reports on some"),
-    (r"publish .*(runs/board|NAME)", HELP, "needs the leaderboard's evaluation; `make docs` checks its bundles"),
-    (r"(serve|mcp|a2a)", HELP, "serves until it is stopped; tests/serve and tests/doors ask it"),
-    (r"bench", HELP, "measures for a minute; tests/cli/test_bench.py runs it"),
-    (r"scenarios (check|download)", HELP, "takes minutes or the network; tests/osm has them"),
-    (r"scenarios calibrate", HELP, "takes minutes; tests/calibration try it on the grid"),
-    (r"scenarios equilibrate", HELP, "takes minutes; tests/scenarios/test_equilibrium.py tries it"),
-    (r"scenarios import pass", HELP, "needs a scenario of the reader's; tests/exchange has one"),
-    (r"scenarios import (city|paris)", HELP, "needs a map of the reader's; the hamlet is imported"),
-    (r"scenarios import", ("--force",), ""),
     (r"replay", AS_IT_IS, ""),
     (r"", AS_IT_IS, ""),
 ]
@@ -163,6 +180,7 @@ ELSEWHERE = {"from inspect_ai": "inspect_ai"}
 FOLDERS = r"\b(runs/(mine|first|before|after|jam))\b"
 EXCERPTS = {
     "Skill(": "an excerpt of models/skills.py",
+    '"""pip install openai-agents': "needs a package of others; test_frameworks.py runs the same file",
     "import minari": "needs Minari, and a table of demonstrations",
     "from android_world": "needs a checkout of AndroidWorld; tests/agents/test_androidworld.py has one",
 }
@@ -233,28 +251,53 @@ def ran(reader, place):
 LINES = list(dict.fromkeys(line for _, line in commands()))
 
 
+def named(lines):
+    return pytest.mark.parametrize("line", [pytest.param(line, id=line[:70]) for line in lines])
+
+
+def words_of(line):
+    return shlex.split(line.split(" | ")[0].split(" > ")[0], comments=True)[1:]
+
+
+COUNTED = {
+    "--agents t3a,asurada,always-alert --tasks safety --seeds 0-4": "says {} episodes from 65 warm",
+    "--agents t3a,asurada --scenarios grid,paris_centre": "has {} episodes: all",
+}
+"""Plans whose episodes the pages count, with the words."""
+
+
+@pytest.mark.slow
+@named([line for line in LINES if treatment(line)[1] == DRY])
+def test_every_plan_can_be_run(line, reader):
+    result = reader(*words_of(line), *DRY)
+    assert result.code == 0, result.err
+    pages = "".join((TOP / f"docs/{name}.md").read_text("utf-8") for name in ("evaluation", "reference/evaluation"))
+    for words in (words for plan, words in COUNTED.items() if plan in line):
+        (planned,) = re.findall(r"runs +([\d,]+) from", result.out)
+        assert words.format(planned) in pages
+
+
+def test_every_plan_that_is_counted_is_there():
+    assert all(any(plan in line for line in LINES if treatment(line)[1] == DRY) for plan in COUNTED)
+
+
 @pytest.mark.slow
 @pytest.mark.usefixtures("sumo", "warm")
-@pytest.mark.parametrize("line", [pytest.param(line, id=line[:70]) for line in LINES])
+@named([line for line in LINES if treatment(line)[1] not in (DRY, NOT_RUN)])
 def test_every_command_runs(line, reader, place, request):
     added = treatment(line)[1]
     if (re.search(FOLDERS, line) and added == AS_IT_IS) or "bundle" in line:
         request.getfixturevalue("ran")
         episode = next(Path("runs/mine/traces").glob("*.jsonl.gz")).name.removesuffix(".jsonl.gz")
         line = line.replace(" ID", f" {episode}")
-    if added != HELP and "hamlet" in line and "import" not in line and not Path("hamlet").exists():
-        assert reader("scenarios", "import", "docs/examples/hamlet.osm").code == 0
     if line.startswith("automotive-cosim publish bundle"):
         Path("mine.bundle").unlink(missing_ok=True)
-    words = shlex.split(line.split(" | ")[0].split(" > ")[0], comments=True)[1:]
-    if "--tasks-from" in words:  # the catalogue of this process is complete
-        request.getfixturevalue("on_path")
-        ran = subprocess.run(["automotive-cosim", *words, *added], capture_output=True, text=True, check=False)
-        assert ran.returncode == 0, ran.stderr
-    else:
-        result = reader(*words, *added)
-        assert result.code == 0, result.err
-        assert result.out or result.err
+    words = words_of(line)
+    if "--tasks-from" in words:
+        request.getfixturevalue("own_tasks")(place / words[words.index("--tasks-from") + 1])
+    result = reader(*words, *added)
+    assert result.code == 0, result.err
+    assert result.out or result.err
 
 
 @pytest.mark.slow
@@ -310,26 +353,6 @@ def test_pages_count_the_tasks_as_they_are():
 def test_pages_count_screens_and_functions_as_they_are():
     assert f"with {len(pages())} screens" in (TOP / "docs/cockpit.md").read_text(encoding="utf-8")
     assert f"by {len(functions())} typed functions" in (TOP / "docs/functions.md").read_text(encoding="utf-8")
-
-
-@pytest.mark.parametrize(
-    ("line", "words"),
-    [
-        (
-            "--agents t3a,asurada,always-alert --tasks safety --seeds 0-4",
-            "says {} episodes from 65 warm",
-        ),
-        ("--agents t3a,asurada --scenarios grid,paris_centre", "has {} episodes: all"),
-    ],
-)
-@pytest.mark.slow
-def test_pages_count_the_episodes_as_they_are(cli, line, words):
-    planned = re.search(r"runs +([\d,]+) from", cli("eval", *line.split(), "--workers", "2", "--dry-run").out)
-    assert planned is not None
-    pages = ("docs/evaluation.md", "docs/reference/evaluation.md")
-    text = "".join((TOP / page).read_text(encoding="utf-8") for page in pages)
-    assert f"automotive-cosim eval {line}" in text
-    assert words.format(planned[1]) in text
 
 
 def test_the_reference_of_observations_has_every_field_reading_action_and_number():

@@ -4,26 +4,38 @@
 """
 
 import os
+import runpy
 import subprocess
 import sys
 from pathlib import Path
 
+import gymnasium
 import pytest
 
 TOP = Path(__file__).parents[2]
 FOLDER = TOP / "docs/examples/rl"
 PYTHON = os.environ.get("AUTOMOTIVE_COSIM_RL", sys.executable)
+HERE = "async_vector.py"
 NEEDS = {
-    "async_vector.py": "gymnasium",
     "cleanrl_loop.py": "torch",
-    "rllib_ppo.py": "ray.rllib",
+    "rllib_ppo.py": "torch, ray.rllib",
     "sb3_ppo.py": "stable_baselines3",
     "torchrl_rollout.py": "torchrl",
 }
 
 
 def test_every_example_is_tried():
-    assert {path.name for path in FOLDER.glob("*.py")} == set(NEEDS)
+    assert {path.name for path in FOLDER.glob("*.py")} == {HERE, *NEEDS}
+
+
+@pytest.mark.slow
+@pytest.mark.sumo
+def test_the_one_that_needs_nothing_more_runs_to_its_end(monkeypatch, capsys):
+    """In this process; ``tests/envs`` tries environments in processes of their own."""
+    make_vec = gymnasium.make_vec
+    monkeypatch.setattr(gymnasium, "make_vec", lambda *names, vectorization_mode, **more: make_vec(*names, **more))
+    runpy.run_path(str(FOLDER / HERE), run_name="__main__")
+    assert capsys.readouterr().out.startswith("0.")
 
 
 @pytest.mark.slow

@@ -10,8 +10,7 @@ import socket
 import threading
 import tomllib
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
-from dataclasses import dataclass, field
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -31,13 +30,9 @@ from automotive_cosim.doors.guard import MOST_BYTES
 from automotive_cosim.errors import UserError
 from automotive_cosim.run.batch import run_plan
 from automotive_cosim.run.fork_server import ForkServer
-from automotive_cosim.run.meter import Spent
 from automotive_cosim.run.plan import Plan
-from automotive_cosim.run.processes import Processes
-from automotive_cosim.run.settings import Budget, Pictures
-from automotive_cosim.run.stage import JobStage
-from automotive_cosim.run.worker import run_job
 from automotive_cosim.traffic.fork import Simulations
+from tests.here import Here
 from tests.laws import over
 from tests.remote_agent import DONE, FAN, RemoteAgent, served
 
@@ -62,42 +57,6 @@ def assessing(run: Callable[..., object] = run_plan) -> Iterator[str]:
             thread.join()
 
 
-@dataclass
-class Here:
-    """Runs trials in this process, on warm traffic that is there already: an executor, and its one worker."""
-
-    simulations: Simulations
-    fork_server: ForkServer
-    folder: Path = Path()
-    job: Any = None
-    count: int = 1
-    is_ready: bool = True
-    stage: JobStage = field(default_factory=JobStage)
-
-    @property
-    def handles(self) -> list[Any]:
-        return [0]
-
-    def metered(self, budget: Budget, before: Spent) -> Any:
-        return Processes().metered(budget, before)
-
-    def start(self, opener: Any, folder: Path) -> Any:
-        self.folder = folder
-        return self
-
-    def wait(self, handles: Any, timeout_s: float) -> Any:
-        return handles
-
-    def give(self, job: Any) -> None:
-        self.job = job
-
-    def answer(self) -> Any:
-        return run_job(self.job, self.folder, Pictures.NONE, self.simulations, self.fork_server)
-
-    def end(self, *, at_once: bool) -> None:
-        pass
-
-
 async def ask(url: str, part: Any, version: str = "1.0") -> list[Any]:
     """Everything that comes back."""
     async with httpx.AsyncClient(timeout=120, trust_env=False) as http:
@@ -120,14 +79,14 @@ def words_of(events: list[Any]) -> list[str]:
 
 @pytest.mark.slow
 def test_an_assessment_tells_its_progress_then_its_result(
-    tmp_path: Path, monkeypatch: Any, simulations: Simulations
+    tmp_path: Path, monkeypatch: Any, simulations: Simulations, fork_server: ForkServer
 ) -> None:
     def once(agent: RemoteAgent, message: Any, turn: int) -> list[Any]:
         agent.metadata = {"turn_metrics": {"prompt_tokens": 10, "completion_tokens": 1}}
         return [{"tool_calls": [FAN, DONE] if len(agent.heard) == 1 else [DONE]}]
 
     monkeypatch.chdir(tmp_path)
-    with closing(ForkServer()) as fork_server, served(RemoteAgent(once)) as remote:
+    with served(RemoteAgent(once)) as remote:
         here = Here(simulations, fork_server)
 
         def run(plan: Plan, folder: Path, executor: Any, tell: Any) -> None:

@@ -47,6 +47,13 @@ def flat(simulations):
     made.close()
 
 
+@pytest.fixture(scope="module")
+def ruled(simulations):
+    """A drive by the rules: its actions, observations, rewards, last ``info``, and episode."""
+    with closing(FlatDriveEnv("grid_june", minutes=MINUTES, simulations=simulations)) as env:
+        yield *played(env, rules(env)), env.episode
+
+
 def played(env, choose):
     """Actions, observations and rewards of the drive of the seed, and the last ``info``."""
     seen, _ = env.reset(seed=SEED)
@@ -88,9 +95,9 @@ def test_who_waits_earns_nothing(flat):
     assert info["score"] == 0
 
 
-def test_the_rules_score_high_and_the_rewards_sum_to_the_judges_utility(flat):
-    actions, views, rewards, info = played(flat, rules(flat))
-    judged = score(flat.episode.judgement, flat.episode.seconds)
+def test_the_rules_score_high_and_the_rewards_sum_to_the_judges_utility(ruled):
+    actions, views, rewards, info, episode = ruled
+    judged = score(episode.judgement, episode.seconds)
     assert sum(rewards) == pytest.approx(judged.utility / (2 * LEAST_WORTH))
     assert judged.events >= 1
     assert info["score"] == judged.value >= 90
@@ -102,8 +109,8 @@ def test_the_rules_score_high_and_the_rewards_sum_to_the_judges_utility(flat):
     assert len({view.tobytes() for view in views}) > len(views) / 2
 
 
-def test_the_same_acts_give_the_trace_of_the_drive(flat, simulations):
-    actions, _, _, info = played(flat, rules(flat))
+def test_the_same_acts_give_the_trace_of_the_drive(flat, ruled, simulations):
+    actions, _, _, info, _ = ruled
     again = played(flat, iter(actions).__next__)
     assert again[3] == info
     env = DriveEnv("grid_june", minutes=MINUTES, channels=CHANNELS, simulations=simulations)

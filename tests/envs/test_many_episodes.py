@@ -53,9 +53,8 @@ print(json.dumps({"figures": figures, "left": len(tree(os.getpid())) - 1}))
 """In a process of its own: what else a test run keeps alive would show in the figures."""
 
 
-@pytest.mark.long
+@pytest.mark.proof
 @pytest.mark.sumo
-@pytest.mark.slow
 @pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
 def test_two_hundred_episodes_leave_nothing() -> None:
     ran = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True)

@@ -41,7 +41,7 @@ from automotive_cosim.scenarios import open_scenario
 
 GRID = scenarios.load("grid").folder
 QUICK = settings(
-    max_examples=60, deadline=None, database=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=30, deadline=None, database=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 LONGEST = 600
 """Characters of a refusal."""
@@ -80,8 +80,8 @@ PLAN = 'agents = ["oracle"]\nseeds = [0, 1]\nrepeats = 2\n[limits]\nsteps = 5\ns
 ACTIONS = '{"action_type": "click", "x": 3, "y": 4}\n{"action_type": "wait", "seconds": 2}\n'
 COUNTS = "site,hour,vehicles_per_hour,edge\n" + "".join(f"a,{hour},{100 + hour},e\n" for hour in range(24))
 ROW = {"id": "a", "task": "hvac_fan_max", "half": "first", "pair": "", "dimension": "explicit_control",
-       "module": "hvac", "scenario": "grid", "agent": "oracle", "model": "none", "geo": "full", "seed": 0,
-       "repeat": 0}  # fmt: skip
+       "module": "hvac", "scenario": "grid", "agent": "oracle", "model": "none", "conditions": {"geo": "full"},
+       "seed": 0, "repeat": 0}  # fmt: skip
 ANSWER = {"text": "a", "tokens_in": 1, "tokens_out": 1, "cost_usd": 0.0}
 ROAD = (
     {"format": 1},
@@ -284,7 +284,7 @@ FIELDS = "index x y text seconds speed_kmh destination direction on app_name".sp
 
 
 @pytest.mark.slow
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(kind=st.sampled_from(ActionType), fields=st.dictionaries(st.sampled_from(FIELDS), JSON, max_size=3))
 def test_any_action_is_read_or_refused(kind: ActionType, fields: dict[str, object]) -> None:
     text = json.dumps({"action_type": str(kind)} | fields)
@@ -300,7 +300,7 @@ SPACE = action_space(100, 100)
 
 
 @pytest.mark.slow
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(
     name=st.sampled_from(sorted(SPACE)),
     value=JSON | st.integers(-3, 99),

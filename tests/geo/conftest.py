@@ -19,7 +19,7 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.geo.context import GeoContext
 from automotive_cosim.geo.locate import Geo
-from automotive_cosim.geo.rulefacts import COUNTRY_ROAD, RuleFacts
+from automotive_cosim.geo.rulefacts import RuleFacts
 
 ROAD = RoadHere("e", "e_0", 0, 1, 10.0, "Avenue Foch", "primary", NO_LIMIT, False, None, None, None, 1.0)
 CAR = DrivingState(
@@ -41,8 +41,27 @@ CAR = DrivingState(
 )
 CLEAR = Weather(12.0, 70.0, 0.0, 0, 0.0, 20_000.0, 10.0)
 NOON = datetime(2026, 10, 5, 12, 0, tzinfo=ZoneInfo("Europe/Paris"))
-DAY = replace(
-    COUNTRY_ROAD, local_time=NOON, lon_deg=2.285, lat_deg=48.873, lit=False, speed_kmh=72.0, standing=False
+DAY = RuleFacts(
+    local_time=NOON,
+    lon_deg=2.285,
+    lat_deg=48.873,
+    street="",
+    road_class="primary",
+    motorway=False,
+    dual_carriageway=False,
+    expressway=False,
+    built_up=False,
+    lit=False,
+    centre_line=True,
+    lanes=1,
+    tunnel=False,
+    speed_kmh=72.0,
+    standing=False,
+    oncoming_m=None,
+    leader_m=None,
+    phenomena=frozenset(),
+    visibility_m=20_000.0,
+    after_sunset=False,
 )
 
 

@@ -80,7 +80,7 @@ def _drive(simulations: Simulations, trip: str, line_y_m: float) -> Crossing:
     moments = [world.moment]
     while not moments[-1].driving.end and (moments[-1].context.country == moments[0].context.country):
         moments += world.advance(TICK_S)
-    moments += world.advance(200.0)
+    moments += world.advance(60.0)
     world.close()
     states = [state for moment in moments for state in moment.passed]
     crossed_s = next(

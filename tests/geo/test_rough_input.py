@@ -56,7 +56,7 @@ weathers = st.none() | st.builds(
 
 
 @pytest.mark.slow
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=120, deadline=None)
 @given(lon=lons, lat=lats, time=times, road=roads, weather=weathers)
 def test_there_is_a_context_everywhere_and_always(
     geo: Geo,

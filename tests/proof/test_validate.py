@@ -85,15 +85,18 @@ def whole(sumo, tmp_path_factory):
 
 
 @pytest.fixture
-def validate(command):
+def validate(command, cli, own_tasks):
+    """In this process, whose workers are forked from one that has imported everything."""
+
     def run(*words, **named):
-        return subprocess.run(command(*words, **named), capture_output=True, text=True, check=False)
+        own_tasks(Path("tasks"))
+        return cli(*command(*words, **named)[len(PROGRAM) - 2 :])
 
     return run
 
 
-def told(ran):
-    return {name: value for name, value in json.loads(ran.stdout).items() if name != "seconds"}
+def told(out):
+    return {name: value for name, value in json.loads(out).items() if name != "seconds"}
 
 
 @pytest.mark.sumo
@@ -101,14 +104,14 @@ def told(ran):
 def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(validate, whole, tmp_path):
     alone, folder = whole
     assert alone.returncode == 0, alone.stderr
-    assert told(alone)["gates"].keys() == {"oracle", "start", "residue"}
-    assert {entry["checked"] for entry in told(alone)["gates"].values()} == {4}
+    assert told(alone.stdout)["gates"].keys() == {"oracle", "start", "residue"}
+    assert {entry["checked"] for entry in told(alone.stdout)["gates"].values()} == {4}
     head, *lines = alone.stderr.splitlines()
     assert head.startswith("4 proofs by 3 gates, ")
     assert [line.split()[1] for line in lines] == ["1/4", "2/4", "3/4", "4/4"]
     assert {path.name for path in folder.parent.iterdir()} == {"tasks", "whole"}
     shared = validate("own_one,own_two", "--seeds", "0-1", "--json", "--workers", "2")
-    assert told(shared) == told(alone)
+    assert told(shared.out) == told(alone.stdout)
     assert {path.name for path in tmp_path.iterdir()} == {"tasks"}
 
     cut = tmp_path / "cut"
@@ -117,11 +120,11 @@ def test_neither_workers_nor_a_stop_show_and_what_is_proven_is_not_proven_again(
     lines = (folder / "episodes.jsonl").read_bytes().splitlines(keepends=True)
     (cut / "episodes.jsonl").write_bytes(lines[0] + lines[1][:40])
     again = validate("own_one,own_two", "--seeds", "0-1", "--json", "--out", "cut")
-    assert told(again) == told(alone)
+    assert told(again.out) == told(alone.stdout)
     written = (cut / "episodes.jsonl").read_bytes().splitlines(keepends=True)
     assert written[0] == lines[0]
     assert len(written) == 4
-    assert [line.split()[1] for line in again.stderr.splitlines()[1:]] == ["1/4", "2/4", "3/4", "4/4"]
+    assert [line.split()[1] for line in again.err.splitlines()[1:]] == ["1/4", "2/4", "3/4", "4/4"]
 
 
 @pytest.mark.sumo
@@ -130,15 +133,16 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, whole, tm
     _, folder = whole
     shutil.copytree(folder, tmp_path / "f")
     other = validate("own_one,own_two", "--seeds", "0", "--out", "f")
-    assert other.returncode == 2
-    assert "started with a different plan: seeds was [0, 1] and is [0]" in other.stderr
+    assert other.code == 2
+    assert "started with a different plan: seeds was [0, 1] and is [0]" in other.err
     (tmp_path / "tasks" / "own.py").write_text(OWN.replace("Split it.", "Part it."))
     changed = validate("own_one,own_two", "--seeds", "0-1", "--out", "f")
-    assert (changed.returncode, changed.stderr.count("\n")) == (2, 1)
-    assert "a different plan: task_files was" in changed.stderr
+    assert (changed.code, changed.err.count("\n")) == (2, 1)
+    assert "a different plan: task_files was" in changed.err
     assert len(read_rows(tmp_path / "f", Proof)) == 4
 
 
+@pytest.mark.proof
 @pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
@@ -176,11 +180,11 @@ def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(
 @pytest.mark.sumo
 def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(validate, tmp_path):
     ran = validate("own_one,own_raises,own_dies", "--seeds", "0", "--out", "f", only="oracle,start")
-    assert ran.returncode == 3
-    assert "own_raises, seed 0\n    RuntimeError: no such thing\n" in ran.stderr
-    assert "own_dies, seed 0\n    WorkerDied: the worker died with exit code -9\n" in ran.stderr
-    assert ran.stderr.endswith("error: 2 of 3 proofs ended in an infrastructure error\n")
-    assert ran.stdout.endswith("3 tasks, 1 seed: 0 gates failed, 2 errors\n")
+    assert ran.code == 3
+    assert "own_raises, seed 0\n    RuntimeError: no such thing\n" in ran.err
+    assert "own_dies, seed 0\n    WorkerDied: the worker died with exit code -9\n" in ran.err
+    assert ran.err.endswith("error: 2 of 3 proofs ended in an infrastructure error\n")
+    assert ran.out.endswith("3 tasks, 1 seed: 0 gates failed, 2 errors\n")
     attempts = {row.task: row.attempts for row in read_rows(tmp_path / "f", Proof).values()}
     assert attempts == {"own_one": 1, "own_raises": 2, "own_dies": 2}
 
@@ -188,10 +192,10 @@ def test_a_task_that_breaks_the_proof_costs_that_one_alone_and_is_tried_again(va
 @pytest.mark.sumo
 def test_a_gate_that_fails_is_told_beneath_its_task_and_sets_the_exit_code(validate):
     ran = validate("own_twice", "--seeds", "0", "--json")
-    assert ran.returncode == 1
-    _, first, *faults = ran.stderr.splitlines()
+    assert ran.code == 1
+    _, first, *faults = ran.err.splitlines()
     assert first.endswith("1/1 own_twice, seed 0")
-    (failed,) = told(ran)["gates"]["oracle"]["failed"]
+    (failed,) = told(ran.out)["gates"]["oracle"]["failed"]
     assert faults == [f"    oracle: {failed['why']}"]
     assert "goal" in failed["why"]
 

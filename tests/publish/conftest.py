@@ -2,7 +2,6 @@
 
 import shutil
 from collections.abc import Iterator
-from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,14 +22,11 @@ PLAN = make_plan({"agents": ["asurada", "no-op"], "tasks": TASKS, "scenarios": [
 
 
 @pytest.fixture(scope="session")
-def ran(tmp_path_factory: pytest.TempPathFactory, simulations: Simulations) -> Path:
+def ran(tmp_path_factory: pytest.TempPathFactory, simulations: Simulations, fork_server: ForkServer) -> Path:
     """Five judged episodes and one that ended in an error; not to be changed."""
     folder = tmp_path_factory.mktemp("publish") / "e"
     jobs = PLAN.jobs()
-    with (
-        opened(folder, PLAN.as_json(), EpisodeRow, planned=len(jobs)) as store,
-        closing(ForkServer()) as fork_server,
-    ):
+    with opened(folder, PLAN.as_json(), EpisodeRow, planned=len(jobs)) as store:
         for job in jobs[:-1]:
             store.append(replace(run_job(job, folder, Pictures.NONE, simulations, fork_server), wall_seconds=1.5))
         why = "/home/anna/lab/agent.py: gone"

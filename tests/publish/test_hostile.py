@@ -17,11 +17,16 @@ MARKUP = "<img src=x onerror=alert(1)><script>alert(1)</script>"
 EVIL = MARKUP + r"$\frac{$" + "\x1b[2J\x1b]0;owned\x07\x9b1A\r\u202e"
 CASES = {
     "names": (("episodes.jsonl", "manifest.json"), {"agent", "agents", "model", "models"}),
-    "places": (("episodes.jsonl",), {"scenario", "country", "traffic_seed"}),
-    "errors": (("episodes.jsonl",), {"error", "error_kind", "agent_error", "failed_attempts"}),
-    "starts": (("manifest.json",), {"started", "python", "automotive-cosim", "platform", "commit"}),
+    "errors and starts": (
+        ("episodes.jsonl", "manifest.json"),
+        {"error", "error_kind", "agent_error", "failed_attempts"}
+        | {"started", "python", "automotive-cosim", "platform", "commit"},
+    ),
     "plan": (("manifest.json",), {"tasks", "scenarios", "split"}),
-    "traces": (("traces/*.gz",), {"goal", "why", "text", "road", "rule", "thought", "context"}),
+    "places and traces": (
+        ("episodes.jsonl", "traces/*.gz"),
+        {"scenario", "country", "traffic_seed"} | {"goal", "why", "text", "road", "rule", "thought", "context"},
+    ),
 }
 
 

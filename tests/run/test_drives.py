@@ -113,7 +113,7 @@ def test_a_drive_belongs_to_the_set_of_its_seed() -> None:
 
 # --- on a drive ----------------------------------------------------------------------------------------------
 
-PLAN = {"drives": ["grid_january"], "agents": ["rule-perfect", "silent"], "seeds": [4], "settings": {"minutes": 4}}
+PLAN = {"drives": ["grid_january"], "agents": ["rule-perfect", "silent"], "seeds": [0], "settings": {"minutes": 2}}
 
 
 @pytest.fixture(scope="module")
@@ -203,6 +203,7 @@ class Marks(RulePerfect):
 @pytest.mark.sumo
 @pytest.mark.slow
 @pytest.mark.long
+@pytest.mark.proof
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 def test_an_evaluation_killed_in_the_middle_of_a_drive_resumes_to_the_same_rows_and_traces(
     program: Callable[..., subprocess.Popen[str]],
@@ -320,7 +321,6 @@ def test_a_drive_by_the_models_clock_is_repeated_exactly_and_recording_changes_n
     assert told["result"] == {"timeline": first.timeline}
 
 
-@pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
 def test_one_command_gives_the_scores_at_fixed_latencies(tmp_path: Path) -> None:

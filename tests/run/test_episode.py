@@ -101,10 +101,10 @@ def test_another_process_in_another_folder_gives_the_same_trace(run, tmp_path):
 
 
 def test_changing_anything_hashed_changes_the_hash(run):
-    """Every leaf of traffic, signals, elements and action of one step, one at a time."""
-    lines = _lines(run("oracle").folder)[:2]
-    whole = trace.sha256(lines)
-    step = lines[1]
+    """Every leaf of traffic, signals, action and two elements of one step, one at a time."""
+    step = _lines(run("oracle").folder)[1]
+    step["elements"] = step["elements"][:2]
+    whole = trace.sha256([step])
     assert step["action"]
     changed = 0
     for name in ("traffic", "signals", "elements", "action"):
@@ -112,15 +112,15 @@ def test_changing_anything_hashed_changes_the_hash(run):
             other = copy.copy(step)
             other[name] = copy.deepcopy(step[name])
             _spoil(other[name], path)
-            assert trace.sha256([other if line is step else line for line in lines]) != whole, (name, path)
+            assert trace.sha256([other]) != whole, (name, path)
             changed += 1
     assert changed > 100
 
 
-@pytest.mark.parametrize("name", ["time_s", "local_time", "feedback", "context", "weather", "thought"])
-def test_what_follows_from_the_rest_is_not_hashed(run, name):
+def test_what_follows_from_the_rest_is_not_hashed(run):
     lines = _lines(run("oracle").folder)
-    assert trace.sha256([line | {name: "other"} for line in lines]) == trace.sha256(lines)
+    for name in ("time_s", "local_time", "feedback", "context", "weather", "thought"):
+        assert trace.sha256([line | {name: "other"} for line in lines]) == trace.sha256(lines), name
 
 
 def _leaves(value, path=()):

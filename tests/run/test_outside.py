@@ -5,6 +5,7 @@ import signal
 import sys
 from contextlib import closing
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -19,7 +20,7 @@ from automotive_cosim.models import ModelReply
 from automotive_cosim.run.fork_server import ForkServer
 from automotive_cosim.run.outside import LONGEST_REFUSAL, OutsideAgent, check_agent
 
-pytestmark = [pytest.mark.slow, pytest.mark.skipif(sys.platform == "win32", reason="processes are forked")]
+pytestmark = pytest.mark.slow
 
 AGENTS = '''
 import gc, json, os, pathlib, signal, subprocess, sys, time
@@ -235,18 +236,6 @@ def test_an_agent_that_counts_what_it_heard_has_nothing_to_count(outside):
     assert said == ["[1, 'x', 'x']"] * 3
 
 
-@pytest.mark.slow
-def test_where_nothing_is_forked_each_episode_has_a_new_process_too(outside, fork_server, monkeypatch):
-    fork_server.close()
-    monkeypatch.setattr("automotive_cosim.run.fork_server.CAN_FORK", False)
-    for _ in range(2):
-        agent = outside("Counts", "Watch my speed")
-        assert agent.act(None).text == "[1, 'x', 'x']"
-        agent.close()
-    with pytest.raises(AgentError, match="closed its connection"):
-        outside("Ends", "exit").act(None)
-
-
 def test_an_agent_that_looks_everywhere_finds_nothing_of_the_job(outside, mine, observation, monkeypatch):
     secret = "hvac_fan_max-first-s17"  # what names a job, in every place where a worker may have it
     monkeypatch.setenv("AUTOMOTIVE_COSIM_JOB", secret)
@@ -300,12 +289,13 @@ def test_an_agent_may_give_up(outside):
         ("fork server", "process"),
         ("interrupt", "raised KeyboardInterrupt"),
         ("closes", "closed its connection"),
-        ("stop", "over 1 s for one step"),
-        ("sleep", "over 1 s for one step"),
+        ("stop", "over 0.5 s for one step"),
+        ("sleep", "over 0.5 s for one step"),
     ],
 )
-def test_an_agent_that_ends_or_hangs_has_failed(outside, goal, said):
-    agent = outside("Ends", goal, step_s=1.0)
+def test_an_agent_that_ends_or_hangs_has_failed(outside, monkeypatch, goal, said):
+    monkeypatch.setattr("automotive_cosim.run.outside.GRACE_S", 0.5)
+    agent = outside("Ends", goal, step_s=0.5)
     for _ in range(2):
         with pytest.raises(AgentError, match=said):
             agent.act(None)
@@ -313,8 +303,8 @@ def test_an_agent_that_ends_or_hangs_has_failed(outside, goal, said):
 
 
 def test_all_steps_together_have_a_limit_too(outside):
-    agent = outside("Ends", "sleep", episode_s=2.0)
-    with pytest.raises(AgentError, match="over 2 s in the whole episode"):
+    agent = outside("Ends", "sleep", episode_s=0.5)
+    with pytest.raises(AgentError, match=r"over 0\.5 s in the whole episode"):
         agent.act(None)
 
 
@@ -337,7 +327,7 @@ def test_one_that_fails_before_its_first_turn_has_failed_too(outside, name):
 def test_nonsense_on_the_wire_is_the_agents_failure_or_its_step(outside, mine, told):
     (mine / "told").write_text(told)
     with pytest.raises((ActionError, AgentError)):
-        outside("Asks", step_s=1.0).act(None)
+        outside("Asks", step_s=0.5).act(None)
 
 
 @pytest.mark.parametrize(
@@ -390,24 +380,24 @@ def test_an_error_without_words_is_its_own_failure(outside):
 
 def test_the_clock_runs_while_an_agent_reads(outside, observation):
     screen = np.random.default_rng(0).integers(0, 255, (720, 1280, 3), np.uint8)
-    agent = outside("ReadsSlowly", "0.5")
+    agent = outside("ReadsSlowly", "0.2")
     agent.act(observation("x", screenshot=screen))
     for _ in range(2):
         agent.act(observation("x", screenshot=screen))
-        assert agent.answer_s >= 0.5
+        assert agent.answer_s >= 0.2
 
 
 def test_reading_and_answering_have_one_limit(outside, observation):
     screen = np.random.default_rng(0).integers(0, 255, (720, 1280, 3), np.uint8)
-    agent = outside("ReadsSlowly", "600", step_s=1.0)
+    agent = outside("ReadsSlowly", "600", step_s=0.5)
     agent.act(observation("x", screenshot=screen))
-    with pytest.raises(AgentError, match="over 1 s for one step"):
+    with pytest.raises(AgentError, match=r"over 0\.5 s for one step"):
         agent.act(observation("x", screenshot=screen))
-    assert agent._episode_s - agent._left_s >= 1.0
-    agent = outside("ReadsSlowly", "0.4", episode_s=3.0)
-    for _ in range(3):
+    assert agent._episode_s - agent._left_s >= 0.5
+    agent = outside("ReadsSlowly", "0.2", episode_s=3.0)
+    for _ in range(2):
         agent.act(observation("x", screenshot=screen))
-    agent._left_s = 0.2
+    agent._left_s = 0.1
     with pytest.raises(AgentError, match="over 3 s in the whole episode"):
         agent.act(observation("x", screenshot=screen))
 
@@ -415,8 +405,8 @@ def test_reading_and_answering_have_one_limit(outside, observation):
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
 @pytest.mark.parametrize("how", ["kill", "stop"])
 def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(outside, monkeypatch, until, how):
-    monkeypatch.setattr("automotive_cosim.run.fork_server.END_S", 2.0)
-    agent = outside("Kills", how, step_s=5.0)  # the second step waits for whom it killed
+    monkeypatch.setattr("automotive_cosim.run.fork_server.END_S", 1.0)
+    agent = outside("Kills", how, step_s=1.0)  # the second step waits for whom it killed
     pid = agent.act(None).text
     fork_server = agent._fork_server._popen.pid
     assert lives(pid)
@@ -432,7 +422,7 @@ def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(
 
 @pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
 def test_a_long_chain_of_processes_ends_too(outside):
-    agent = outside("Chains", step_s=2.0)
+    agent = outside("Chains", step_s=1.0)
     agent.channels  # noqa: B018, starts it
     fork_server = agent._fork_server._popen.pid
     with pytest.raises(AgentError, match="for one step"):
@@ -449,7 +439,6 @@ def test_what_an_agent_leaves_in_its_folder_is_removed_however_deep(outside, unt
     assert Path("/etc").is_dir()
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="links need rights there")
 def test_a_link_in_the_place_of_the_folder_leads_nowhere(tmp_path):
     (tmp_path / "kept").mkdir()
     (tmp_path / "kept" / "file").touch()
@@ -516,7 +505,9 @@ def test_an_agent_reads_the_format_of_its_model_from_the_whole_name(fork_server,
         ("mine:CannotBeMade", "ModelError"),
     ],
 )
-def test_one_that_cannot_be_made_is_told_before_anything_runs(mine, spec, said):
+def test_one_that_cannot_be_made_is_told_before_anything_runs(mine, fork_server, monkeypatch, spec, said):
+    lent = SimpleNamespace(start=fork_server.start, end=fork_server.end, close=lambda: None)
+    monkeypatch.setattr("automotive_cosim.run.outside.ForkServer", lambda: lent)
     with pytest.raises(UserError, match=said):
         check_agent(spec)
     assert "mine" not in sys.modules, "its module ran in this process"

@@ -6,7 +6,7 @@ import pytest
 from automotive_cosim import scenarios
 from automotive_cosim.errors import UnknownNameError, UserError
 from automotive_cosim.run.jobs import Limits
-from automotive_cosim.run.plan import choose, make_plan, read_plan, with_preset
+from automotive_cosim.run.plan import choose, make_plan, read_plan
 from automotive_cosim.tasking.sets import Split, Suite
 from automotive_cosim.tasking.split import split_of
 from automotive_cosim.tasking.task import Subset
@@ -39,15 +39,6 @@ def test_subsets_part_the_catalogue():
     assert all(
         {CATALOGUE[task].subset for task in part} == {name} for name, part in zip(Subset, parts, strict=True)
     )
-
-
-def test_a_preset_sets_its_limits_and_leaves_the_others():
-    values = {"agents": ["t3a"], "limits": {"steps": 30, "sim_s": 60.0}}
-    plan = make_plan(with_preset(values, "2026"))
-    assert (plan.limits.steps, plan.limits.sim_s) == (10, 60.0)
-    assert values["limits"] == {"steps": 30, "sim_s": 60.0}
-    with pytest.raises(UnknownNameError, match="no preset named '2025'"):
-        with_preset(values, "2025")
 
 
 def test_a_suite_bounds_words_but_not_ids():

@@ -41,7 +41,7 @@ def test_default_folders_never_collide(tmp_path, monkeypatch):
         made.add(folder)
 
 
-@pytest.mark.skipif(os.name == "nt" or os.geteuid() == 0, reason="root may write anywhere")
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anywhere")
 def test_a_folder_without_permission_is_refused(tmp_path):
     tmp_path.chmod(0o500)
     with pytest.raises(UserError, match="cannot write"):
@@ -59,21 +59,14 @@ def test_a_file_is_written_whole_or_not_at_all(tmp_path):
     assert [entry.name for entry in tmp_path.iterdir()] == ["a.json"]
 
 
-def test_a_run_is_repeated_from_its_folder_and_from_one_of_0_2(run):
+def test_a_run_is_repeated_from_its_folder(run):
     folder = run("oracle").folder
     compared = rerun(folder)
     assert compared
     assert not [step for step in compared if step.differs]
-    told, lines = read_trial(folder), read_steps(folder)
+    told = read_trial(folder)
     (folder / "trial.json").write_text(json.dumps({"manifest": told["manifest"]}))
     assert rerun(folder) == compared, "as a kill leaves it"
-    (folder / "trial.json").unlink()
-    (folder / "episode.json").write_text(json.dumps(told["result"] | {"manifest": told["manifest"]}))
-    for line in lines:
-        for name in ("at_s", "words", "target", "speed_kmh", "picture", "sha256"):
-            del line[name]
-    (folder / "steps.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
-    assert rerun(folder) == compared
-    (folder / "episode.json").write_text(json.dumps(told["result"]))
+    (folder / "trial.json").write_text(json.dumps({"result": told["result"]}))
     with pytest.raises(UserError, match="does not say what was run"):
         rerun(folder)

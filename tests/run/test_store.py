@@ -19,7 +19,8 @@ def test_a_line_cut_short_costs_that_line_alone(tmp_path):
         store.append(JobRow(id="b"))
     path = tmp_path / "e" / "episodes.jsonl"
     whole = path.read_bytes()
-    for cut in range(len(whole)):
+    first = whole.index(b"\n") + 1
+    for cut in {*range(0, len(whole), 20), 1, first - 1, first, first + 1, len(whole) - 1}:
         path.write_bytes(whole[:cut])
         left = whole[:cut].count(b"\n")
         assert len(read_rows(tmp_path / "e", JobRow)) == left

@@ -39,17 +39,18 @@ AVENUE = GRID.trip("avenue")
 
 
 @pytest.fixture(scope="module")
-def proof(sumo: None) -> ScenarioProof:
-    return check(GRID, quick=True)
+def found(sumo: None) -> ScenarioProof:
+    return check(GRID)
 
 
-def test_every_thing_declared_is_looked_at(proof: ScenarioProof) -> None:
-    names = [item.name for item in proof.items]
+def test_every_thing_declared_is_looked_at(found: ScenarioProof) -> None:
+    names = [item.name for item in found.items]
     assert names[:3] == ["loads", "place", "roads"]
     assert {f"trip {trip.name}" for trip in GRID.ego.trips} <= set(names)
     assert {f"street {street.name}" for street in GRID.streets} <= set(names)
-    assert proof.ok
-    assert proof.as_json()["ok"] is True
+    assert names[-1] == "an hour of traffic"
+    assert found.ok
+    assert found.as_json()["ok"] is True
 
 
 def test_every_shipped_scenario_names_its_streets() -> None:
@@ -179,9 +180,8 @@ def test_progress_is_told() -> None:
     assert told[-1] == ("driving the trip avenue", None)
 
 
-@pytest.mark.long
+@pytest.mark.proof
 @pytest.mark.sumo
-@pytest.mark.slow
 @pytest.mark.parametrize("name", scenarios.shipped())
 def test_every_shipped_scenario_holds(name: str) -> None:
     """In steps of a second, as the others act; in the scenarios' own, of a tenth, CI checks one in turn.
@@ -189,9 +189,3 @@ def test_every_shipped_scenario_holds(name: str) -> None:
     The hour of traffic is looked at in ``tests/sumo_scenarios``.
     """
     assert _failing(check(_coarse(open_scenario(name)), quick=True)) == {}
-
-
-@pytest.mark.sumo
-@pytest.mark.slow
-def test_the_hour_of_a_shipped_scenario_holds() -> None:
-    assert _failing(check(open_scenario("grid"))) == {}

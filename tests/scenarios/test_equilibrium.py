@@ -195,7 +195,7 @@ def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, t
     options = EquilibriumSettings(steps=6, gap=0.01, minutes=15)
     equilibrate(folder, found, options, lambda step: None)
     told: list[optimum.OptimumStep] = []
-    compared = optimum.compare(found, target, options, (1, 2, 3), told.append, force=False)
+    compared = optimum.compare(found, target, options, (1, 2, 3), told.append)
     assert tuple(told) == compared.steps
     low, high = compared.interval
     assert low < compared.price_of_anarchy < high
@@ -207,7 +207,7 @@ def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, t
     assert ways[1] < ways[0], "fewer take the short way"
     assert json.loads((target / optimum.RECORD).read_text())["price_of_anarchy"] == compared.price_of_anarchy
     with pytest.raises(UserError, match="exists"):
-        optimum.compare(found, target, options, (1, 2), told.append, force=False)
+        optimum.compare(found, target, options, (1, 2), told.append)
 
 
 def test_demand_that_would_be_lost_is_refused(jammed: Path, tmp_path: Path) -> None:

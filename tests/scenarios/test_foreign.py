@@ -104,7 +104,7 @@ def test_a_folder_with_one_configuration_opens_as_that(foreign: Path) -> None:
 
 
 @pytest.mark.sumo
-@pytest.mark.parametrize("name", ["grid", "paris_centre"])
+@pytest.mark.parametrize("name", ["grid", pytest.param("paris_centre", marks=pytest.mark.proof)])
 def test_a_bare_network_runs_with_light_traffic_and_says_so(name: str) -> None:
     net = next(scenarios.load(name).folder.glob("*.net.xml*"))
     scenario = open_scenario(net)
@@ -287,7 +287,7 @@ def test_a_scenarios_folder_without_projection_is_refused_unless_gps_is_asked_to
 # --- the networks of others ----------------------------------------------------------------------
 
 
-@pytest.mark.slow
+@pytest.mark.proof
 @pytest.mark.parametrize("name", OTHERS)
 def test_real_scenarios_run_with_their_own_demand(name: str, simulations, data_of_others) -> None:
     path = data_of_others(OTHERS[name])

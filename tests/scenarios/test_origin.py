@@ -36,8 +36,11 @@ PLACES = {
 DRY = Weather(22.0, 50.0, 0.0, 0, 0.0, 20_000.0, 8.0)
 
 
-@pytest.mark.parametrize("country", PLACES)
-@pytest.mark.parametrize("name", scenarios.shipped())
+@over(
+    (name, [*PLACES][(number + more) % len(PLACES)])
+    for number, name in enumerate(scenarios.shipped())
+    for more in (0, 2)
+)
 def test_any_shipped_network_lies_where_it_is_put(name: str, country: str) -> None:
     origin, zone = PLACES[country]
     home, away = scenarios.load(name), open_scenario(name, origin=origin)

@@ -24,9 +24,11 @@ GRID = scenarios.load("grid")
 
 
 def _colours(picture: Image.Image) -> Counter[tuple[int, ...]]:
-    pixels = np.asarray(picture).reshape(-1, 3)
-    values, counts = np.unique(pixels, axis=0, return_counts=True)
-    return Counter({tuple(map(int, value)): int(count) for value, count in zip(values, counts, strict=True)})
+    packed = np.asarray(picture).astype(np.int32) @ (1 << 16, 1 << 8, 1)
+    values, counts = np.unique(packed, return_counts=True)
+    return Counter(
+        {(v >> 16, v >> 8 & 255, v & 255): n for v, n in zip(values.tolist(), counts.tolist(), strict=True)}
+    )
 
 
 @pytest.mark.parametrize("name", scenarios.shipped())

@@ -6,13 +6,10 @@ import json
 import os
 import shutil
 import socket
-import sys
 import threading
 from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import quote
-
-import pytest
 
 from automotive_cosim.formats.files import MOST_VALUES
 from automotive_cosim.run.road_recorder import is_being_written
@@ -22,7 +19,6 @@ from tests.laws import over
 from .conftest import HOSTILE, Browser, write_evaluation, write_record
 
 Serving = Callable[..., Browser]
-unix = pytest.mark.skipif(sys.platform == "win32", reason="has no pipes with a name, and links need rights")
 
 POSTS = ("/api/play/start", "/api/play/act", "/api/play/pace", "/api/play/leave", "/api/study/join",
          "/api/study/begin", "/api/study/answer", "/api/study/play/act")  # fmt: skip
@@ -32,7 +28,6 @@ def shown(browser: Browser) -> list[str]:
     return sorted(record["name"] for record in browser("/api/runs").json["records"])
 
 
-@unix
 def test_pipes_in_a_folder_hang_nothing(serving: Serving, tmp_path: Path) -> None:
     write_record(tmp_path / "good")
     for name, files in (
@@ -58,7 +53,6 @@ def test_pipes_in_a_folder_hang_nothing(serving: Serving, tmp_path: Path) -> Non
         assert browser(f"/api/evaluations/{record['id']}").status in (200, 404)
 
 
-@unix
 def test_links_in_an_evaluation_do_not_lead_out(serving: Serving, tmp_path: Path) -> None:
     secret = write_evaluation(tmp_path / "secret", agent="a-secret")
     for number, name in enumerate(("manifest.json", "episodes.jsonl", "traces/one.jsonl.gz", "pictures/one")):
@@ -97,7 +91,6 @@ def test_json_that_grows_when_it_is_read_is_refused_and_hides_nothing(serving: S
         assert answer.headers["Content-Type"].startswith("application/json")
 
 
-@unix
 def test_whether_a_pipe_is_written_is_not_waited_for(tmp_path: Path) -> None:
     os.mkfifo(tmp_path / "lock")
     assert not is_being_written(tmp_path / "lock")
@@ -124,7 +117,7 @@ def test_fifty_spectators_are_all_answered(serving: Serving, tmp_path: Path) -> 
     answers: list[int] = []
 
     def watch() -> None:
-        for path in ("", "/steps", "/road", "/pictures/0"):
+        for path in ("/steps", "/pictures/0"):
             answers.append(browser(f"/api/runs/{record['id']}{path}").status)
 
     watching = [threading.Thread(target=watch) for _ in range(50)]
@@ -132,7 +125,7 @@ def test_fifty_spectators_are_all_answered(serving: Serving, tmp_path: Path) -> 
         each.start()
     for each in watching:
         each.join(60)
-    assert answers == [200] * 200
+    assert answers == [200] * 100
 
 
 @over(POSTS)

@@ -155,7 +155,7 @@ def test_leaving_what_counts_is_the_persons_failure() -> None:
 def test_a_person_is_judged_as_an_agent_and_can_leave(
     serving: Serving, tmp_path: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.2)
+    monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.1)
     browser = serving(tmp_path, game=Game(tmp_path, "grid", simulations))
 
     def until(*states: str, when: Callable[[Any], bool] = lambda scene: True) -> Any:
@@ -227,7 +227,7 @@ def test_a_drive_is_played_and_its_row_is_kept(
     serving: Serving, tmp_path: Path, simulations: Simulations, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     family = FAMILIES["grid_june"]
-    shorter = replace(family.draw(1), duration_s=110.0)
+    shorter = replace(family.draw(1), duration_s=60.0)
     drawn = SimpleNamespace(id=family.id, scenario=family.scenario, season=family.season, draw=lambda seed: shorter)
     monkeypatch.setitem(FAMILIES, family.id, drawn)  # type: ignore[call-overload]
     monkeypatch.setattr("automotive_cosim.serve.person.TICK_S", 0.02)

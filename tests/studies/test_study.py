@@ -21,6 +21,7 @@ from automotive_cosim.cli.study import app
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.layout import LIVE, ROAD, STEPS
+from automotive_cosim.report.files import write_files
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.road import read_record
@@ -32,6 +33,7 @@ from automotive_cosim.studies.batch import run_study
 from automotive_cosim.studies.data import futures
 from automotive_cosim.studies.demand import read_demand
 from automotive_cosim.studies.drive import NO_ROOM
+from automotive_cosim.studies.effects import effects
 from automotive_cosim.studies.live import WATCHED, LiveDrive
 from automotive_cosim.studies.page import write_study
 from automotive_cosim.studies.plan import StudyPlan
@@ -39,6 +41,7 @@ from automotive_cosim.studies.points import NOT_CLEARED
 from automotive_cosim.studies.results import load_study, read_study
 from automotive_cosim.studies.rows import NOTHING, DriveRow
 from automotive_cosim.studies.tables import policies as policy_table
+from automotive_cosim.studies.tables import tables
 from automotive_cosim.studies.tracks import TRACKS
 from automotive_cosim.studies.warnings import steps_told
 from automotive_cosim.traffic.chance import Fresh
@@ -61,6 +64,12 @@ def steady(folder: Path) -> dict[str, Json]:
     return {name: steady_part(row) for name, row in read_rows(folder, DriveRow).items()}
 
 
+def write_tables(folder: Path) -> None:
+    """As much of a report as takes no time."""
+    study = read_study(folder)
+    write_files(folder, [*tables(study), *(table for table in effects(study) if table.rows)], ())
+
+
 @pytest.fixture(scope="module")
 def plan(two_ways: Draw) -> StudyPlan:
     """Two seeds, two departures, and trips that have nothing to decide."""
@@ -81,6 +90,12 @@ def folder(plan: StudyPlan, tmp_path_factory: pytest.TempPathFactory) -> Path:
     end = run_study(plan, folder)
     assert (end.done, end.errors) == (len(plan.jobs()), 0)
     return folder
+
+
+@pytest.fixture(scope="module")
+def page(folder: Path) -> str:
+    """The report of the study, with its tables and data."""
+    return write_study(folder).read_text(encoding="utf-8")
 
 
 def test_order_and_number_of_workers_do_not_show(plan: StudyPlan, folder: Path, tmp_path: Path) -> None:
@@ -199,8 +214,7 @@ def test_every_future_of_a_decision_says_its_way(folder: Path) -> None:
         assert len({(way[0], way[-1]) for way in decision.ways}) == 1, "from one place to the same destination"
 
 
-def test_the_report_is_whole(folder: Path) -> None:
-    page = write_study(folder).read_text(encoding="utf-8")
+def test_the_report_is_whole(folder: Path, page: str) -> None:
     assert "2 seeds have a decision" in page
     assert "no alternative" in page
     assert "one-shot" in page
@@ -227,8 +241,8 @@ def test_the_report_is_whole(folder: Path) -> None:
         assert (folder / "plots" / f"{name}.svg").read_text(encoding="utf-8").startswith("<svg")
 
 
+@pytest.mark.usefixtures("page")
 def test_every_future_is_a_row_and_the_package_describes_it(folder: Path) -> None:
-    write_study(folder)
     study = read_study(folder)
     decisions = [decision for row in study.rows for decision in row.decisions]
     with (folder / "futures.csv").open(encoding="utf-8", newline="") as file:
@@ -255,10 +269,10 @@ def test_every_future_is_a_row_and_the_package_describes_it(folder: Path) -> Non
             ]
 
 
+@pytest.mark.usefixtures("page")
 def test_parquet_holds_the_same(folder: Path) -> None:
     pd = pytest.importorskip("pandas")
     pytest.importorskip("pyarrow")
-    write_study(folder)
     for name in ("choices", "futures"):
         read = pd.read_parquet(folder / f"{name}.parquet")
         assert list(read.columns) == list(pd.read_csv(folder / f"{name}.csv").columns)
@@ -324,7 +338,7 @@ def test_each_share_is_traffic_of_its_own(two_ways: Draw, tmp_path: Path) -> Non
     study = read_study(tmp_path / "shares")
     assert [row.share for row in study.rows] == [0.0, 1.0]
     assert {each.share for each in study.choices} == {0.0, 1.0}
-    write_study(tmp_path / "shares")
+    write_tables(tmp_path / "shares")
     assert "Too few seeds" in (tmp_path / "shares" / "tables" / "by_share.md").read_text()
 
 
@@ -360,7 +374,7 @@ def test_a_whole_drive_gains_what_its_one_rerouting_does(two_ways: Draw, tmp_pat
     free = {row.trip: row for row in study.rows}["free"]
     assert free.excluded == "no congestion met"
     assert {each.branch.gains for each in free.whole} == {NOTHING}
-    write_study(tmp_path / "whole")
+    write_tables(tmp_path / "whole")
     text = (tmp_path / "whole" / "tables" / "whole.csv").read_text()
     assert "always,100%,3,0" in text, "the drives without a decision count; the one that has nowhere to go does not"
 
@@ -388,7 +402,7 @@ def test_many_at_once_start_from_the_one(two_ways: Draw, tmp_path: Path) -> None
     assert alone.rest_gain_s == branch.others.gain_s
     assert 0 < everybody.took <= everybody.could == alone.could < branch.others.count
     assert everybody.took_gain_s < 0, "the other way is half as long again and nothing holds them up on their own"
-    write_study(tmp_path / "many")
+    write_tables(tmp_path / "many")
     assert (tmp_path / "many" / "tables" / "many.md").read_text().count("\n| 0% |") == 2
 
 
@@ -407,7 +421,7 @@ def test_a_closure_costs_who_would_have_driven_there(two_ways: Draw, tmp_path: P
     assert found.open_gain_s == decision.branches[0].gains.time_s > 0
     assert found.other_loss_s == pytest.approx(found.open_gain_s - found.gain_s)
     assert found.gain_s == pytest.approx(0, abs=5), "both end up on the main road"
-    write_study(tmp_path / "closed")
+    write_tables(tmp_path / "closed")
     assert (tmp_path / "closed" / "tables" / "closed.md").read_text().count("\n| 0% | 1 | 0 |") == 1
 
 
@@ -443,7 +457,7 @@ def test_emissions_are_of_everyone_by_class_and_the_ego_can_be_electric(two_ways
     assert lorries.count > 0
     saved = (lorries.co2_g, lorries.nox_g, lorries.fuel_g, lorries.energy_wh, lorries.noise_s)
     assert saved == (0, 0, 0, 0, 0), "nobody is in their way"
-    write_study(tmp_path / "fleet")
+    write_tables(tmp_path / "fleet")
     assert "Energy/default" in (tmp_path / "fleet" / "tables" / "fleet.md").read_text()
 
 
@@ -613,21 +627,8 @@ def test_the_command(two_ways: Draw, tmp_path: Path) -> None:
 def test_several_networks_in_one_table(two_ways: Draw, tmp_path: Path) -> None:
     """Each row is what its own study says; a second network may have trips with nothing to decide."""
     names = ",".join(str(two_ways(more=more)) for more in ("", MORE_TRIPS))
-    words = [
-        "suite",
-        "--scenarios",
-        names,
-        "--departures",
-        "0",
-        "--seeds",
-        "0",
-        "--per-drive",
-        "1",
-        "--workers",
-        "1",
-        "--warm-ups",
-        "0,30",
-    ]
+    words = ["reroute", "--scenario", names, "--departures", "0", "--seeds", "0", "--per-drive", "1"]
+    words += ["--warm-up", "0,30", "--policies", "never,always,best"]
     text, error = invoke(*words, "--replicates", "1", "--out", str(tmp_path / "suite"), "--json")
     assert error is None, text
     told = json.loads(text.strip().splitlines()[-1])["networks"]

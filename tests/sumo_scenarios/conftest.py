@@ -1,4 +1,8 @@
-"""Runs of the `sumo` binary on the shipped scenarios, kept for the session."""
+"""Runs of the `sumo` binary on the shipped scenarios, kept for the session.
+
+The scenarios are data, which cannot go wrong while nobody touches them: what is asked of their networks and of
+their traffic is a proof (``proven``).
+"""
 
 from __future__ import annotations
 
@@ -63,12 +67,12 @@ def run_sumo(scenario: Scenario, seed: int, *options: str) -> str:
 
 
 @pytest.fixture(scope="session")
-def complaints(sumo: None) -> Callable[..., str]:
+def complaints(sumo: None, proof: None) -> Callable[..., str]:
     return run_sumo
 
 
 @pytest.fixture(scope="session")
-def net() -> Callable[[str], Any]:
+def net(proof: None) -> Callable[[str], Any]:
     """A scenario's network, as sumolib reads it."""
 
     @cache
@@ -104,7 +108,7 @@ def lonlat(net: Callable[[str], Any]) -> Callable[[str, str], tuple[float, float
 
 
 @pytest.fixture(scope="session")
-def hour(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Hour]:
+def hour(sumo: None, proof: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Hour]:
     """A scenario's traffic for an hour, and in it every trip of the ego, driven at the limit or 130 km/h."""
 
     @cache
@@ -176,7 +180,7 @@ def _read(summary: Path, statistic: Path, edges: Path, rides: dict[str, Ride]) -
 
 
 @pytest.fixture(scope="session")
-def held_s(sumo: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., float]:
+def held_s(sumo: None, proof: None, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., float]:
     """Longest unbroken time (s) in which a driver of that speed factor, on that trip and in live traffic, is
     faster than ``speed_kmh`` where ``limit_kmh`` is posted, in the first ``within_s`` of the drive."""
 

@@ -132,7 +132,6 @@ def test_axes_without_a_signal(edges: list[str], net: Net) -> None:
     assert all(edge.getParam("maxspeed") == "50" for edge in pieces)
 
 
-@pytest.mark.slow
 def test_a_hurried_driver_holds_80_on_the_avenue_foch(held_s: Callable[..., float]) -> None:
     """In other traffic than ``tasks validate`` has, which finds 80 in a 50 there with its seeds."""
     drive = dict(factor=1.6, speed_kmh=78.0, limit_kmh=50.0, within_s=240.0)
@@ -140,12 +139,11 @@ def test_a_hurried_driver_holds_80_on_the_avenue_foch(held_s: Callable[..., floa
 
 
 @pytest.mark.parametrize("seed", [3, 14, 159])
-def test_an_average_driver_holds_80_on_the_plain(seed: int, held_s: Callable[..., float]) -> None:
+def test_an_average_driver_holds_80_on_the_plain_of_beauce(seed: int, held_s: Callable[..., float]) -> None:
     drive = dict(factor=1.0, speed_kmh=76.0, limit_kmh=80.0, within_s=240.0)
     assert held_s("beauce", "plain", seed=seed, **drive) >= 60
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("street", ["Quai du Louvre", "Rue de Rivoli"])
 def test_the_quays_and_rivoli_jam_while_foch_runs(street: str, net: Net, hour: Callable[[str], Any]) -> None:
     paris, speed = net("paris_centre"), hour("paris_centre").speed_mps

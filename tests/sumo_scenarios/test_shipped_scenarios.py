@@ -19,6 +19,8 @@ from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import NO_LIMIT_FROM_MPS
 from tests.laws import over
 
+from .proven import changed
+
 Net = Callable[[str], Any]
 SHIPPED = scenarios.shipped()
 COUNTRIES = {"border": {"IE", "GB"}}
@@ -30,6 +32,11 @@ def signed_kmh(maxspeed: str) -> float:
     number, _, unit = maxspeed.partition(" ")
     assert unit in ("", "mph")
     return float(number) * (1.609344 if unit else 1.0)
+
+
+def test_every_scenario_is_as_it_was_proven() -> None:
+    names = " ".join(changed())
+    assert not names, f"prove again what has changed: python -m tests.sumo_scenarios.proven {names}"
 
 
 def test_the_catalogue_is_shipped() -> None:
@@ -131,7 +138,9 @@ def _levels_differ(a: Any, b: Any) -> bool:
 
 
 @pytest.mark.sumo
-@pytest.mark.parametrize("name", build.buildable())
+@pytest.mark.parametrize(
+    "name", [name if name == "grid" else pytest.param(name, marks=pytest.mark.proof) for name in build.buildable()]
+)
 def test_the_shipped_net_is_what_its_plain_xml_builds(name: str) -> None:
     built = build.compile_net(name)
     shipped = build.shipped_net(name)
@@ -175,7 +184,6 @@ def test_the_ego_arrives(name: str, rides: Callable[[str], Any]) -> None:
     assert [trip for trip, ride in rides(name).items() if not ride.arrived] == []
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("name", SHIPPED)
 def test_traffic_stays_alive_for_an_hour(name: str, hour: Callable[[str], Any]) -> None:
     """From 900 s on and for 3,600 s: under a quarter halted, nobody teleported. SUMO teleports whoever waits for

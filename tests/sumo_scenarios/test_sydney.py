@@ -13,7 +13,7 @@ from typing import Any
 import pytest
 
 from automotive_cosim import scenarios
-from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, LimitSource
+from automotive_cosim.contracts import KMH_PER_MPS, LimitSource
 from automotive_cosim.geo.locate import Geo
 from automotive_cosim.sumo_scenarios import build
 from automotive_cosim.traffic.base import EgoPlan
@@ -52,7 +52,7 @@ def sydney() -> Network:
 
 
 @pytest.fixture(scope="module")
-def forked(sumo: None) -> Iterator[Forked]:
+def forked(sumo: None, proof: None) -> Iterator[Forked]:
     simulation = Forked(scenarios.load("sydney"), seed=1)
     yield simulation
     simulation.close()
@@ -148,16 +148,3 @@ def test_in_the_dark_others_come_within_the_distance_of_high_beam_and_leave_it(f
     )
     alone = [not (a or b) for a, b in zip(oncoming, leader, strict=True)]
     assert min(sum(oncoming), sum(leader), sum(alone)) * 0.1 > 20
-
-
-@pytest.mark.sumo
-def test_the_drive_that_arrives_as_congestion_is_sampled_ends_as_an_arrival() -> None:
-    """With this seed the ego leaves the network in the very step in which the network's speeds are sampled."""
-    scenario = scenarios.load("sydney")
-    simulation = Forked(scenario, 14)
-    drive = simulation.depart(EgoPlan(scenario.trip("school_run"), "average", 14))
-    while drive.state.end is None:
-        drive.advance(60.0)
-    assert drive.state.end is EgoEnd.ARRIVED
-    drive.close()
-    simulation.close()

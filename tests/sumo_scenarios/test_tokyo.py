@@ -44,7 +44,7 @@ def tokyo() -> Network:
 
 
 @pytest.fixture(scope="module")
-def forked(sumo: None) -> Iterator[Forked]:
+def forked(sumo: None, proof: None) -> Iterator[Forked]:
     simulation = Forked(scenarios.load("tokyo"), seed=1)
     yield simulation
     simulation.close()

@@ -1,4 +1,4 @@
-"""Tasks on the real road: each module's proven, and place deciding where it must."""
+"""Tasks on the real road: one proven, and place deciding where it must."""
 
 import itertools
 from collections.abc import Callable
@@ -25,7 +25,6 @@ SEED = 0
 LANE_WIDTH_M = 3.5
 """SUMO changes lanes within one step."""
 SPEED = CATALOGUE["road_speed_80_in_50"]
-SAMPLE = ("maps", "hvac", "road", "phenomenon", "media", "apps", "system", "comms")
 
 Play = Callable[..., Episode]
 
@@ -52,14 +51,11 @@ def verdict(episode: Episode) -> Verdict:
     return episode.verdict
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("module", SAMPLE)
-def test_a_task_of_each_module_passes_every_gate(simulations, module: str):
-    """All tasks are proven by ``automotive-cosim tasks validate``; here one each, the cheapest gates aside."""
-    task = min((task for task in CATALOGUE.values() if task.module == module), key=lambda task: task.optimal_steps)
+def test_a_task_passes_every_gate(simulations):
+    """All tasks are proven by ``automotive-cosim tasks validate``; here a short one, the cheapest gates aside."""
     later = ("random", "reach", "effect", "uncoupled")  # the last two have findings that are not settled yet
     prover = Prover(tuple(gate for gate in GATES if gate not in later), simulations)
-    proof = prover.prove(task.id, SEED)
+    proof = prover.prove("media_full_volume", SEED)
     assert proof.error is None
     assert {gate: wrong for gate, wrong in proof.wrong.items() if wrong} == {}
     assert set(proof.wrong) >= {"oracle", "start", "trivial", "repeat"}

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from contextlib import closing
 from functools import cache
+from itertools import cycle
 from string import Formatter
 
 import pytest
@@ -189,11 +190,10 @@ def test_a_task_without_phrasings_is_refused():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("language", FOREIGN)
-def test_the_oracle_wins_in_traffic(language: Language, simulations: Simulations):
+def test_the_oracle_wins_in_traffic(simulations: Simulations):
     """What the words of the driver, the screens and the verdict share; the rest of the suite is solved without
     traffic (``test_solutions.py``)."""
-    for task in ON_THE_GRID:
+    for task, language in zip(ON_THE_GRID, cycle(FOREIGN)):
         spec = EpisodeSpec(task, scenario="grid", conditions=Conditions(language=language))
         hand_over = SituationFinder(spec, simulations).find(SeedSource(0).next())
         with closing(Episode.take_over(hand_over, SessionSetup())) as episode:

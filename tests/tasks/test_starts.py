@@ -45,10 +45,16 @@ def is_about_lamps(half: Half) -> bool:
     return any(path.startswith("Vehicle.Body.Lights.") for path in half.goal.writes | half.may_write)
 
 
+@cache
+def halves_of(task_id: str) -> list[Half]:
+    return [draw(CATALOGUE[task_id], name, 0).half for name in CATALOGUE[task_id].halves]
+
+
 def is_lit(task: Task, name: str) -> bool:
     """Whether the driver has switched the low beam on before the task begins, in a task that is not about lamps."""
-    halves = [draw(task, each, 0).half for each in task.halves]
-    return task.half(name).start.signals.get(LIGHTS.SWITCH.path) == "BEAM" and not any(map(is_about_lamps, halves))
+    return task.half(name).start.signals.get(LIGHTS.SWITCH.path) == "BEAM" and not any(
+        map(is_about_lamps, halves_of(task.id))
+    )
 
 
 @cache
@@ -60,7 +66,7 @@ def place_of(scenario: Scenario, trip: str) -> tuple[float, float, Place]:
 
 
 @pytest.mark.slow
-@over([case for case in HALVES if is_lit(*case)])
+@over(case for case in HALVES if is_lit(*case))
 def test_lamps_are_lit_by_day_only_where_weather_or_law_asks_for_it(task, name):
     start = task.half(name).start
     scenario = opened(start.scenario, start.origin)
@@ -105,17 +111,15 @@ ROAD_KMH, FOGGED_AFTER_S = 90.0, 15.0
 
 def is_granted_or_refused(task: Task) -> bool:
     """Whether a wish about the air is granted in one half and dangerous in the other."""
-    halves = [draw(task, name, 0).half for name in task.halves]
+    halves = halves_of(task.id)
     asks = any(half.goal.writes & AIR for half in halves)
     return asks and any(Reason.SAFETY in half.reasons for half in halves)
 
 
 @over(
-    [
-        (task, name)
-        for task, name in HALVES
-        if is_granted_or_refused(task) and task.half(name).declares is GoalStatus.COMPLETE
-    ]
+    (task, name)
+    for task, name in HALVES
+    if is_granted_or_refused(task) and task.half(name).declares is GoalStatus.COMPLETE
 )
 def test_no_fog_on_the_glass_speaks_against_what_is_granted(task, name):
     start = draw(task, name, 0).half.start

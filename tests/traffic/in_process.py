@@ -16,9 +16,8 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.errors import TrafficError
 from automotive_cosim.formats.scenario import Scenario
-from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic, WarmUpProgress
-from automotive_cosim.traffic.drive import Call, EgoDrive
-from automotive_cosim.traffic.fork import replayed
+from automotive_cosim.traffic.base import Advance, EgoPlan, WarmUpProgress
+from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.options import SCRATCH, Setup
 from automotive_cosim.traffic.world import World
 
@@ -26,7 +25,7 @@ from automotive_cosim.traffic.world import World
 class InProcess:
     """A simulation in this process: without messages, but only one at a time.
 
-    A second ``depart`` loads and warms up again; ``branch`` replays the drive in a process of its own.
+    A second ``depart`` loads and warms up again.
     """
 
     _current: InProcess | None = None
@@ -79,7 +78,7 @@ class InProcess:
             self.world.close()
             self.world = self._warm()
         self._fresh = False
-        return InProcessTraffic(self, self.world, self.world.depart(plan), plan)
+        return InProcessTraffic(self, self.world, self.world.depart(plan))
 
     def close(self) -> None:
         """Ends the simulation; may be called again."""
@@ -99,12 +98,10 @@ class InProcess:
 class InProcessTraffic:
     """One drive in this process's simulation, until the next one departs."""
 
-    def __init__(self, owner: InProcess, world: World, drive: EgoDrive, plan: EgoPlan) -> None:
+    def __init__(self, owner: InProcess, world: World, drive: EgoDrive) -> None:
         self._owner: InProcess | None = owner
         self._world = world
         self._drive = drive
-        self._plan = plan
-        self._log: list[Call] = []
 
     @property
     def network(self) -> RoadNetwork:
@@ -122,14 +119,11 @@ class InProcessTraffic:
     def advance(self, duration_s: float) -> Advance:
         """See ``Traffic.advance``."""
         self._check()
-        advance = self._drive.advance(duration_s)
-        self._log.append(len(advance.states))
-        return advance
+        return self._drive.advance(duration_s)
 
     def request(self, request: RoadRequest) -> Answer:
         """See ``Traffic.request``."""
         self._check()
-        self._log.append(request)
         return self._drive.request(request)
 
     def alternatives(self, age_s: float = 0.0) -> tuple[RouteOption, ...]:
@@ -146,10 +140,6 @@ class InProcessTraffic:
         """See ``Traffic.shapes``."""
         self._check()
         return self._drive.shapes()
-
-    def branch(self) -> Traffic:
-        """A copy in a process of its own, which replays the drive so far."""
-        return replayed(self._check().setup, self._plan, self._log)
 
     def close(self) -> None:
         """See ``Traffic.close``."""

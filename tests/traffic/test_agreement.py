@@ -1,4 +1,4 @@
-"""In this process, forked or replayed: the same seed gives the same drive, to the last bit."""
+"""In this process or forked: the same seed gives the same drive, to the last bit."""
 
 from __future__ import annotations
 
@@ -12,11 +12,12 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.contracts import Alert, AlertKind, Cruise, DrivingState, Hazards, Reroute, SlowDown
+from automotive_cosim.errors import TrafficError
 from automotive_cosim.scenarios import Scenario, WeatherAt, load, open_scenario
 from automotive_cosim.traffic.base import EgoPlan, Event, Simulation, Traffic
-from automotive_cosim.traffic.fork import CAN_FORK, Forked, Simulations
+from automotive_cosim.traffic.fork import Forked, Simulations
 from automotive_cosim.traffic.options import Setup
-from tests.traffic.in_process import InProcess
+from tests.traffic.in_process import InProcess, InProcessTraffic
 
 pytestmark = pytest.mark.sumo
 
@@ -25,7 +26,7 @@ Edit = Callable[[Path], None]
 Record = tuple[list[DrivingState], list[Event], list[object]]
 
 
-def eventful(traffic: Traffic) -> Record:
+def eventful(traffic: Traffic | InProcessTraffic) -> Record:
     """Several hundred steps, in advances of many lengths, with requests in between."""
     states, events, answers = [traffic.state], [], []
     for request in (
@@ -40,7 +41,7 @@ def eventful(traffic: Traffic) -> Record:
     ):
         if request is not None:
             answers.append(traffic.request(request))
-        for duration_s in (0.1, 5.0, 2.5):
+        for duration_s in (0.1, 3.0, 1.4):
             drive = traffic.advance(duration_s)
             states += drive.states
             events += drive.events
@@ -59,22 +60,18 @@ def drive_and_branch(simulation: Simulation, plan: EgoPlan) -> tuple[Record, Rec
     return record, branched
 
 
-def test_three_ways_to_run_it_agree(grid: Scenario, forked: Forked, hurried: EgoPlan) -> None:
+def test_both_ways_to_run_it_agree(grid: Scenario, forked: Forked, hurried: EgoPlan) -> None:
     hurried = replace(hurried, wait_s=3.0)
     expected = drive_and_branch(forked, hurried)
     assert len(expected[0][0]) > 300
     assert any(event.kind == "driver_slows" for event in expected[0][1])
     in_process = InProcess(grid, seed=1)
     try:
-        assert drive_and_branch(in_process, hurried) == expected
-        assert drive_and_branch(in_process, hurried) == expected, "a second departure starts from the same traffic"
+        for _ in range(2):  # a second departure starts from the same traffic
+            traffic = in_process.depart(hurried)
+            assert (eventful(traffic), eventful(traffic)) == expected
     finally:
         in_process.close()
-    replaying = Forked(grid, seed=1, by_replay=True)
-    try:
-        assert drive_and_branch(replaying, hurried) == expected
-    finally:
-        replaying.close()
 
 
 def test_a_later_departure_meets_other_traffic(forked: Forked, hurried: EgoPlan) -> None:
@@ -125,53 +122,43 @@ def test_one_long_advance_equals_many_short_ones(forked: Forked, hurried: EgoPla
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("with_everything", [False, True])
-def test_a_branch_reads_its_own_demand(
-    variant: Callable[..., Scenario], walkable: Edit, hurried: EgoPlan, with_everything: bool
-) -> None:
-    """SUMO reads a long demand piece by piece, far behind a fork; so too with sublanes, people and weather."""
+def test_a_branch_reads_its_own_demand(variant: Callable[..., Scenario], walkable: Edit, hurried: EgoPlan) -> None:
+    """SUMO reads a long demand piece by piece, far behind a fork; with sublanes, people and weather."""
 
     def long_demand(folder: Path) -> None:
-        if with_everything:
-            walkable(folder)
+        walkable(folder)
         edges = ("cwc0 c0c1 c1c2 c2c3 c3c4 c4ce", "cec4 c4c3 c3c2 c2c1 c1c0 c0cw", "sws0 s0s1 s1s2 s2s3 s3s4 s4se")
         rows = [
             f'<vehicle id="v{k}" depart="{k / 2:.1f}" departLane="best"><route edges="{edges[k % 3]}"/>'
             f'<param key="filler" value="{"x" * 2000}"/></vehicle>'
             for k in range(1200)
         ]
-        if with_everything:
-            rows.insert(
-                0, '<personFlow id="p" begin="0" end="600" period="7"><walk edges="n2c2 c2s2"/></personFlow>'
-            )
+        rows.insert(0, '<personFlow id="p" begin="0" end="600" period="7"><walk edges="n2c2 c2s2"/></personFlow>')
         (folder / "grid.rou.xml").write_text("<routes>" + "\n".join(rows) + "</routes>")
         text = (folder / "scenario.toml").read_text().replace("step_length_s = 0.1", "step_length_s = 0.5")
         (folder / "scenario.toml").write_text(
-            text.replace(
-                "background_rerouting = 0.6",
-                "background_rerouting = 1" + ("\nlateral_resolution_m = 0.8" if with_everything else ""),
-            )
+            text.replace("background_rerouting = 0.6", "background_rerouting = 1\nlateral_resolution_m = 0.8")
         )
 
     scenario = variant(long_demand)
     assert (scenario.folder / "grid.rou.xml").stat().st_size > 2**21
     # a car that stands at the side sees the traffic go by
-    plan = EgoPlan(replace(hurried.trip, to_edge="n4ne", via=("s3s4", "n1n0")), "calm", seed=3)
-    if with_everything:
-        codes = ((0.0, 2), (50.0, 63), (150.0, 75), (250.0, 66), (350.0, 2))
-        weather = scenario.weather[0].weather
-        plan = replace(plan, weather=tuple(WeatherAt(at_s, replace(weather, weather_code=c)) for at_s, c in codes))
+    codes = ((0.0, 2), (30.0, 63), (80.0, 75), (130.0, 66), (180.0, 2))
+    sky = scenario.weather[0].weather
+    weather = tuple(WeatherAt(at_s, replace(sky, weather_code=code)) for at_s, code in codes)
+    trip = replace(hurried.trip, to_edge="n4ne", via=("s3s4", "n1n0"))
+    plan = EgoPlan(trip, "calm", seed=3, weather=weather)
     simulation = Forked(scenario, seed=4)
     traffic = simulation.depart(plan)
     traffic.request(Cruise(6.0))
     traffic.advance(20.0)
     branch = traffic.branch()
     twig = branch.branch()
-    expected = traffic.advance(400.0).states
-    assert len(expected) >= 750
+    expected = traffic.advance(200.0).states
+    assert len(expected) >= 375
     assert max(state.vehicle_count for state in expected) > 20
     for other in (branch, twig):
-        assert other.advance(400.0).states == expected
+        assert other.advance(200.0).states == expected
         other.close()
     traffic.close()
     simulation.close()
@@ -216,21 +203,6 @@ def test_states_are_sumos_own_and_every_branch_writes_its_own(
     assert not rows_of(tmp_path / "warm" / "fcd.xml"), "the warm traffic has no ego"
 
 
-def test_a_shipped_scenario_is_found_from_any_folder(
-    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, forked: Forked, hurried: EgoPlan
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    monkeypatch.setenv("SUMO_HOME", str(tmp_path / "another_sumo"))
-    monkeypatch.setenv("PROJ_DATA", str(tmp_path / "another_proj"))
-    elsewhere = Forked(load("grid"), seed=1)
-    drives = [simulation.depart(hurried) for simulation in (forked, elsewhere)]
-    assert drives[0].advance(10.0) == drives[1].advance(10.0)
-    for drive in drives:
-        drive.close()
-    elsewhere.close()
-    assert not list(tmp_path.iterdir())
-
-
 def moved_and_warmed_up(places: Sequence[Scenario], trip: str) -> list[Record]:
     """A drive at each place in traffic that was moved there, which is as the one in traffic warmed up there."""
     records = []
@@ -247,7 +219,6 @@ def moved_and_warmed_up(places: Sequence[Scenario], trip: str) -> list[Record]:
     return records
 
 
-@pytest.mark.skipif(not CAN_FORK, reason="copies are made by fork")
 def test_traffic_moved_to_another_place_is_as_if_it_had_been_warmed_up_there(
     variant: Callable[[Edit], Scenario],
 ) -> None:
@@ -268,7 +239,6 @@ def test_traffic_moved_to_another_place_is_as_if_it_had_been_warmed_up_there(
     assert len(set(map(frozenset, told))) == 3, "streets have names in the language of the place"
 
 
-@pytest.mark.skipif(not CAN_FORK, reason="copies are made by fork")
 def test_moved_traffic_keeps_the_limits_that_came_into_force_while_it_warmed_up() -> None:
     scenario = load("autobahn")
     short = replace(scenario.sumo, warm_up_s=30.0)
@@ -292,3 +262,32 @@ def test_traffic_of_other_weather_hours_or_sides_is_not_the_same(grid: Scenario)
     assert all(Setup(other).traffic != Setup(grid).traffic for other in others)
     assert Setup(grid, 1).traffic != Setup(grid, 2).traffic
     assert Setup(replace(grid, start=grid.start.replace(tzinfo=UTC))).traffic == Setup(grid).traffic
+
+
+def test_the_pool_keeps_the_latest(grid: Scenario, hurried: EgoPlan) -> None:
+    pool, grid = Simulations(count_limit=2), replace(grid, sumo=replace(grid.sumo, warm_up_s=5.0))
+    first = pool.warm(grid, 1)
+    traffic = first.depart(hurried)
+    assert pool.warm(grid, 2) is not first
+    assert pool.warm(grid, 1) is first
+    pool.warm(grid, 3)
+    assert pool.warm(grid, 1) is first, "the second was used longest ago"
+    pool.warm(grid, 4)
+    pool.warm(grid, 5)
+    with pytest.raises(TrafficError, match="closed"):
+        first.depart(hurried)
+    assert traffic.advance(1.0).states
+    traffic.close()
+    pool.close()
+    pool.close()
+
+
+def test_of_one_traffic_at_two_places_the_pool_gives_up_one_first(grid: Scenario) -> None:
+    elsewhere = open_scenario("grid", origin=(-3.7, 40.4))
+    assert Setup(elsewhere).traffic != Setup(grid).traffic, "its weather is drawn"
+    there = open_scenario("grid", origin=(13.4, 52.5))
+    with closing(Simulations(count_limit=2)) as pool:
+        home = pool.warm(grid, 1)
+        pool.warm(elsewhere, 1)
+        pool.warm(there, 1)
+        assert pool.warm(grid, 1) is home, "used longest ago, but its traffic would have to be warmed up"

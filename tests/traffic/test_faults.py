@@ -7,7 +7,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -15,12 +15,11 @@ from threading import Timer
 
 import pytest
 
-from automotive_cosim.errors import NoRoomError, ScenarioError, SetupError, TrafficError, UnknownNameError
-from automotive_cosim.scenarios import Scenario, open_scenario
+from automotive_cosim.errors import SetupError, TrafficError
+from automotive_cosim.scenarios import Scenario, load
 from automotive_cosim.traffic import remote, sumo
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.fork import CAN_FORK, Forked, Simulations
-from automotive_cosim.traffic.options import Setup
+from automotive_cosim.traffic.fork import Forked
 from tests.traffic.in_process import InProcess
 
 pytestmark = pytest.mark.sumo
@@ -28,6 +27,13 @@ pytestmark = pytest.mark.sumo
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
+
+
+@pytest.fixture(scope="module")
+def forked(grid: Scenario) -> Iterator[Forked]:
+    """Started as programs start it, whatever other modules share."""
+    with closing(Forked(grid, seed=1)) as simulation:
+        yield simulation
 
 
 def is_running(pid: int) -> bool:
@@ -72,17 +78,12 @@ def test_a_killed_drive_is_named_and_the_next_departs(forked: Forked, hurried: E
 
 
 @linux
-@pytest.mark.parametrize("by_replay", [False, True])
-def test_a_warm_process_that_died_between_drives_costs_a_reload(
-    grid: Scenario, hurried: EgoPlan, by_replay: bool
-) -> None:
+def test_a_warm_process_that_died_between_drives_costs_a_reload(grid: Scenario, hurried: EgoPlan) -> None:
     short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
-    with closing(Forked(short, seed=1, by_replay=by_replay)) as simulation:
+    with closing(Forked(short, seed=1)) as simulation:
         with closing(simulation.depart(hurried)) as traffic:
             expected = traffic.advance(5.0)
         for _ in range(2):
-            if simulation._source._warm is None:  # by replay, a drive takes it
-                simulation._source._warm = simulation._source._ready()
             os.kill(simulation._source._warm.pid, signal.SIGKILL)
             assert gone([simulation._source._warm.pid])
             assert simulation.memory_bytes == 0
@@ -247,34 +248,10 @@ def test_no_process_outlives_the_program(
     assert gone(pids)
 
 
-def test_the_pool_keeps_the_latest(grid: Scenario, hurried: EgoPlan) -> None:
-    pool = Simulations(count_limit=2)
-    first = pool.warm(grid, 1)
-    traffic = first.depart(hurried)
-    assert pool.warm(grid, 2) is not first
-    assert pool.warm(grid, 1) is first
-    pool.warm(grid, 3)
-    assert pool.warm(grid, 1) is first, "the second was used longest ago"
-    pool.warm(grid, 4)
-    pool.warm(grid, 5)
-    with pytest.raises(TrafficError, match="closed"):
-        first.depart(hurried)
-    assert traffic.advance(1.0).states
-    traffic.close()
-    pool.close()
-    pool.close()
-
-
-@pytest.mark.skipif(not CAN_FORK, reason="elsewhere each place is warmed up")
-def test_of_one_traffic_at_two_places_the_pool_gives_up_one_first(grid: Scenario) -> None:
-    elsewhere = open_scenario("grid", origin=(-3.7, 40.4))
-    assert Setup(elsewhere).traffic != Setup(grid).traffic, "its weather is drawn"
-    there = open_scenario("grid", origin=(13.4, 52.5))
-    with closing(Simulations(count_limit=2)) as pool:
-        home = pool.warm(grid, 1)
-        pool.warm(elsewhere, 1)
-        pool.warm(there, 1)
-        assert pool.warm(grid, 1) is home, "used longest ago, but its traffic would have to be warmed up"
+def test_where_nothing_can_be_forked_it_says_what_to_use(grid: Scenario, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sys, "platform", "darwin")
+    with pytest.raises(SetupError, match="on Windows use WSL, on macOS a container"):
+        Forked(grid)
 
 
 def test_a_process_holds_one_simulation_of_its_own(grid: Scenario, hurried: EgoPlan) -> None:
@@ -290,157 +267,6 @@ def test_a_process_holds_one_simulation_of_its_own(grid: Scenario, hurried: EgoP
     with pytest.raises(TrafficError, match="closed"):
         simulation.depart(hurried)
     InProcess(grid, seed=1).close()
-
-
-# --- scenarios --------------------------------------------------------------------------------------------
-
-
-def edit(name: str, old: str, new: str) -> Callable[[Path], None]:
-    def change(folder: Path) -> None:
-        path = folder / name
-        text = path.read_text(encoding="utf-8")
-        assert old in text
-        path.write_text(text.replace(old, new), encoding="utf-8")
-
-    return change
-
-
-def cut(folder: Path) -> None:
-    path = folder / "grid.net.xml"
-    path.write_bytes(path.read_bytes()[:40_000])
-
-
-LOST_CAR = '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/></vehicle>'
-
-
-@pytest.mark.parametrize(
-    ("change", "said"),
-    [
-        (lambda folder: (folder / "grid.rou.xml").unlink(), r"route-files .*grid\.rou\.xml"),
-        (lambda folder: (folder / "grid.net.xml").unlink(), r"net-file .*grid\.net\.xml"),
-        (lambda folder: (folder / "grid.net.xml").write_text("a map"), "not a complete SUMO network"),
-        (lambda folder: (folder / "grid.net.xml").write_text("<routes/>"), "its root is <routes>"),
-        (lambda folder: (folder / "grid.net.xml").write_text("<net/>"), "no road"),
-        (lambda folder: (folder / "grid.sumocfg").write_text("<configuration/>"), "names no net-file"),
-        (lambda folder: (folder / "grid.sumocfg").write_text("net"), "not a SUMO configuration|is not XML"),
-        (cut, "not a complete SUMO network"),
-        (edit("grid.rou.xml", 'from="cwc0"', 'from="cwc9"'), "cwc9"),
-        (
-            edit(
-                "grid.rou.xml",
-                "</routes>",
-                '<vehicle id="x" depart="1"><route edges="cwc0 n3n4"/>'
-                '<param key="has.rerouting.device" value="false"/></vehicle></routes>',
-            ),
-            "vehicle 'x' sets out at 1.1 s, but its class cannot drive its route 'cwc0 n3n4'",
-        ),
-        (edit("grid.sumocfg", "<processing>", '<processing><no-such-option value="1"/>'), "no-such-option"),
-    ],
-    ids=lambda value: value if isinstance(value, str) else "",
-)
-def test_a_broken_scenario_is_refused_in_one_line(
-    variant: Variant, change: Callable[[Path], None], said: str, capfd: pytest.CaptureFixture[str]
-) -> None:
-    scenario = variant(change)
-    texts = []
-    for make in (Forked, InProcess):
-        with pytest.raises(ScenarioError, match=said) as caught:
-            make(scenario)
-        texts.append(str(caught.value))
-    assert texts[0] == texts[1]
-    assert "\n" not in texts[0]
-    assert capfd.readouterr() == ("", "")
-
-
-def test_a_network_without_projection_is_refused_unless_asked_for(variant: Variant, hurried: EgoPlan) -> None:
-    scenario = variant(edit("grid.net.xml", 'projParameter="+proj=utm', 'projParameter="!" was="+proj=utm'))
-    with pytest.raises(ScenarioError, match="no projection"):
-        Forked(scenario, seed=1)
-    simulation = Forked(scenario, seed=1, allow_unprojected=True)
-    traffic = simulation.depart(hurried)
-    assert traffic.network.projection is None
-    states = traffic.advance(5.0).states
-    assert all(state.lon_deg is None and state.lat_deg is None for state in states)
-    assert states[-1].distance_m > 0
-    traffic.close()
-    simulation.close()
-
-
-def test_a_trip_that_cannot_be_driven_is_refused(forked: Forked, hurried: EgoPlan, variant: Variant) -> None:
-    with pytest.raises(ScenarioError, match=r"no edge 'cwc00'.*did you mean 'cwc0'"):
-        forked.depart(replace(hurried, trip=replace(hurried.trip, from_edge="cwc00")))
-    with pytest.raises(UnknownNameError, match="hurried"):
-        forked.depart(replace(hurried, driver="hurry"))
-
-    def close_the_east(folder: Path) -> None:
-        path = folder / "grid.net.xml"
-        lanes = ('<lane id="cec4_0"', '<lane id="cec4_1"')
-        text = path.read_text()
-        for lane in lanes:
-            assert lane in text
-            text = text.replace(lane, f'{lane} allow="bus"')
-        path.write_text(text)
-        (folder / "grid.rou.xml").write_text("<routes/>")
-
-    simulation = Forked(variant(close_the_east))
-    with pytest.raises(ScenarioError, match="no route for a car leads from 'c4ce' to 'cwc0'"):
-        simulation.depart(replace(hurried, trip=replace(hurried.trip, from_edge="c4ce", to_edge="cwc0")))
-    simulation.close()
-
-
-def test_an_ego_that_finds_no_gap_has_an_error_of_its_own(variant: Variant, hurried: EgoPlan) -> None:
-    """The same from this process and from another."""
-
-    def fill(folder: Path) -> None:
-        """A queue that never moves stands on the ego's first edge, end to end."""
-        stop = '<stop lane="cwc0_{lane}" endPos="{end}" duration="100000"/>'
-        cars = "".join(
-            f'<vehicle id="v{lane}.{place}" depart="0" departLane="{lane}" departPos="{place}" departSpeed="0">'
-            f'<route edges="cwc0"/>{stop.format(lane=lane, end=place)}</vehicle>'
-            for lane in (0, 1)
-            for place in range(6, 290, 7)
-        )
-        (folder / "grid.rou.xml").write_text(f"<routes>{cars}</routes>")
-        config = folder / "grid.sumocfg"
-        config.write_text(config.read_text().replace('time-to-teleport value="300"', 'time-to-teleport value="-1"'))
-
-    scenario = variant(fill)
-    texts = []
-    for make in (Forked, InProcess):
-        with closing(make(scenario, seed=1)) as simulation, pytest.raises(NoRoomError) as caught:
-            simulation.depart(hurried)
-        texts.append(str(caught.value))
-    assert texts == ["the ego found no gap on 'cwc0' in 300 s of simulated time"] * 2
-
-
-def test_a_scenario_folder_is_never_written_to(variant: Variant, hurried: EgoPlan) -> None:
-    """Neither by options, nor by detectors, nor by what additional files include."""
-
-    def talkative(folder: Path) -> None:
-        edit(
-            "grid.sumocfg",
-            "</configuration>",
-            """
-            <output><summary-output value="summary.xml"/><tripinfo-output value="trips.xml"/></output>
-            <fcd-output value="fcd.xml"/><log value="log.txt"/><save-state.times value="10"/>
-            <additional-files value="more.add.xml"/><end value="10"/></configuration>""",
-        )(folder)
-        (folder / "more.add.xml").write_text("""<additional><include href="deep/deeper.add.xml"/>
-            <edgeData id="all" file="edges.xml" freq="10"/></additional>""")
-        (folder / "deep").mkdir()
-        (folder / "deep/deeper.add.xml").write_text("""<additional>
-            <e1Detector id="loop" lane="cwc0_0" pos="20" freq="10" file="loop.xml"/></additional>""")
-
-    scenario = variant(talkative)
-    before = {path: path.stat().st_mtime_ns for path in scenario.folder.rglob("*")}
-    scenario.folder.chmod(0o555)
-    simulation = Forked(scenario, seed=1)
-    traffic = simulation.depart(hurried)
-    assert len(traffic.advance(20.0).states) == 200
-    traffic.close()
-    simulation.close()
-    scenario.folder.chmod(0o755)
-    assert {path: path.stat().st_mtime_ns for path in scenario.folder.rglob("*")} == before
 
 
 # --- set-up -----------------------------------------------------------------------------------------------
@@ -495,7 +321,22 @@ def test_the_package_does_not_load_sumo_by_itself() -> None:
     assert done.stdout.strip() == "set()"
 
 
-def test_a_crash_while_loading_names_the_scenario(variant: Variant) -> None:
+def test_a_shipped_scenario_is_found_from_any_folder(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path, forked: Forked, hurried: EgoPlan
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("SUMO_HOME", str(tmp_path / "another_sumo"))
+    monkeypatch.setenv("PROJ_DATA", str(tmp_path / "another_proj"))
+    elsewhere = Forked(load("grid"), seed=1)
+    drives = [simulation.depart(hurried) for simulation in (forked, elsewhere)]
+    assert drives[0].advance(10.0) == drives[1].advance(10.0)
+    for drive in drives:
+        drive.close()
+    elsewhere.close()
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_crash_while_loading_names_the_scenario(variant: Variant, capfd: pytest.CaptureFixture[str]) -> None:
     """SUMO trusts its networks: a junction with a lane too few can bring it down."""
 
     def take_a_connection(folder: Path) -> None:
@@ -506,3 +347,4 @@ def test_a_crash_while_loading_names_the_scenario(variant: Variant) -> None:
     scenario = variant(take_a_connection)
     with pytest.raises(TrafficError, match=rf"SIGSEGV.*{scenario.config.name}"):
         Forked(scenario)
+    assert capfd.readouterr() == ("", "")

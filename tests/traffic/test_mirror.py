@@ -17,7 +17,7 @@ from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import read_configuration
 from tests.laws import over
 
-DRIVEN_S = 60.0
+DRIVEN_S = 30.0
 
 
 @over(shipped())
@@ -67,7 +67,7 @@ def _drive(simulations: Simulations, scenario: Scenario) -> tuple[list[DrivingSt
     return states, traffic.network.left_hand
 
 
-@pytest.mark.parametrize("name", ["autobahn", "sydney", "border"])
+@pytest.mark.parametrize("name", ["autobahn", "sydney"])
 def test_the_same_drive_on_the_other_side(simulations: Simulations, name: str) -> None:
     """Speeds, lanes, distances and the car ahead are equal to the digit."""
     home = scenarios.load(name)

@@ -26,8 +26,9 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
-from automotive_cosim.scenarios import Scenario, load
+from automotive_cosim.scenarios import Scenario, Trip, load
 from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic
+from automotive_cosim.traffic.congestion import SAMPLE_PERIOD_S
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.sumo import load_library
 from tests.traffic.in_process import InProcess
@@ -413,19 +414,29 @@ def test_nobody_corners_at_the_speed_of_the_straight(empty: Forked, hurried: Ego
     assert peaks[1] < 1.3 * peaks[0]
 
 
-def test_congestion_goes_by_vehicles_and_not_by_lanes() -> None:
+def test_the_drive_that_arrives_as_congestion_is_sampled_ends_as_an_arrival(forked: Forked) -> None:
+    """It leaves the network in the very step in which the network's speeds are sampled."""
+    plan = EgoPlan(Trip("out", "c4ce", "c4ce"), seed=1)
+    with closing(forked.depart(plan)) as early:
+        arrives_s = early.advance(60.0).states[-1].time_s
+    with closing(forked.depart(replace(plan, wait_s=-arrives_s % SAMPLE_PERIOD_S))) as traffic:
+        last = traffic.advance(60.0).states[-1]
+    assert last.time_s % SAMPLE_PERIOD_S == pytest.approx(0.0, abs=1e-6)
+    assert last.end is EgoEnd.ARRIVED
+
+
+def test_congestion_goes_by_vehicles_and_not_by_lanes(in_process: InProcess, hurried: EgoPlan) -> None:
     """SUMO's own mean of an edge takes its empty lanes for free flow; nobody drives in those."""
     import libsumo
 
-    scenario = load("paris_centre")
-    with closing(InProcess(scenario, seed=1)) as simulation:
-        simulation.depart(EgoPlan(scenario.ego.trips[0])).advance(10.0)
+    traffic, diluted = in_process.depart(hurried), 0
+    for _ in range(12):
+        traffic.advance(5.0)
         found: dict[str, list[float]] = {}
         for lane_id, speed_mps in load_library().on_lanes():
             found.setdefault(lane_id.rpartition("_")[0], []).append(speed_mps)
-        diluted = 0
         for edge_id in libsumo.edge.getIDList():
             own = [libsumo.vehicle.getSpeed(vehicle) for vehicle in libsumo.edge.getLastStepVehicleIDs(edge_id)]
             assert sorted(found.get(edge_id, [])) == sorted(own), edge_id
             diluted += bool(own) and libsumo.edge.getLastStepMeanSpeed(edge_id) > max(own) + 1.0
-        assert diluted, "nowhere would it have mattered"
+    assert diluted, "nowhere would it have mattered"

@@ -6,8 +6,7 @@ from automotive_cosim.cli.study.compare import compare
 from automotive_cosim.cli.study.congestion import congestion
 from automotive_cosim.cli.study.days import days
 from automotive_cosim.cli.study.reroute import reroute
-from automotive_cosim.cli.study.suite import suite
 
 app = typer.Typer(help="Measure what rerouting saves and what a measure does to congestion.", no_args_is_help=True)
-for command in (reroute, suite, congestion, days, compare):
+for command in (reroute, congestion, days, compare):
     app.command()(command)

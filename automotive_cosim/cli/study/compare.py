@@ -1,4 +1,4 @@
-"""``automotive-cosim study compare``: two runs of one study or suite."""
+"""``automotive-cosim study compare``: two runs of one study."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from automotive_cosim.cli.options import AsJson, print_json, reads_results
 
 @reads_results
 def compare(
-    first: Annotated[Path, typer.Argument(help="Results folder of a study, or of a suite.", show_default=False)],
+    first: Annotated[Path, typer.Argument(help="Results folder of a study.", show_default=False)],
     second: Annotated[Path, typer.Argument(help="The same of another run.", show_default=False)],
     as_json: AsJson = False,
 ) -> None:
-    """Compare two runs of one study or suite, as of two versions; exit code 1 if their rows differ."""
+    """Compare two runs of one study, as of two versions; exit code 1 if their rows differ."""
     from automotive_cosim.cli.console import Console
     from automotive_cosim.studies.versions import answer, compared, pairs
 

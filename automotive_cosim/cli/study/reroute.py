@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -25,14 +26,31 @@ from automotive_cosim.studies.settings import RerouteSettings
 if TYPE_CHECKING:
     from automotive_cosim.cli.console import Console
     from automotive_cosim.run.batch import Progress
+    from automotive_cosim.run.executor import Executor
     from automotive_cosim.studies.plan import StudyPlan
     from automotive_cosim.studies.results import Study
     from automotive_cosim.studies.rows import DriveRow
 
 
-@takes(RerouteSettings)
+@takes(RerouteSettings, but=("scenario", "warm_up_s", "limit_s", "agent_steps"))
 @takes(ExecutorSettings)
 def reroute(
+    scenario: Annotated[
+        str,
+        typer.Option(
+            metavar="LIST",
+            help="A scenario's name or folder, or any .sumocfg or .net.xml. Each of several is studied, and one "
+            "table has them all; shipped stands for all shipped ones.",
+        ),
+    ] = "paris_centre",
+    warm_up: Annotated[
+        str | None,
+        typer.Option(
+            metavar="LIST",
+            help="Seconds of traffic before anything counts; each of several is studied.",
+            show_default="scenario's",
+        ),
+    ] = None,
     measure_gap: Annotated[
         bool, typer.Option(help="Measure how far the demand's routes are from an equilibrium.")
     ] = True,
@@ -46,43 +64,75 @@ def reroute(
     Rerun the command to resume a stopped study.
     """
     from automotive_cosim.cli.console import Console
+    from automotive_cosim.scenarios import shipped
+    from automotive_cosim.studies.plan import StudyPlan
+    from automotive_cosim.studies.results import read_study
+    from automotive_cosim.studies.suite import folder_name
+
+    departures = settings.pop("departures_s")
+    common = filled(StudyPlan, settings)
+    plans = []
+    names = [(word,) if word != "shipped" else shipped() for word in words("scenario", scenario)]
+    for name in (each for some in names for each in some):
+        tell_reading(name)
+        leaves_s = common.departures_s if departures is None else _departures(name, departures)
+        for warm_up_s in numbers_in("warm-up", warm_up) if warm_up is not None else [None]:
+            plans.append(replace(common, scenario=name, warm_up_s=warm_up_s, departures_s=leaves_s))
+            plans[-1].check()
+        tell_notes([plans[-1].opened])
+    folders = [out or folder_of(plans[0])]
+    if len(plans) > 1:
+        folders = [folders[0] / folder_name(number, plan.scenario) for number, plan in enumerate(plans, start=1)]
+    where = filled(ExecutorSettings, settings).opened()
+    console = Console(stderr=as_json, highlight=False)
+    for plan, folder in zip(plans, folders, strict=True):
+        _announce(console, plan, folder)
+    if dry_run:
+        return
+    with where:
+        for plan, folder in zip(plans, folders, strict=True):
+            _run(console, plan, folder, where, measure_gap=measure_gap)
+    if len(plans) == 1:
+        _tell(console, read_study(folders[0]), as_json=as_json)
+    else:
+        _tell_all(console, [read_study(folder) for folder in folders], as_json=as_json)
+
+
+def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, measure_gap: bool) -> None:
+    """Runs what is left of a study, and writes its report."""
     from automotive_cosim.run.store import read_rows
     from automotive_cosim.studies.batch import run_study
     from automotive_cosim.studies.demand import measure_demand
     from automotive_cosim.studies.page import write_study
-    from automotive_cosim.studies.plan import StudyPlan
-    from automotive_cosim.studies.results import read_study
     from automotive_cosim.studies.rows import DriveRow
-
-    departures = settings.pop("departures_s")
-    plan = filled(StudyPlan, settings)
-    tell_reading(plan.scenario)
-    if departures is not None:
-        plan = replace(plan, departures_s=_departures(plan.scenario, departures))
-    plan.check()
-    tell_notes([plan.opened])
-    folder = out or folder_of(plan)
-    where = filled(ExecutorSettings, settings).opened()
-    console = Console(stderr=as_json, highlight=False)
-    _announce(console, plan, folder)
-    if dry_run:
-        return
 
     def said(progress: Progress[DriveRow]) -> str:
         count = sum(len(row.decisions) for row in read_rows(folder, DriveRow).values())
         errors = f", {counted(progress.errors, 'error')}" if progress.errors else ""
         return f"{counted(count, 'decision')}{errors}"
 
-    with where, driven(console, "drives", folder, said) as tell:
+    with driven(console, "drives", folder, said) as tell:
         run_study(plan, folder, executor=where, tell=tell)
-    if measure_gap:
-        for each in measure_demand(plan, folder):
-            console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
-    page = write_study(folder)
-    _tell(console, read_study(folder), page, as_json=as_json)
+    for each in measure_demand(plan, folder) if measure_gap else ():
+        console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
+    write_study(folder)
 
 
-def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
+def _tell_all(console: Console, studies: Sequence[Study], *, as_json: bool) -> None:
+    """Prints the table of several studies; raises if drives ended in an error."""
+    from automotive_cosim.studies.suite import networks, write_networks
+
+    table, out = networks(studies), studies[0].folder.parent
+    page = write_networks(table, out)
+    console.print(table.markdown(), soft_wrap=True)
+    console.print(f"{page} written; every study has its own report beside it", soft_wrap=True)
+    if as_json:
+        rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
+        print_json({"networks": rows, "out": str(out)})
+    raise_errors([error for study in studies for error in study.errors], sum(len(s.rows) for s in studies), "drive")
+
+
+def _tell(console: Console, study: Study, *, as_json: bool) -> None:
     """Prints the result; raises if there is none."""
     from automotive_cosim.studies.page import answer, cost_s
     from automotive_cosim.studies.tables import excluded, parts, policies
@@ -102,6 +152,7 @@ def _tell(console: Console, study: Study, page: Path, *, as_json: bool) -> None:
         for warning in warnings(study):
             console.print(warning, soft_wrap=True)
         console.print(answer(study), soft_wrap=True)
+        page = study.folder / "report.html"
         console.print(f"{counted(count, 'decision')} counted; report written to {page}", soft_wrap=True)
     raise_errors(errors, len(study.rows), "drive")
     if not count:

@@ -41,7 +41,6 @@ class All:
     conditions: tuple[TriggerCondition, ...]
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether all hold."""
         return all(condition(moment) for condition in self.conditions)
 
     def __str__(self) -> str:

@@ -16,7 +16,6 @@ class Driving:
     """The ego is driving, faster than walking pace."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Above 2 m/s."""
         return moment.driving.speed_mps > WALKING_MPS
 
     def __str__(self) -> str:
@@ -43,7 +42,6 @@ class Standing:
     """The ego is stationary, in gear or not."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Below 0.1 m/s."""
         return moment.driving.speed_mps < STANDING_MPS
 
     def __str__(self) -> str:

@@ -131,7 +131,6 @@ class JamWithin:
     from_m: float = 0.0
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the route qualifies."""
         away_m = moment.driving.ahead.jam_distance_m
         return away_m is not None and self.from_m <= away_m <= self.to_m
 
@@ -146,7 +145,6 @@ class DelayAbove:
     seconds: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the route qualifies."""
         return moment.driving.ahead.delay_s > self.seconds
 
     def __str__(self) -> str:

@@ -55,7 +55,6 @@ class Lit:
     lit: bool = True
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the road qualifies."""
         return moment.driving.road.lit is self.lit
 
     def __str__(self) -> str:
@@ -69,7 +68,6 @@ class BuiltUp:
     built_up: bool = True
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the context agrees."""
         return moment.context.built_up is self.built_up
 
     def __str__(self) -> str:
@@ -83,7 +81,6 @@ class CentreLine:
     there: bool
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the road qualifies."""
         return moment.driving.road.centre_line is self.there
 
     def __str__(self) -> str:
@@ -109,7 +106,6 @@ class InTunnel:
     """In a tunnel."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the road qualifies."""
         return moment.driving.road.in_tunnel
 
     def __str__(self) -> str:
@@ -155,7 +151,6 @@ class TunnelOnRoute:
     """A tunnel lies on the rest of the route, however far."""
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether there is one."""
         return moment.driving.road.in_tunnel or moment.driving.ahead.tunnel_distance_m is not None
 
     def __str__(self) -> str:
@@ -216,7 +211,6 @@ class LessGripThan:
     friction: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the road qualifies."""
         return moment.driving.road.friction < self.friction
 
     def __str__(self) -> str:

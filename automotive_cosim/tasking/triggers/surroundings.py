@@ -16,7 +16,6 @@ class VisibilityBetween:
     to_m: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the weather qualifies."""
         return self.from_m <= moment.weather.visibility < self.to_m
 
     def __str__(self) -> str:
@@ -31,7 +30,6 @@ class RainBetween:
     to_mm_h: float = ANY
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the weather qualifies."""
         return self.from_mm_h <= moment.weather.precipitation < self.to_mm_h
 
     def __str__(self) -> str:
@@ -46,7 +44,6 @@ class AirBetween:
     to_c: float
 
     def __call__(self, moment: Moment) -> bool:
-        """Whether the weather qualifies."""
         return self.from_c <= moment.weather.temperature_2m < self.to_c
 
     def __str__(self) -> str:

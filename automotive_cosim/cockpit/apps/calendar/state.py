@@ -44,7 +44,6 @@ class Agenda(AppData):
     entries: tuple[Appointment, ...]
 
     def commands(self) -> dict[str, Any]:
-        """The appointments."""
         return {
             "calendar.entries": [
                 {"at": entry.at, "title": entry.title, "place": entry.place} for entry in self.entries

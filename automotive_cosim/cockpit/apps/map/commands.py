@@ -50,11 +50,9 @@ class Take(Command):
     edges: tuple[str, ...]
 
     def aims(self, state: State) -> frozenset[str]:
-        """The request."""
         return frozenset({"requests"})
 
     def perform(self, state: State) -> Feedback:
-        """The request."""
         return Ask(Reroute(edges=self.edges)).perform(state)
 
 

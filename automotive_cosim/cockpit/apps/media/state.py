@@ -78,7 +78,6 @@ class Library(AppData):
         )
 
     def parts(self) -> Mapping[str, str]:
-        """The first podcast."""
         return {"media.show": self.shows[0]}
 
     def names(self, state: State) -> Mapping[str, tuple[str, ...]]:
@@ -162,7 +161,6 @@ class Listening(AppData):
         state.keep(replace(state.of(Listening), played_s=played_s))
 
     def put_back(self, state: State, departed: State) -> None:
-        """The playing time."""
         state.keep(replace(self, played_s=departed.of(Listening).played_s))
 
 

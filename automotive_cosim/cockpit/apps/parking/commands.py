@@ -20,7 +20,6 @@ class Pay(Command):
     """Pay for the parking space as it is set."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The payments."""
         return frozenset({"payments"})
 
     def perform(self, state: State) -> Feedback:

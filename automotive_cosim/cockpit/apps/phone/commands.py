@@ -23,7 +23,6 @@ class Dial(Command):
     who: str
 
     def aims(self, state: State) -> frozenset[str]:
-        """The call."""
         return frozenset({"calls"})
 
     def perform(self, state: State) -> Feedback:
@@ -40,7 +39,6 @@ class CallEmergency(Command):
     """Call the emergency services."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The call."""
         return frozenset({"calls"})
 
     def perform(self, state: State) -> Feedback:
@@ -56,7 +54,6 @@ class HangUp(Command):
     """End the call."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The present call."""
         return frozenset({"phone.on_call"})
 
     def perform(self, state: State) -> Feedback:
@@ -74,7 +71,6 @@ class TakeCall(Command):
     """Answer the ringing call."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The answered calls."""
         return frozenset({"calls.answered"})
 
     def perform(self, state: State) -> Feedback:
@@ -99,7 +95,6 @@ class DeclineCall(Command):
     """Decline the ringing call."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The declined calls."""
         return frozenset({"calls.declined"})
 
     def perform(self, state: State) -> Feedback:
@@ -121,7 +116,6 @@ class SendReply(Command):
     text: str
 
     def aims(self, state: State) -> frozenset[str]:
-        """The sent messages."""
         return frozenset({"messages.sent"})
 
     def perform(self, state: State) -> Feedback:
@@ -143,11 +137,9 @@ class Read(Command):
     who: str
 
     def aims(self, state: State) -> frozenset[str]:
-        """The read messages."""
         return frozenset({"messages.read"})
 
     def perform(self, state: State) -> Feedback:
-        """The messages, read."""
         who, phone = self.who, state.of(Phone)
         thread = state.of(Directory).thread(who, phone)
         state.keep(phone.opened(who))

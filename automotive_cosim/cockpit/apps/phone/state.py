@@ -277,7 +277,6 @@ class Phone(AppData):
         return replace(self, favourites=(*rest, who) if wanted else rest)
 
     def commands(self) -> dict[str, Any]:
-        """App data."""
         return {
             "calls": list(self.called),
             "phone.favourites": list(self.favourites),

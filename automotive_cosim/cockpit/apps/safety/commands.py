@@ -20,7 +20,6 @@ class WarnDriver(Command):
     alert: Alert | None = None
 
     def aims(self, state: State) -> frozenset[str]:
-        """The alerts."""
         return frozenset({"alerts"})
 
     def perform(self, state: State) -> Feedback:
@@ -39,7 +38,6 @@ class AskSlowDown(Command):
     """Ask the driver to go no faster than the advised speed, or the limit sign."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The request."""
         return frozenset({"requests"})
 
     def perform(self, state: State) -> Feedback:
@@ -55,11 +53,9 @@ class AskPullOver(Command):
     """Ask the driver to stop at the side."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The request."""
         return frozenset({"requests"})
 
     def perform(self, state: State) -> Feedback:
-        """The request."""
         return Ask(PullOver()).perform(state)
 
 

@@ -18,7 +18,6 @@ class SwitchProfile(Command):
     profile: str
 
     def aims(self, state: State) -> frozenset[str]:
-        """The profile."""
         return frozenset({"driver.profile"})
 
     def perform(self, state: State) -> Feedback:

@@ -53,7 +53,6 @@ class Profiles(AppData):
     driver: str = PROFILES[0]
 
     def commands(self) -> dict[str, Any]:
-        """Who drives."""
         return {"driver.profile": self.driver}
 
 

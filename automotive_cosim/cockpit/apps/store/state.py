@@ -20,5 +20,4 @@ class Installed(AppData):
         return Installed(tuple(app for app in offered if (wanted if app == name else app in self.apps)))
 
     def commands(self) -> dict[str, Any]:
-        """The names."""
         return {"apps.installed": list(self.apps)}

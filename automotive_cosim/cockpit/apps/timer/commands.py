@@ -15,7 +15,6 @@ class StartTimer(Command):
     """Count down from the length that is set."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """That it runs."""
         return frozenset({"timer.running"})
 
     def perform(self, state: State) -> Feedback:
@@ -31,9 +30,7 @@ class StopTimer(Command):
     """Stop the countdown."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """That it runs."""
         return frozenset({"timer.running"})
 
     def perform(self, state: State) -> Feedback:
-        """No countdown."""
         return state.change(replace(state.of(Countdown), begun_s=None), say("The timer is stopped"))

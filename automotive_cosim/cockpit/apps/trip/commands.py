@@ -18,7 +18,6 @@ class ResetTrip(Command):
     meter: Literal["a", "b"] = "a"
 
     def aims(self, state: State) -> frozenset[str]:
-        """The meter."""
         return frozenset({"trip.resets_b" if self.meter == "b" else "trip.resets"})
 
     def perform(self, state: State) -> Feedback:

@@ -20,7 +20,6 @@ class Honk(Command):
     """Sound the horn."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The horn."""
         return frozenset({"horn"})
 
     def perform(self, state: State) -> Feedback:
@@ -36,7 +35,6 @@ class Wash(Command):
     """Wash the windshield."""
 
     def aims(self, state: State) -> frozenset[str]:
-        """The washer."""
         return frozenset({"washer"})
 
     def perform(self, state: State) -> Feedback:

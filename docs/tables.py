@@ -1,0 +1,177 @@
+"""What the code says of itself on these pages: ``python -m docs.tables`` writes it anew, between its marks.
+
+A test holds it equal to the code, so a page reads the same in a checkout and on the site.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from enum import Enum
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from typer.testing import CliRunner
+
+from automotive_cosim import schemas
+from automotive_cosim.cli.main import app
+from automotive_cosim.drives.events import KINDS
+from automotive_cosim.drives.families import FAMILIES
+from automotive_cosim.drives.settings import DriveSettings
+from automotive_cosim.drives.wakes import WAKES
+from automotive_cosim.episode.conditions import TABLE
+from automotive_cosim.formats.docs import field_docs, member_docs
+from automotive_cosim.interface import spaces
+from automotive_cosim.interface.policy import HOUSE
+from automotive_cosim.publish.leaderboard import board
+from automotive_cosim.safety.space import LIBRARY, read_space
+
+DOCS = Path(__file__).parent
+MARKED = re.compile(r"(<!-- (\w+), made by `python -m docs\.tables` -->\n\n).*?(\n\n<!-- end -->)", re.DOTALL)
+"""A table of a page: its mark with its name, the table, the mark of its end."""
+FRAMEWORK = DOCS / "examples" / "frameworks" / "openai_agents.py"
+SHOWN = ("Agent", "Model", "Prompt", "Safety pairs", "All episodes", "Bundle")
+"""Columns of the leaderboard that its page here shows."""
+
+
+def main() -> None:
+    """Writes every table of every page anew; prints the pages that changed."""
+    for page in pages():
+        text = page.read_text(encoding="utf-8")
+        if (renewed := MARKED.sub(_filled, text)) != text:
+            page.write_text(renewed, encoding="utf-8")
+            print(page)
+
+
+def pages() -> list[Path]:
+    """The pages that have tables."""
+    return [page for page in sorted(DOCS.glob("**/*.md")) if MARKED.search(page.read_text(encoding="utf-8"))]
+
+
+def stale(page: Path) -> list[str]:
+    """The tables of a page that are not what the code says."""
+    found = MARKED.finditer(page.read_text(encoding="utf-8"))
+    return [mark[2] for mark in found if _filled(mark) != mark[0]]
+
+
+def printed(*arguments: str) -> str:
+    """What a command prints.
+
+    Raises:
+        RuntimeError: it fails.
+    """
+    ran = CliRunner().invoke(app, arguments, catch_exceptions=False)
+    if ran.exit_code:
+        raise RuntimeError(f"automotive-cosim {' '.join(arguments)} ended with code {ran.exit_code}: {ran.output}")
+    return ran.output.rstrip()
+
+
+def _filled(mark: re.Match[str]) -> str:
+    return mark[1] + MADE[mark[2]]().strip() + mark[3]
+
+
+def _table(heads: Sequence[str], rows: Iterable[Sequence[object]]) -> str:
+    lines = (heads, ["---"] * len(heads), *rows)
+    return "\n".join(f"| {' | '.join(map(str, line))} |" for line in lines)
+
+
+def _conditions() -> str:
+    """Each condition, with what its values mean."""
+    rows: list[tuple[str, str, str]] = []
+    for each in TABLE:
+        kind = type(each.default)
+        docs = member_docs(kind) if issubclass(kind, Enum) else {}
+        told = [f"`{kind[name]}`: {text}" if text else f"`{kind[name]}`" for name, text in docs.items()]
+        rows.append((f"`--{each.word}`", each.help, "<br>".join(told) or f"`{each.default}` and up"))
+    return _table(("option", "what it is about", "values, the usual one first"), rows)
+
+
+def _families() -> str:
+    rows = [(f"`{each.id}`", each.season, each.about, ", ".join(each.cast)) for each in FAMILIES.values()]
+    return _table(("family", "season", "what it is", "what is staged"), rows)
+
+
+def _kinds() -> str:
+    heads = "kind", "the event", "told by", "neutral: true, but not due", "its look-alike", "times"
+    rows = [
+        (
+            each.name,
+            each.about,
+            ", ".join(f"`{name}`" for name in each.told_by),
+            each.neutral,
+            each.lookalike,
+            each.source,
+            f"{each.lasts_s:.0f} s",
+            f"{each.weight:g}",
+            ", ".join(sorted(each.alerts))
+            or ("none: the state counts" if each.by_state else "words, or the switch"),
+        )
+        for each in KINDS.values()
+    ]
+    return _table((*heads, "prepares", "weight", "alerts"), rows)
+
+
+def _leaderboard() -> str:
+    """The tables of all bundles in the repository.
+
+    Raises:
+        RuntimeError: a bundle has a problem.
+    """
+    with TemporaryDirectory() as scratch:
+        made, left_out = board(DOCS / "leaderboard" / "bundles", Path(scratch) / "board.html")
+    if left_out:
+        raise RuntimeError(f"docs/leaderboard/bundles: {'; '.join(left_out)}")
+    parts: list[str] = []
+    for table, conditions, _ in made:
+        shown = [place for place, head in enumerate(table.columns) if head in SHOWN]
+        rows = [[row[place] for place in shown] for row in table.rows]
+        parts.append(f"{conditions.tasks}, {conditions.scenarios}, seed {conditions.seeds}, {conditions.limits}:")
+        parts.append(_table([table.columns[place] for place in shown], rows))
+    return "\n\n".join(parts)
+
+
+def _fields(name: str) -> str:
+    """The fields of a file format, a table for each of its parts, from its JSON Schema."""
+    schema = json.loads(schemas.text(name))
+    parts: list[str] = []
+    for about, part in (("", schema), *((each["description"], each) for each in schema["$defs"].values())):
+        fields = {field: each for field, each in part["properties"].items() if field != "kind"}
+        if "kind" in part["properties"]:
+            about = f'**`kind = "{part["properties"]["kind"]["const"]}"`** {about}'
+        rows: list[tuple[str, str, str]] = []
+        for field, each in fields.items():
+            value = each.get("default")
+            default = "" if value in (None, "") or isinstance(value, dict) else f"`{json.dumps(value)}`"
+            rows.append((f"`{field}`", default, each.get("description", "")))
+        parts += [about, _table(("field", "default", "meaning"), rows)] if rows else [about]
+    return "\n\n".join(parts)
+
+
+MADE: Mapping[str, Callable[[], str]] = {
+    "conditions": _conditions,
+    "families": _families,
+    "framework": lambda: f"```python\n{FRAMEWORK.read_text(encoding='utf-8').strip()}\n```",
+    "functions": lambda: f"```text\n{printed('show', 'functions')}\n```",
+    "kinds": _kinds,
+    "leaderboard": _leaderboard,
+    "plan": lambda: _fields("plan"),
+    "policy": lambda: _table(
+        ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE]
+    ),
+    "scenario": lambda: _fields("scenario"),
+    "settings": lambda: _table(
+        ("factor of drives", "value"),
+        [(f"`{name}`", about) for name, about in field_docs(DriveSettings).items()],
+    ),
+    "situations": lambda: _table(
+        ("scenario", "what happens"), [(f"`{name}`", read_space(path).about) for name, path in LIBRARY.items()]
+    ),
+    "spaces": lambda: (spaces.__doc__ or "").replace("``", "`"),
+    "wakes": lambda: _table(("change", "when"), [(each.name, each.about) for each in WAKES]),
+}
+"""What makes each table."""
+
+
+if __name__ == "__main__":
+    main()
