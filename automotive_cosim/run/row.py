@@ -9,13 +9,14 @@ pydantic does both: it reads 28 000 rows a second, which is faster than ``json``
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Generic, TypeVar, get_type_hints
 
 from pydantic import TypeAdapter, ValidationError
 
 from automotive_cosim.contracts import Json
+from automotive_cosim.errors import ScenarioError
 
 T = TypeVar("T")
 R = TypeVar("R", bound="JobRow")
@@ -53,6 +54,15 @@ class JobRow:
     def has_succeeded(self) -> bool:
         """Whether it counts as a success; false for jobs that cannot succeed or fail."""
         return False
+
+
+def remedy(failed: Iterable[JobRow]) -> str:
+    """What can be done about rows that ended in an error."""
+    by_scenario = [row.error_kind == ScenarioError.__name__ for row in failed]
+    if all(by_scenario):
+        return "mend the scenario: another try ends in the same way"
+    rest = "; what the scenario causes comes again until it is mended" if any(by_scenario) else ""
+    return f"rerun the command to retry them{rest}"
 
 
 def as_json(record: object) -> Json:

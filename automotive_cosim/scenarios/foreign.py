@@ -18,6 +18,7 @@ from automotive_cosim.geo.place import NOWHERE, Atlas, Place
 from automotive_cosim.scenarios.relocation import zone_of
 from automotive_cosim.scenarios.routes import drawn_trips
 from automotive_cosim.traffic.georeference import middle
+from automotive_cosim.traffic.ground import read_mapped
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import (
     INPUTS,
@@ -73,6 +74,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
     for name in INPUTS[1:]:
         for file in configuration.files.get(name, ()):
             vet(file)
+    network = read_mapped(configuration, network)
     place = NOWHERE if network.unplaced else Atlas().place(*middle(network.map))
     notes = []
     if network.unplaced and not to_be_moved:
@@ -96,7 +98,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         country=place.country,
         start=_start(configuration, sumo, place),
         sumo=sumo,
-        ego=Ego(drawn_trips(network), any_trip=True),
+        ego=Ego(drawn_trips(network.open_at_all_hours()), any_trip=True),
         weather=(WeatherAt(0.0, FAIR),) if network.unplaced else (),
         has_place=not network.unplaced,
         notes=tuple(notes),

@@ -49,7 +49,7 @@ def chosen_trips(network: Network, from_place: str, to_place: str) -> tuple[Trip
     starts = edges_at(network, from_place) if from_place else ()
     goals = edges_at(network, to_place) if to_place else ()
     if not (starts and goals):
-        return drawn_trips(network, starts, goals)
+        return drawn_trips(network.open_at_all_hours(), starts, goals)
     found = [(start, ways_from(network, start).length_m) for start in starts]
     ways = [
         (way_m[goal], start, goal) for start, way_m in found for goal in goals if goal in way_m and goal != start

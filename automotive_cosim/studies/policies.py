@@ -12,6 +12,7 @@ from automotive_cosim.studies.rows import Decision
 
 AGENT = "agent:"
 DELAY = "delay:"
+WORTHWHILE = "worthwhile:"
 
 
 class PolicyRule(StrEnum):
@@ -22,6 +23,8 @@ class PolicyRule(StrEnum):
     """Takes the quickest other route by the news, even if the news says that it is slower."""
     DELAY = "delay"
     """Takes it if enough delay is expected on the present route and the other is expected to be quicker."""
+    WORTHWHILE = "worthwhile"
+    """Takes it if it is expected to be quicker by a factor and by a time."""
     SUMO = "sumo"
     """Takes the route of SUMO's rerouting device."""
     BEST = "best"
@@ -38,6 +41,10 @@ class Policy:
     """Its name as given."""
     rule: PolicyRule
     delay_s: float = 0.0
+    factor: float = 1.0
+    """How many times as long the present route must take at least."""
+    gain_s: float = 0.0
+    """How much longer it must take at least."""
     agent: str = ""
 
     @property
@@ -46,6 +53,8 @@ class Policy:
         match self.rule:
             case PolicyRule.DELAY:
                 return f"from {self.delay_s:g} s of delay on"
+            case PolicyRule.WORTHWHILE:
+                return f"if {self.factor:g} times and {self.gain_s:g} s quicker"
             case PolicyRule.SUMO:
                 return "SUMO's device"
             case PolicyRule.BEST:
@@ -54,9 +63,25 @@ class Policy:
                 return f"agent {self.agent}"
         return self.text
 
+    def leaves(self, stay_s: float | None, delay_s: float, offered_s: float | None) -> bool:
+        """Whether a policy that goes by the news takes the other route.
+
+        Args:
+            stay_s: expected travel time on the present route; None if the news does not have it.
+            delay_s: how much more of it than on empty roads.
+            offered_s: expected travel time on the quickest other route; None without one.
+        """
+        if self.rule is PolicyRule.ALWAYS:
+            return True
+        if stay_s is None or offered_s is None or offered_s >= stay_s:
+            return False
+        if self.rule is PolicyRule.DELAY:
+            return delay_s >= self.delay_s
+        return stay_s >= self.factor * offered_s and stay_s - offered_s >= self.gain_s
+
 
 def parse_policy(text: str) -> Policy:
-    """Reads ``never``, ``always``, ``delay:60``, ``sumo``, ``best`` or ``agent:asurada``.
+    """Reads ``never``, ``always``, ``delay:60``, ``worthwhile:1.2:60``, ``sumo``, ``best`` or ``agent:asurada``.
 
     Raises:
         UserError: it is none of them.
@@ -71,9 +96,20 @@ def parse_policy(text: str) -> Policy:
         if not 0 <= delay_s <= 3_600:
             raise UserError(f"policy {text!r} requires seconds of delay from 0 to 3600, as in delay:60")
         return Policy(text, PolicyRule.DELAY, delay_s=delay_s)
+    if text.startswith(WORTHWHILE):
+        try:
+            factor, gain_s = map(float, text.removeprefix(WORTHWHILE).split(":"))
+        except ValueError:
+            factor = gain_s = math.nan
+        if not (1 <= factor <= 100 and 0 <= gain_s <= 3_600):
+            raise UserError(
+                f"policy {text!r} requires a factor from 1 to 100 and seconds from 0 to 3600 by which the other "
+                "route is quicker, as in worthwhile:1.2:60"
+            )
+        return Policy(text, PolicyRule.WORTHWHILE, factor=factor, gain_s=gain_s)
     if text not in {PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.SUMO, PolicyRule.BEST}:
-        known = (PolicyRule.NEVER, PolicyRule.ALWAYS, "delay:60", PolicyRule.SUMO, PolicyRule.BEST, "agent:asurada")
-        raise UnknownNameError("policy", text, known)
+        known = (PolicyRule.NEVER, PolicyRule.ALWAYS, PolicyRule.SUMO, PolicyRule.BEST)
+        raise UnknownNameError("policy", text, (*known, "delay:60", "worthwhile:1.2:60", "agent:asurada"))
     return Policy(text, PolicyRule(text))
 
 
@@ -99,11 +135,9 @@ def chosen(policy: Policy, decision: Decision, age_s: float, compliance: float =
             number: int | None = decision.agents[policy.agent]
         case PolicyRule.SUMO:
             number = decision.own
-        case PolicyRule.ALWAYS:
-            number = news.branch
-        case PolicyRule.DELAY:
-            is_worth = news.delay_s >= policy.delay_s and (news.promised_s or 0.0) > 0
-            number = news.branch if is_worth else None
+        case PolicyRule.ALWAYS | PolicyRule.DELAY | PolicyRule.WORTHWHILE:
+            leaves = policy.leaves(news.stay_s, news.delay_s, news.offered_s)
+            number = news.branch if leaves else None
     return number if decision.complies(compliance) else None
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 
 from automotive_cosim.report.tables import Table, TableRow
+from automotive_cosim.run.row import JobRow, remedy
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.policies import PolicyRule, parse_policy
 from automotive_cosim.studies.results import NOISE, Noise, Study
@@ -48,7 +49,7 @@ def groups(study: Study) -> list[tuple[float, str, float, list[PolicyChoice]]]:
 
 def goes_by_news(policy: str) -> bool:
     """Whether a policy decides by the plan's traffic news; others know the present, the future or nothing."""
-    return parse_policy(policy).rule in (PolicyRule.ALWAYS, PolicyRule.DELAY)
+    return parse_policy(policy).rule in (PolicyRule.ALWAYS, PolicyRule.DELAY, PolicyRule.WORTHWHILE)
 
 
 def policies(study: Study) -> Table:
@@ -346,9 +347,15 @@ def excluded(study: Study) -> Table:
 
 def errors(study: Study) -> Table:
     """Drives that ended in an infrastructure error."""
-    rows = tuple((row.id, row.error_kind or "", row.error or "") for row in study.errors)
-    note = "Rerun the command to retry them."
-    return Table("errors", "Infrastructure errors", ("Drive", "Kind", "Message"), rows, note, heads=3)
+    return errors_table("Drive", study.errors)
+
+
+def errors_table(unit: str, failed: Sequence[JobRow]) -> Table:
+    """The errors of any kind of study, with what can be done."""
+    rows = tuple((row.id, row.error_kind or "", row.error or "") for row in failed)
+    note = remedy(failed)
+    note = f"{note[0].upper()}{note[1:]}."
+    return Table("errors", "Infrastructure errors", (unit, "Kind", "Message"), rows, note, heads=3)
 
 
 def outcomes(chosen: Sequence[PolicyChoice], floor: Noise) -> tuple[float, float, float]:

@@ -129,6 +129,4 @@ def _wanted(policy: Policy, traffic: RemoteTraffic, age_s: float) -> tuple[str, 
     if len(options) < 2:
         return None
     stay, offered = options[:2]
-    if policy.rule is PolicyRule.DELAY and (stay.delay_s < policy.delay_s or offered.eta_s >= stay.eta_s):
-        return stay.edges
-    return offered.edges
+    return offered.edges if policy.leaves(stay.eta_s, stay.delay_s, offered.eta_s) else stay.edges

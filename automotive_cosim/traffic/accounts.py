@@ -10,6 +10,9 @@ HALTED_MPS = 0.1
 STUCK_S = 300.0
 """A vehicle that waits this long without interruption is stuck: SUMO's own time to teleport."""
 
+QUEUE_PERIOD_S = 10.0
+"""Simulated time between two measurements of the queues."""
+
 LOUD_DB = 65.0
 """Level in dB(A) in whose seconds noise is counted: that of a car at 50 km/h in SUMO's model (Harmonoise)."""
 
@@ -29,6 +32,8 @@ class TrafficSummary:
     """Vehicles that are due but found no room to enter."""
     departed: int
     teleported: int
+    collided: int = 0
+    """Vehicles that a collision has taken off the road."""
 
 
 @dataclass(frozen=True, slots=True)

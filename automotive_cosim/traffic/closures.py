@@ -7,12 +7,9 @@ from datetime import datetime
 from itertools import pairwise
 
 from automotive_cosim.traffic.detours import Detours, EdgePair
-from automotive_cosim.traffic.network import Network
+from automotive_cosim.traffic.network import CARS, Network
 from automotive_cosim.traffic.posted import TimedAccess, is_open
 from automotive_cosim.traffic.sumo import LibSumo
-
-CARS = "passenger"
-"""SUMO's class of the vehicles that are kept out."""
 
 
 class Closures:

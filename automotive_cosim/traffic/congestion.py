@@ -1,7 +1,9 @@
 """Traffic flow: smoothed speed per edge, and the resulting figures of the route ahead.
 
 Speeds are weighted by vehicles and smoothed over about a signal cycle: a red light is not a jam, and an empty edge
-is free. The route's sums are recomputed with each sample; evaluating them at a position costs a few additions.
+is free. They count as a share of the limit in force, lane by lane: a lower limit is no jam, and traffic that was
+held back by a variable sign is not slow once that shows more. The route's sums are recomputed with each sample;
+evaluating them at a position costs a few additions.
 """
 
 from __future__ import annotations
@@ -9,7 +11,7 @@ from __future__ import annotations
 import math
 from bisect import bisect_right
 from collections import deque
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice, pairwise
 from typing import Protocol, TypeAlias
@@ -71,19 +73,29 @@ class Flow(Protocol):
 class Congestion:
     """Smoothed speed of every edge."""
 
-    def __init__(self, network: Network, vehicles: Callable[[], Iterable[tuple[str, float]]]) -> None:
+    def __init__(
+        self,
+        network: Network,
+        vehicles: Callable[[], Iterable[tuple[str, float]]],
+        variable: Collection[str] = (),
+    ) -> None:
         """Starts at free flow.
 
         Args:
             network: the network.
-            vehicles: the lane, inside a junction or not, and the speed in m/s of each driving vehicle.
+            vehicles: the lane, inside a junction or not, and the speed in m/s of each vehicle that drives as cars
+                do; those on lanes that are closed to cars are left out here.
+            variable: edges on which SUMO itself changes the limit.
         """
         self._edges = network.edges
         self._order = {edge_id: number for number, edge_id in enumerate(network.edges)}
         self._driving = vehicles
+        self._variable = frozenset(variable)
         self._vehicles: dict[str, float] = {}
         """Smoothed number of vehicles and sum of speeds, for each edge with recent traffic."""
         self._flow: dict[str, float] = {}
+        self._free_mps: dict[str, float] = {}
+        """The limit to which that refers, where it is variable."""
         self._keep = math.exp(-SAMPLE_PERIOD_S / MEMORY_S)
         self._slow: tuple[tuple[str, float], ...] = ()
         self._samples: deque[dict[str, Tally]] = deque(maxlen=round((WINDOW_S + OLDEST_NEWS_S) / SAMPLE_PERIOD_S))
@@ -95,22 +107,41 @@ class Congestion:
         seen: dict[str, Tally] = {}
         for lane_id, speed_mps in self._driving():
             edge_id = lane_id.rpartition("_")[0]
-            if edge_id in edges:
+            edge = edges.get(edge_id)
+            if edge is not None and lane_id in edge.lane_ids:
+                limit_mps = edge.lane_mps[edge.lane_ids.index(lane_id)]
+                if limit_mps != edge.speed_mps:
+                    speed_mps *= edge.speed_mps / limit_mps
                 for name, rows in ((lane_id, lanes), (edge_id, seen)):
                     count, total_mps = rows.get(name, NOTHING)
                     rows[name] = (count + 1, total_mps + speed_mps)
         slow: list[tuple[str, float]] = []
         for edge_id in {**vehicles, **seen}:
             count, total_mps = seen.get(edge_id, NOTHING)
+            free_mps = edges[edge_id].speed_mps
+            if edge_id in self._variable and free_mps != self._free_mps.setdefault(edge_id, free_mps):
+                self._take_limit(edge_id, free_mps)
             weight = vehicles[edge_id] = vehicles.get(edge_id, 0.0) * keep + count * (1 - keep)
             flow[edge_id] = flow.get(edge_id, 0.0) * keep + total_mps * (1 - keep)
-            free_mps = edges[edge_id].speed_mps
             if flow[edge_id] + FREE_WEIGHT * free_mps < SLOW_BELOW * (weight + FREE_WEIGHT) * free_mps:
                 slow.append((edge_id, round(self.relative_speed(edge_id), 2)))
             if weight < FORGOTTEN:
                 del vehicles[edge_id], flow[edge_id]
         self._samples.append(lanes)
         self._slow = tuple(sorted(slow, key=lambda row: self._order[row[0]]))
+
+    def _take_limit(self, edge_id: str, limit_mps: float) -> None:
+        """Rates what was driven on an edge by a higher limit, as if it had been in force."""
+        ratio = limit_mps / self._free_mps[edge_id]
+        self._free_mps[edge_id] = limit_mps
+        if ratio < 1:  # who drove faster than the new limit was free
+            return
+        self._flow[edge_id] = self._flow.get(edge_id, 0.0) * ratio
+        for rows in self._samples:
+            for lane_id in self._edges[edge_id].lane_ids:
+                if lane_id in rows:
+                    count, total_mps = rows[lane_id]
+                    rows[lane_id] = count, total_mps * ratio
 
     def window(self, age_s: float = 0.0) -> dict[str, Tally]:
         """What was seen in ``WINDOW_S`` on each lane with any traffic.
@@ -128,10 +159,11 @@ class Congestion:
 
     def speed_mps(self, edge_id: str) -> float:
         """Mean speed on an edge."""
-        free_mps = self._edges[edge_id].speed_mps
+        now_mps = self._edges[edge_id].speed_mps
+        free_mps = min(now_mps, self._free_mps.get(edge_id, now_mps))
         vehicles, flow_mps = self._vehicles.get(edge_id, 0.0), self._flow.get(edge_id, 0.0)
-        driven = (flow_mps + FREE_WEIGHT * free_mps) / (vehicles + FREE_WEIGHT)
-        return max(SLOWEST_MPS, min(free_mps, driven))
+        driven_mps = min(free_mps, (flow_mps + FREE_WEIGHT * free_mps) / (vehicles + FREE_WEIGHT))
+        return max(SLOWEST_MPS, driven_mps if free_mps == now_mps else driven_mps * now_mps / free_mps)
 
     def relative_speed(self, edge_id: str) -> float:
         """Mean speed divided by the edge's limit; 1 is free flow."""

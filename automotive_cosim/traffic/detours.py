@@ -7,7 +7,7 @@ from contextlib import suppress
 from itertools import pairwise
 
 from automotive_cosim.traffic.network import Network
-from automotive_cosim.traffic.sumo import LibSumo
+from automotive_cosim.traffic.sumo import AVERAGED, NOW, LibSumo
 
 EdgePair = tuple[str, str]
 """From edge, to edge."""
@@ -19,7 +19,7 @@ SEARCH = "simulation.findRoute"
 class Detours:
     """Sends other vehicles round what is closed.
 
-    Each takes the quickest way by the speeds of the moment (SUMO's ``rerouteTraveltime``). If there is none, or its
+    Each takes the way that SUMO's rerouting device would take (``sumo.reroute``). If there is none, or its
     destination is closed, its trip ends on the road before the closed one that it reaches soonest. SUMO leaves out
     who would set out on a closed road; both are counted.
     """
@@ -76,7 +76,7 @@ class Detours:
         """Gives a vehicle another route, if there is one, or ends its trip before what is closed."""
         sumo = self._sumo
         with suppress(*sumo.refusals):
-            sumo.vehicle.rerouteTraveltime(vehicle, False)
+            sumo.reroute(vehicle)
         if sumo.vehicle.isRouteValid(vehicle):
             return
         route = sumo.route(vehicle)[max(0, sumo.route_index(vehicle)) :]
@@ -85,7 +85,7 @@ class Detours:
             return  # it is on the closed road, and drives on
         kind = sumo.type_of(vehicle)
         before = (here for here, ways in self._network.crossings.items() if beyond in ways)
-        found = [way for each in before if (way := sumo.find_route(route[0], each, kind)).edges]
+        found = [way for each in before if (way := sumo.find_route(route[0], each, kind, NOW, AVERAGED)).edges]
         if found:
             with suppress(*sumo.refusals):  # such as a stop beyond: it waits, and SUMO moves it on in the end
                 sumo.set_route(vehicle, min(found, key=lambda way: way.travelTime).edges)

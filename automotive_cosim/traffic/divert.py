@@ -39,7 +39,7 @@ def diverted(route: Sequence[str], old: Edges, new: Edges) -> Edges | None:
 
 
 def divert(sumo: LibSumo, old: Edges, new: Edges, share: float, seed: int) -> tuple[tuple[str, ...], int]:
-    """Sends a share of the cars that could the other way.
+    """Sends a share of the cars that could the other way, and keeps them on it.
 
     Args:
         sumo: the running simulation.
@@ -62,7 +62,7 @@ def divert(sumo: LibSumo, old: Edges, new: Edges, share: float, seed: int) -> tu
     taken = []
     for vehicle in names[: round(share * len(names))]:
         try:
-            sumo.set_route(vehicle, routes[vehicle])
+            sumo.keep_to(vehicle, routes[vehicle])
         except sumo.refusals:  # such as a lorry where lorries must not drive
             continue
         taken.append(vehicle)

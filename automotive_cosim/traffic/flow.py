@@ -25,13 +25,19 @@ LEAST_GREEN_S, MOST_GREEN_S = 5.0, 50.0
 """Bounds of a green phase under actuated control: SUMO's own defaults are 5 s and 50 s (netconvert
 ``--tls.min-dur``, ``--tls.max-dur``)."""
 
+TRAINS = frozenset((1, 2))
+"""Those of rail signals and rail crossings, which trains control."""
+
 CONTROLS = {"static": 0, "actuated": 3, "delay_based": 5}
 """SUMO's numbers of the types of signal control."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Advice:
-    """A share of the cars gets advice again and again: the route that is quickest by the traffic news."""
+    """A share of the cars gets advice again and again: the route that is quickest by the traffic news.
+
+    Who has followed a piece of advice goes by advice from then on, and no longer by SUMO's rerouting device.
+    """
 
     kind: Literal["advice"] = "advice"
     share: Annotated[float, Ge(0), Le(1)]
@@ -62,6 +68,8 @@ class FlowSummary:
     summary: TrafficSummary
     arrived: int
     """Vehicles that have arrived since the simulation began."""
+    queues: tuple[dict[str, float], ...]
+    """The length of the queue in each lane with one (``Ledger.queues_m``), every ``accounts.QUEUE_PERIOD_S``."""
     slowed: dict[str, float]
     """Edges with another limit than at the start, and their limit as a share of that: SUMO's time loss counts from
     the limit of the moment, so it does not see what roadworks cost."""
@@ -127,22 +135,26 @@ class Advisor:
         saved_s, way = self._router.offer(route[len(fixed) - 1 :])
         if saved_s >= self._advice.least_s and way:
             try:
-                sumo.set_route(vehicle, (*fixed[:-1], *way))
+                sumo.keep_to(vehicle, (*fixed[:-1], *way))
             except sumo.refusals:  # such as a stop that the way leaves out
                 return
 
 
 def control(sumo: LibSumo, signals: SignalControl) -> int:
-    """Changes the control of all signals; returns how many there are."""
+    """Changes the control of all signals but those of railways; returns how many there are."""
     lights: Any = sumo.lights
+    count = 0
     for light in sumo.light_ids():
         current = lights.getProgram(light)
         (logic,) = (each for each in lights.getAllProgramLogics(light) if each.programID == current)
+        if logic.type in TRAINS:
+            continue
+        count += 1
         phases = [lights.Phase(each.duration, each.state, *_bounds(each)) for each in logic.phases]
         name = f"automotive_cosim.{signals.control}"
         lights.setProgramLogic(light, lights.Logic(name, CONTROLS[signals.control], 0, phases))
         lights.setProgram(light, name)
-    return len(sumo.light_ids())
+    return count
 
 
 def _bounds(phase: Any) -> tuple[float, float]:

@@ -1,12 +1,13 @@
-"""Water, green and buildings around the roads: the polygons of a scenario's additional files.
+"""What a scenario's additional files say of its roads: water, green and buildings around them, and closures.
 
-They are SUMO's own ``<poly>``, as polyconvert, netedit or ``scenarios import`` write them, and sumo-gui shows them
+Areas are SUMO's own ``<poly>``, as polyconvert, netedit or ``scenarios import`` write them, and sumo-gui shows them
 too. Their ``type`` says what they are (``KINDS``), also in OpenStreetMap's words (``natural.water``). A line
 (neither filled nor closed) is no area, and other types are not drawn.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,7 +21,7 @@ from automotive_cosim.formats.words import shown
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.mirror import mirrored
-from automotive_cosim.traffic.network import Network, Shape, quantity, read_network
+from automotive_cosim.traffic.network import Network, Shape, open_to_cars, quantity, read_network
 from automotive_cosim.traffic.options import FALSE, TRUE, Configuration
 
 KINDS = {
@@ -40,7 +41,7 @@ AREAS_LIMIT = 20_000
 
 
 def read_mapped(configuration: Configuration, read: Network | None = None) -> Network:
-    """The network of a configuration with what is around its roads.
+    """The network of a configuration with what is around its roads, and which of them rerouters close to cars.
 
     Args:
         configuration: names the files.
@@ -50,7 +51,15 @@ def read_mapped(configuration: Configuration, read: Network | None = None) -> Ne
         ScenarioError: a file is missing or invalid; a polygon with its line.
     """
     network = read or read_network(configuration.net)
-    ground = read_ground(configuration, network.map)
+    closed: set[str] = set()
+
+    def take(element: str, attributes: dict[str, str]) -> None:
+        if element == "closingReroute" and closes_to_cars(attributes):
+            closed.add(attributes.get("id", ""))
+
+    ground = read_ground(configuration, network.map, take)
+    if closed:
+        network = replace(network, closed_at_times=frozenset(closed & network.edges.keys()))
     return replace(network, map=replace(network.map, ground=ground)) if ground else network
 
 
@@ -61,13 +70,24 @@ def placed(network: Network, scenario: Scenario) -> Network:
     return network if scenario.origin is None else network.at(scenario.origin, scenario.language)
 
 
-def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[GroundArea, ...]:
+def closes_to_cars(attributes: dict[str, str]) -> bool:
+    """Whether a ``closingReroute`` keeps cars out; SUMO sends everybody round one that names no classes."""
+    names_none = not (attributes.get("allow") or attributes.get("disallow"))
+    return names_none or not open_to_cars(attributes)
+
+
+def read_ground(
+    configuration: Configuration,
+    roads: RoadNetwork,
+    also: Callable[[str, dict[str, str]], None] = lambda element, attributes: None,
+) -> tuple[GroundArea, ...]:
     """The areas in the additional files of a configuration, in the order in which they are drawn.
 
     Args:
         configuration: names the files.
         roads: the network as in its file, for polygons in longitude and latitude; without a projection those are
             left out.
+        also: called with each element of these files.
 
     Raises:
         ScenarioError: a file is no XML, or a polygon has no valid shape.
@@ -77,6 +97,7 @@ def read_ground(configuration: Configuration, roads: RoadNetwork) -> tuple[Groun
     for file in configuration.files.get("additional-files", ()):
 
         def start(element: str, attributes: dict[str, str], line: int, file: Path = file) -> None:
+            also(element, attributes)
             if element != "poly":
                 return
             try:

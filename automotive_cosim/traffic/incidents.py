@@ -54,6 +54,11 @@ class Incidents:
         """The other vehicles' ways round what is closed."""
         return self._stage.detours
 
+    @property
+    def slowed(self) -> dict[str, float]:
+        """See ``Signs.slowed``."""
+        return self._stage.signs.slowed
+
     def move(self, start: datetime) -> None:
         """Takes the clock of another place."""
         self._start = start

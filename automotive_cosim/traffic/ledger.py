@@ -41,11 +41,11 @@ class Ledger:
         """CO2, NOx and fuel in mg, energy in Wh and noise in seconds of ``LOUD_DB`` of each vehicle so far."""
         self._classes: dict[str, str] = {}
         self._track: list[TrackPoint] | None = [] if tracks else None
-        self._departed = self._teleported = 0
+        self._departed = self._teleported = self._collided = 0
         self.arrivals_s: dict[str, float] = {}
-        """Time at which each vehicle left the road."""
-        self.arrived: Sequence[str] = ()
-        """Vehicles that left in the last step."""
+        """Time at which each vehicle arrived; who collides leaves the road too, but has not arrived."""
+        self.left: Sequence[str] = ()
+        """Vehicles that left the road in the last step, arrived or not."""
         self._ego_is_on = self._ego_is_halted = False
         self._ego = Account(0.0, 0, 0.0, 0.0, 0.0)
 
@@ -53,15 +53,17 @@ class Ledger:
         """Records the step that has just been made."""
         sumo, now_s = self._sumo, self._sumo.time()
         departed = sumo.departed() if sumo.departed_count() else ()
-        self.arrived = sumo.arrived() if sumo.arrived_count() else ()
+        self.left = sumo.arrived() if sumo.arrived_count() else ()
+        collided = set(sumo.colliding()) if sumo.colliding_count() else ()
         teleporting = sumo.teleporting() if sumo.teleporting_count() else ()
         self._departed += len(departed)
         self._teleported += len(teleporting)
-        self.arrivals_s.update(dict.fromkeys(self.arrived, now_s))
+        self._collided += sum(vehicle in collided for vehicle in self.left)
+        self.arrivals_s.update((vehicle, now_s) for vehicle in self.left if vehicle not in collided)
         if EGO in departed:
             self._ego_is_on = True
             self._ego = Account(now_s, 0, 0.0, 0.0, 0.0)
-        if self._ego_is_on and (EGO in self.arrived or EGO in teleporting):
+        if self._ego_is_on and (EGO in self.left or EGO in teleporting):
             self._ego_is_on = False
         if self._ego_is_on:
             self._note_ego()
@@ -142,7 +144,20 @@ class Ledger:
             len(self._sumo.simulation.getPendingVehicles()),
             self._departed,
             self._teleported,
+            self._collided,
         )
+
+    def queues_m(self) -> dict[str, float]:
+        """The length of the vehicles that wait in each lane, wherever in it, with the gaps that they keep.
+
+        SUMO's own queue output counts from the end of the lane, so over the free road before a breakdown too.
+        """
+        vehicle, lane_of = self._sumo.vehicle, self._sumo.lane_of
+        found: dict[str, float] = {}
+        for each in self._sumo.vehicle_ids():
+            if vehicle.getWaitingTime(each) > 0 and (lane := lane_of(each)):
+                found[lane] = found.get(lane, 0.0) + vehicle.getLength(each) + vehicle.getMinGap(each)
+        return found
 
     def others(self) -> tuple[str, ...]:
         """All other vehicles on the road, teleporting, or due and not yet in; sorted by name."""
@@ -194,9 +209,9 @@ def settle(
         else:
             drive.step()
         after_step(total - open_, total)
-        for each in left if ledger.arrived else ():
-            each.difference_update(ledger.arrived)
-        open_ = awaited() if ledger.arrived else open_
+        for each in left if ledger.left else ():
+            each.difference_update(ledger.left)
+        open_ = awaited() if ledger.left else open_
     everybody = {vehicle for group in groups for vehicle in group}
     arrivals_s = {vehicle: at_s for vehicle, at_s in ledger.arrivals_s.items() if vehicle in everybody}
     summary = ledger.summary()
@@ -208,8 +223,7 @@ def settle(
 def own_choice(sumo: LibSumo) -> tuple[str, ...]:
     """The route that SUMO's rerouting device would take now. The ego takes it, so use a copy.
 
-    The device routes by travel times averaged over its adaptation interval; if no vehicle carries one, SUMO begins
-    to average at the first query, which gives free flow.
+    The device routes by travel times averaged over its adaptation interval (``World.prepare_copies``).
     """
-    sumo.vehicle.rerouteTraveltime(EGO, True)
+    sumo.reroute(EGO)
     return tuple(sumo.route(EGO)[sumo.route_index(EGO) :])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from datetime import datetime
@@ -14,7 +15,7 @@ from automotive_cosim.formats import incidents
 from automotive_cosim.traffic.network import Edge
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.staged import CAR_SPACE_M, StagedIncident
-from automotive_cosim.traffic.sumo import HAZARD_SIGNAL
+from automotive_cosim.traffic.sumo import ANY_LANE_CHANGE, HAZARD_SIGNAL, WAYMAKING
 
 GENTLE_MPS2 = 3.0
 """A leader that brakes less than this only slows down."""
@@ -43,8 +44,11 @@ CREEP_MPS = 3.0
 FOLLOWS_S = 1.4
 """A car that pulls out is at least so far ahead, or SUMO finds no room for it."""
 
-NO_LANE_CHANGE, ANY_LANE_CHANGE, WHEN_ASKED = 0, 1621, 512
-"""SUMO's lane change modes: only for safety, its default, and only as commanded."""
+NO_LANE_CHANGE, WHEN_ASKED = 0, 512
+"""SUMO's lane change modes: only for safety, and only as commanded."""
+
+PASSED_M = 50.0
+"""A vehicle with its blue lights on has passed whoever is so far away: twice the reach of SUMO's device."""
 
 CUT_OUT_S = 10.0
 """How long a vehicle that has cut out keeps its new lane."""
@@ -99,14 +103,20 @@ class StagedEmergency(StagedIncident):
 
     def __init__(self, stage: IncidentStage, incident: incidents.EmergencyVehicle) -> None:
         self._stage, self._incident = stage, incident
-        self._sent = False
+        self._car = ""
+        self._drivers: dict[str, tuple[float, str]] = {}
+        """Speed factor and alignment of each other driver before the ambulance."""
+        self._made_way: set[str] = set()
 
     def tick(self, local_time: datetime) -> str:
-        """Waits until the ego has come far enough."""
+        """Waits until the ego has come far enough; then lets drivers be who they were once it has passed them."""
         stage, sensor = self._stage, self._stage.sensor
-        if self._sent or sensor is None or sensor.position_m < self._incident.behind_m:
+        if self._car:
+            if self._incident.blue_light:
+                self._give_back()
             return ""
-        self._sent = True
+        if sensor is None or sensor.position_m < self._incident.behind_m:
+            return ""
         index, on_edge_m = sensor.route.edge_at(sensor.position_m - self._incident.behind_m)
         what = "ambulance" if self._incident.blue_light else "van"
         kind = stage.kind(what)
@@ -121,8 +131,24 @@ class StagedEmergency(StagedIncident):
         types.setSpeedFactor(kind, self._incident.speed_ratio)
         types.setSpeedDeviation(kind, 0.0)
         types.setParameter(kind, "has.rerouting.device", "false")
-        stage.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
+        self._car = stage.car(what, sensor.route.edge_ids[index:], "", on_edge_m, "max", kind)
         return ""
+
+    def _give_back(self) -> None:
+        sumo, vehicle = self._stage.sumo, self._stage.sumo.vehicle
+        running = sumo.vehicle_ids()
+        for each in running:
+            if each not in self._drivers and each not in (self._car, self._stage.ego_id):
+                self._drivers[each] = vehicle.getSpeedFactor(each), vehicle.getLateralAlignment(each)
+            if each in self._drivers and vehicle.getLaneChangeMode(each) == WAYMAKING:
+                self._made_way.add(each)
+        is_there = self._car in running
+        for each in sorted(self._made_way.intersection(running)):
+            if is_there and math.dist(sumo.position(each), sumo.position(self._car)) <= PASSED_M:
+                continue
+            sumo.give_back(each, *self._drivers[each])
+            if not is_there or sumo.edge_of(each) != sumo.edge_of(self._car):
+                self._made_way.remove(each)
 
 
 class StagedBraking(StagedIncident):
@@ -242,7 +268,6 @@ class _KeptInLane:
 
     def __init__(self, stage: IncidentStage, for_s: float) -> None:
         self._stage, self._left_s = stage, for_s
-        self._mode = int(stage.sumo.vehicle.getLaneChangeMode(stage.ego_id))
         stage.sumo.vehicle.setLaneChangeMode(stage.ego_id, WHEN_ASKED)
 
     def tick(self) -> None:
@@ -257,7 +282,7 @@ class _KeptInLane:
         if self._left_s > 0:
             self._left_s = 0.0
             with suppress(*self._stage.sumo.refusals):  # the drive may be over
-                self._stage.sumo.vehicle.setLaneChangeMode(self._stage.ego_id, self._mode)
+                self._stage.sumo.vehicle.setLaneChangeMode(self._stage.ego_id, ANY_LANE_CHANGE)
 
 
 class StagedCutIn(StagedIncident):

@@ -1,6 +1,7 @@
 """Reads a SUMO network (``.net.xml``, also gzipped), for maps and the driving state.
 
-SUMO knows lanes, speeds and shapes. Everything else from the map is in the edges: ``type`` is
+SUMO knows lanes, speeds and shapes. A road's type may have a limit for cars, which holds instead of the lanes'.
+Everything else from the map is in the edges: ``type`` is
 ``highway.<OSM highway value>``, and ``<param>`` keys are OpenStreetMap's own:
 
 | key | meaning |
@@ -78,6 +79,12 @@ LARGEST = 1e9
 SLOWEST_MPS = 0.01
 """On a slower lane no vehicle arrives."""
 
+CARS = "passenger"
+"""SUMO's class of cars."""
+
+FOR_TRAINS = frozenset(("rail_crossing", "rail_signal"))
+"""Types of junctions whose lights show that a train comes; nobody else is controlled by them."""
+
 
 def quantity(text: str, least: float = -LARGEST) -> float:
     """A number of a network.
@@ -107,7 +114,9 @@ class Edge:
     """Lanes open to cars, from the kerb."""
     length_m: float
     speed_mps: float
-    """The speed in the file, even without a limit."""
+    """The present speed of its fastest lane, even without a limit."""
+    lane_mps: tuple[float, ...]
+    """Those of all its lanes."""
     limit_mps: float | None
     limit_source: LimitSource
     in_tunnel: bool
@@ -132,6 +141,8 @@ class Edge:
     """When it is open to cars, if not always (``posted.is_open``)."""
     timed_turns: tuple[tuple[str, tuple[TimedAccess, ...]], ...] = ()
     """The edges into which cars may not always turn, and when they may."""
+    cars_mps: float | None = None
+    """The limit that its type has for cars."""
     built_up_assumed: bool | None = None
     """What the import assumed where the map does not say: for reports, no verdict rests on it."""
 
@@ -174,6 +185,8 @@ class Network:
     """Why it has no position on earth, e.g. "has no projection"; empty if it has one."""
     moved: bool = False
     """Whether it was moved from the position in its file."""
+    closed_at_times: frozenset[str] = frozenset()
+    """Edges that a rerouter of the scenario closes to cars at any time."""
     closed_free_s: Mapping[str, float] = field(default_factory=dict)
     """The time of each edge without a lane for cars, as of a way for buses, at its limit."""
 
@@ -190,7 +203,7 @@ class Network:
 
     def open_at_all_hours(self) -> Network:
         """The same network with the ways only that are open at any hour: planned there, no route is ever barred."""
-        shut = {edge.edge_id for edge in self.edges.values() if edge.timed_access}
+        shut = {edge.edge_id for edge in self.edges.values() if edge.timed_access} | self.closed_at_times
         barred = {(edge.edge_id, to_edge) for edge in self.edges.values() for to_edge, _ in edge.timed_turns}
         if not shut and not barred:
             return self
@@ -234,7 +247,7 @@ class _Connection:
     to_lane: str
     via: str | None
     is_straight: bool
-    has_signal: bool
+    signal: str | None
 
 
 class NetworkReader:
@@ -256,6 +269,11 @@ class NetworkReader:
         self.closed_free_s: dict[str, float] = {}
         self.inner_lanes: dict[str, Crossing] = {}
         self.connections: list[_Connection] = []
+        self.cars_mps: dict[str, float] = {}
+        """The limits for cars, by type of road."""
+        self.for_trains: set[str] = set()
+        """Junctions of ``FOR_TRAINS``."""
+        self._type = ""
         self.location: Mapping[str, str] = {}
         self.left_hand = False
 
@@ -275,6 +293,12 @@ class NetworkReader:
                 self.connections.append(_connection(attributes))
             elif name == "location":
                 self.location = attributes
+            elif name == "junction" and attributes.get("type") in FOR_TRAINS:
+                self.for_trains.add(attributes["id"])
+            self._type = attributes.get("id", "") if name == "type" else ""
+        elif self._depth == LANE_DEPTH and name == "restriction":
+            if self._type and attributes["vClass"] == CARS:
+                self.cars_mps[self._type] = quantity(attributes["speed"], SLOWEST_MPS)
         elif self._depth == LANE_DEPTH and self._edge:
             if name == "lane":
                 self._lanes.append(attributes)
@@ -318,14 +342,15 @@ class NetworkReader:
         return Network(self.edges, crossings, opposite, roads, doubt, closed_free_s=self.closed_free_s)
 
     def _take_edge(self, edge: Attributes) -> None:
-        lanes = [lane for lane in self._lanes if _open_to_cars(lane)]
+        lanes = [lane for lane in self._lanes if open_to_cars(lane)]
         if edge.get("function") == "internal":
             for lane in lanes:
                 self.inner_lanes[lane["id"]] = Crossing(
                     quantity(lane["length"], 0.0), quantity(lane["speed"], SLOWEST_MPS)
                 )
         elif lanes and "function" not in edge:
-            self.edges[intern(edge["id"])] = _edge(edge, lanes, self._lanes, self._params)
+            cars_mps = self.cars_mps.get(edge.get("type", ""))
+            self.edges[intern(edge["id"])] = _edge(edge, lanes, self._lanes, self._params, cars_mps)
         elif self._lanes and "function" not in edge:
             self.closed_free_s[edge["id"]] = min(
                 quantity(lane["length"], 0.0) / max(SLOWEST_MPS, quantity(lane["speed"], 0.0))
@@ -375,10 +400,18 @@ def root_of(path: Path) -> ET.Element:
     return root
 
 
-def _edge(edge: Attributes, lanes: list[Attributes], all_lanes: list[Attributes], params: Attributes) -> Edge:
-    speed_mps = max(quantity(lane["speed"], SLOWEST_MPS) for lane in lanes)
-    words = (params.get("maxspeed"), params.get("maxspeed:assumed"))
-    unlimited = speed_mps >= NO_LIMIT_FROM_MPS and "none" in words
+def _edge(
+    edge: Attributes,
+    lanes: list[Attributes],
+    all_lanes: list[Attributes],
+    params: Attributes,
+    cars_mps: float | None,
+) -> Edge:
+    lane_mps = tuple(cars_mps or quantity(lane["speed"], SLOWEST_MPS) for lane in lanes)
+    speed_mps = max(lane_mps)
+    says_none = "none" in (params.get("maxspeed"), params.get("maxspeed:assumed"))
+    unlimited = cars_mps is None and says_none and speed_mps >= NO_LIMIT_FROM_MPS
+    is_posted = cars_mps is not None or params.get("maxspeed")
     middle = lanes[len(lanes) // 2]
     return Edge(
         edge_id=intern(edge["id"]),
@@ -389,8 +422,10 @@ def _edge(edge: Attributes, lanes: list[Attributes], all_lanes: list[Attributes]
         lane_ids=tuple(intern(lane["id"]) for lane in lanes),
         length_m=quantity(lanes[0]["length"], 0.0),
         speed_mps=speed_mps,
+        lane_mps=lane_mps,
         limit_mps=None if unlimited else speed_mps,
-        limit_source=LimitSource.POSTED if params.get("maxspeed") else LimitSource.ASSUMED,
+        limit_source=LimitSource.POSTED if is_posted else LimitSource.ASSUMED,
+        cars_mps=cars_mps,
         in_tunnel=params.get("tunnel", "no") != "no",
         lit={"yes": True, "no": False}.get(params.get("lit", "")),
         built_up=_built_up(params.get("zone:traffic", "")),
@@ -416,17 +451,18 @@ def _built_up(zone: str) -> bool | None:
     return BUILT_UP.get(zone.rpartition(":")[2])
 
 
-def _open_to_cars(lane: Attributes) -> bool:
+def open_to_cars(lane: Attributes) -> bool:
+    """Whether cars may use what has these attributes, a lane's ``allow`` and ``disallow``."""
     allowed = lane.get("allow")
     if allowed is not None:
-        return allowed == "all" or "passenger" in allowed.split()
+        return allowed == "all" or CARS in allowed.split()
     forbidden = lane.get("disallow", "").split()
-    return "passenger" not in forbidden and "all" not in forbidden
+    return CARS not in forbidden and "all" not in forbidden
 
 
 def _for_buses(lane: Attributes) -> bool:
     """Whether buses may use it and cars may not; a footway that happens to allow buses does not count."""
-    return "bus" in lane.get("allow", "").split() and not _open_to_cars(lane)
+    return "bus" in lane.get("allow", "").split() and not open_to_cars(lane)
 
 
 def class_of(highway: str, tags: Mapping[str, str]) -> str:
@@ -453,7 +489,7 @@ def _connection(link: Attributes) -> _Connection:
         to_lane=intern(f"{goal}_{link['toLane']}"),
         via=link.get("via"),
         is_straight=link.get("dir", "s") == "s",
-        has_signal="tl" in link,
+        signal=link.get("tl"),
     )
 
 
@@ -493,7 +529,8 @@ def _through(links: Sequence[_Connection], onward: Mapping[str, str | None], rea
         speed_mps = min(speed_mps, lane.speed_mps)
         via = onward.get(via)
     lanes = frozenset((each.from_lane, each.to_lane) for each in links)
-    return Crossing(length_m, speed_mps, link.is_straight, link.has_signal, lanes)
+    has_signal = link.signal is not None and link.signal not in reading.for_trains
+    return Crossing(length_m, speed_mps, link.is_straight, has_signal, lanes)
 
 
 def _opposite(edges: Iterable[Edge]) -> dict[str, str]:

@@ -70,16 +70,13 @@ NOTICED = {COLLISIONS: "warn", "collision.stoptime": "0"}
 SCRATCH = "automotive-cosim-"
 """Beginning of the name of a simulation's scratch folder."""
 
-EDGE_FLOWS, QUEUES = "edges.xml", "queues.xml"
-OUTPUTS = ("fcd.xml", "tripinfo.xml", EDGE_FLOWS, QUEUES)
+EDGE_FLOWS = "edges.xml"
+OUTPUTS = ("fcd.xml", "tripinfo.xml", EDGE_FLOWS)
 """SUMO's own outputs that a run may write."""
 
 SUMO_STEP_S = 1.0
 """SUMO's own step length."""
 REROUTING = "device.rerouting.probability"
-
-QUEUE_PERIOD_S = 10.0
-"""Simulated time between two measurements of the queues."""
 
 NO_EGO = Ego((Trip("", "", ""),))
 
@@ -100,8 +97,8 @@ class Setup:
     """Folder for SUMO's own outputs: the ego's positions (``fcd.xml``) and everybody's trips (``tripinfo.xml``),
     the ego's with its emissions."""
     flow_s: float | None = None
-    """Length of the intervals in which the flow on every edge (``edges.xml``) and the queues (``queues.xml``) are
-    written instead, from the end of the warm-up; None for the ego's outputs."""
+    """Length of the intervals in which the flow on every edge (``edges.xml``) is written instead, from the end of
+    the warm-up; None for the ego's outputs."""
 
     @property
     def traffic(self) -> Setup:
@@ -407,12 +404,7 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
     if sumo.lateral_resolution_m is not None:
         options["lateral-resolution"] = f"{sumo.lateral_resolution_m:g}"
     if setup.outputs is not None and setup.flow_s is not None:
-        options |= {
-            "queue-output": str(setup.outputs / QUEUES),
-            "queue-output.period": f"{QUEUE_PERIOD_S:g}",
-            "queue-output.skip-empty": "true",
-            "precision": "4",
-        }
+        options["precision"] = "4"
     elif setup.outputs is not None:
         options |= {
             "fcd-output": str(setup.outputs / "fcd.xml"),

@@ -26,7 +26,7 @@ from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadSha
 from automotive_cosim.errors import CosimError, ScenarioError, TrafficError
 from automotive_cosim.formats.incidents import Incident
 from automotive_cosim.formats.scenario import Scenario
-from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
+from automotive_cosim.traffic.accounts import QUEUE_PERIOD_S, Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
@@ -245,21 +245,25 @@ class Server:
 
     def do_flow(self, duration_s: float, every_s: float) -> tuple[FlowSummary, ...]:
         """Lets the traffic run without an ego; returns its state now and at the end of every period."""
-        summaries = [self._flow_summary()]
-        count = round(duration_s / every_s)
-        for number in range(count):
+        assert self._ledger is not None
+        summaries = [self._flow_summary(())]
+        for number in range(round(duration_s / every_s)):
             self._done = number * every_s, duration_s
-            self.do_run_on(every_s)
-            summaries.append(self._flow_summary())
+            queues = []
+            for _ in range(round(every_s / QUEUE_PERIOD_S)):
+                self.do_run_on(QUEUE_PERIOD_S)
+                queues.append(self._ledger.queues_m())
+            summaries.append(self._flow_summary(tuple(queues)))
         return tuple(summaries)
 
-    def _flow_summary(self) -> FlowSummary:
+    def _flow_summary(self, queues: tuple[dict[str, float], ...]) -> FlowSummary:
         assert self._ledger is not None
         assert self._world is not None
         ledger, detours = self._ledger, self._world.detours
         return FlowSummary(
             ledger.summary(),
             len(ledger.arrivals_s),
+            queues,
             self._world.slowed(),
             ledger.consumed_by_class(),
             detours.cut_short,

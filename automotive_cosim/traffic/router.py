@@ -68,18 +68,17 @@ class Router:
         self._network = network
         self._congestion = congestion
         self._type = type_id
-        signalled = {
+        self._signalled = {
             edge for edge, ways in network.crossings.items() if any(way.has_signal for way in ways.values())
         }
-        self._free_s = {
-            edge.edge_id: edge.length_m / edge.speed_mps + (SIGNAL_WAIT_S if edge.edge_id in signalled else 0.0)
-            for edge in network.edges.values()
-        }
+        self._limits_mps: dict[str, float] = {}
+        self._free_s: dict[str, float] = {}
+        """Travel times at these limits, those in force when the traffic was last looked at."""
         self._heard_s: Mapping[str, float] = {}
         """Travel times of the news that was listened to last."""
         self._changed: tuple[str, ...] = ()
         """Edges whose weight differs from free roads."""
-        self._write(self._free_s)
+        self._follow_limits()
 
     def quickest(self, start: str, goals: Iterable[str], via: Sequence[str] = ()) -> tuple[str, ...]:
         """The quickest route now from an edge, through others, to the destination that is reached first; empty if
@@ -138,7 +137,16 @@ class Router:
         others = sorted((each for each in options[1:] if each.eta_s <= quick_s), key=lambda option: option.eta_s)
         return (options[0], *others)
 
+    def _follow_limits(self) -> None:
+        for edge_id, edge in self._network.edges.items():
+            if edge.speed_mps != self._limits_mps.get(edge_id):
+                self._limits_mps[edge_id] = edge.speed_mps
+                wait_s = SIGNAL_WAIT_S if edge_id in self._signalled else 0.0
+                self._free_s[edge_id] = edge.length_m / edge.speed_mps + wait_s
+                self._write({edge_id: self._free_s[edge_id]})
+
     def _traffic(self, age_s: float) -> _Traffic:
+        self._follow_limits()
         lanes = self._congestion.window(age_s)
         edges: dict[str, Tally] = {}
         for lane_id, seen in lanes.items():
@@ -204,7 +212,10 @@ class Router:
         """Travel time and edges of the quickest route by the weights; no edges if there is none."""
         time_s, edges = 0.0, (start,)
         for here, there in pairwise((start, *via, goal)):
-            found = self._sumo.find_route(here, there, self._type, NEVER_S)
+            try:
+                found = self._sumo.find_route(here, there, self._type, NEVER_S)
+            except self._sumo.refusals:  # a rerouter of the scenario's keeps cars out of that road now
+                return 0.0, ()
             if not found.edges:
                 return 0.0, ()
             time_s, edges = time_s + found.travelTime, (*edges, *found.edges[1:])

@@ -62,7 +62,13 @@ class Sensor:
         self._odometer_m = 0.0
         self.position_m = 0.0
         """Along the route, from its start."""
+        self.on_edge_m = 0.0
+        """On the edge of the route, or on the lane across a junction."""
         self._edge: Edge = network.edges[sumo.edge_of(ego_id)]
+        self.makes_way = False
+        """Whether a vehicle with its blue lights on is behind."""
+        self._is_opposite = False
+        """Whether it overtakes in the opposite lane."""
         self._min_gap_m = sumo.min_gap(ego_id)
         self.looks_around = True
         """Whether to look for signals, other vehicles and the traffic ahead; without it, only the drive is read."""
@@ -76,6 +82,11 @@ class Sensor:
         self._follower_min_gap_m = 0.0
         self.route: Route
         self.refresh()
+
+    @property
+    def knows_emergency(self) -> bool:
+        """Whether a vehicle with its blue lights on is anywhere on the road."""
+        return bool(self._emergency)
 
     def refresh(self) -> None:
         """Updates the route, or congestion and incidents."""
@@ -95,29 +106,42 @@ class Sensor:
         index = sumo.route_index(ego)
         edge_id = sumo.edge_of(ego)
         lane_position_m = sumo.lane_position(ego)
+        lane_id = sumo.lane_of(ego)
         if edge_id.startswith(":"):
+            if self._is_opposite:
+                odometer_m = self._odometer_m + speed_mps * self._step_s
             self.position_m += odometer_m - self._odometer_m
         else:
+            self._is_opposite = False
+            if (edge_id,) != self.route.edge_ids[index : index + 1]:
+                if tuple(edges := sumo.route(ego)) != self.route.edge_ids:
+                    self.refresh()  # a rerouter of the scenario's has sent it another way
+                self._is_opposite = edge_id != edges[index]
+            if self._is_opposite:
+                odometer_m -= lane_position_m
+                edge_id, lane_id, lane_position_m = self._own_side(edges[index], lane_position_m)
+                odometer_m += lane_position_m
             self._edge = self._network.edges[edge_id]
             self.position_m = self.route.position_m(index, lane_position_m)
-        self._odometer_m = odometer_m
-        lane_id = sumo.lane_of(ego) or self._edge.lane_ids[0]  # parked beside the kerb it is on none
+        self._odometer_m, self.on_edge_m = odometer_m, lane_position_m
+        lane_id = lane_id or self._edge.lane_ids[0]  # parked beside the kerb it is on none
         lane = self._lanes.get(lane_id)
         if lane is None:
             lane = self._lanes[lane_id] = self._read_lane(lane_id)
         is_looking = self._steps % self._look_steps == 0
         self._steps += 1
-        light = leader = follower = oncoming = emergency = None
+        light = leader = follower = oncoming = None
+        emergency = self._emergency_behind(x_m, y_m, heading_deg, speed_mps) if self._emergency else None
+        self.makes_way = emergency is not None
         if self.looks_around:
             if is_looking or (self._light and self._light[2] <= self.position_m):
                 self._look_for_light()
             if is_looking:
                 self._oncoming_id = self._look_for_oncoming(index)
-            light, leader, follower = self._next_light(), self._leader(speed_mps), self._follower(speed_mps)
+            light, follower = self._next_light(), self._follower(speed_mps)
+            leader = self._overtaken(index) if self._is_opposite else self._leader(speed_mps)
             if self._oncoming_id:
                 oncoming = self._oncoming(index, x_m, y_m, heading_deg, speed_mps)
-            if self._emergency:
-                emergency = self._emergency_behind(x_m, y_m, heading_deg, speed_mps)
         return Seen(
             sumo.time(),
             speed_mps,
@@ -139,7 +163,7 @@ class Sensor:
             leader,
             follower,
             oncoming,
-            emergency,
+            emergency if self.looks_around else None,
             hazard_lights,
             vehicle_count,
             self._lon_lat,
@@ -150,11 +174,12 @@ class Sensor:
         sumo, edge = self._sumo, self._edge
         friction = sumo.friction(lane_id)
         if lane_id in edge.lane_ids:
-            lane_mps = sumo.lane_speed(lane_id)
+            index = edge.lane_ids.index(lane_id)
+            lane_mps = edge.lane_mps[index]
             has_none = edge.limit_mps is None and (not edge.signed_lanes or lane_mps >= NO_LIMIT_FROM_MPS)
             source = LimitSource.POSTED if lane_id in edge.signed_lanes else edge.limit_source
             own = Limit(None if has_none else lane_mps, source)
-            return Lane(edge.lane_ids.index(lane_id), own, friction, edge.limit_hours)
+            return Lane(index, own, friction, edge.limit_hours)
         return Lane(sumo.lane_index(self._ego), edge.limit, friction, edge.limit_hours)
 
     def _look_for_light(self) -> None:
@@ -174,6 +199,30 @@ class Sensor:
             return None
         other_mps = self._sumo.speed(found[0])
         return found[0], found[1] + self._min_gap_m, other_mps, speed_mps - other_mps
+
+    def _own_side(self, edge_id: str, opposite_m: float) -> tuple[str, str, float]:
+        """Edge, lane and position on the car's own side of the road while it overtakes in the opposite lane, whose
+        edge, lane and position SUMO gives then: the lane beside that one, as far from the other end."""
+        edge = self._network.edges[edge_id]
+        return edge_id, edge.lane_ids[-1], max(0.0, edge.length_m - opposite_m)
+
+    def _overtaken(self, index: int) -> Other | None:
+        """The next vehicle on the own side, which SUMO does not tell while the car is on the other. It is not in
+        the car's way, so they do not close in."""
+        sumo, ego_m = self._sumo, self.position_m
+        for leg in range(index, len(self.route.edge_ids)):
+            start_m = self.route.position_m(leg, 0.0)
+            if start_m - ego_m > LEADER_RANGE_M:
+                break
+            ahead = (
+                (start_m + sumo.lane_position(vehicle) - ego_m, vehicle)
+                for vehicle in sumo.edge_vehicles(self.route.edge_ids[leg])
+            )
+            front_m, nearest = min((each for each in ahead if each[0] > 0), default=(math.inf, ""))
+            if nearest:
+                gap_m = front_m - sumo.length(nearest)
+                return (nearest, gap_m, sumo.speed(nearest), 0.0) if gap_m <= LEADER_RANGE_M else None
+        return None
 
     def _follower(self, speed_mps: float) -> Other | None:
         found_id, gap_m = self._sumo.follower(self._ego, LEADER_RANGE_M)
@@ -197,6 +246,7 @@ class Sensor:
             distances = (
                 (start_m + length_m - sumo.lane_position(vehicle), vehicle)
                 for vehicle in sumo.edge_vehicles(opposite)
+                if vehicle != self._ego
             )
             beyond_m, nearest = min((each for each in distances if each[0] > 0), default=(math.inf, ""))
             if beyond_m <= SIGHT_M:

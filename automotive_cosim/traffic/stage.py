@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from datetime import datetime
 
 from automotive_cosim.errors import ScenarioError
@@ -24,7 +24,9 @@ CAR_TYPE = "automotive_cosim.car"
 class IncidentStage:
     """The stage on which incidents are staged."""
 
-    def __init__(self, sumo: LibSumo, network: Network, surface: Surface, ego_id: str) -> None:
+    def __init__(
+        self, sumo: LibSumo, network: Network, surface: Surface, ego_id: str, variable: Iterable[str]
+    ) -> None:
         self.sumo = sumo
         self.network = network
         """Its edges change: limits by time or an incident, names as the traffic is moved (``World.move``)."""
@@ -32,7 +34,7 @@ class IncidentStage:
         self.ego_id = ego_id
         self.sensor: Sensor | None = None
         """The ego's pedals, once it is on the road."""
-        self.signs = Signs(sumo, network)
+        self.signs = Signs(sumo, network, variable)
         self.detours = Detours(sumo, network)
         self.closures = Closures(sumo, network, self.detours)
         self.route_changed = False

@@ -80,6 +80,7 @@ class _Roadworks(StagedIncident):
     def __init__(self, stage: IncidentStage, incident: incidents.Roadworks) -> None:
         self._stage, self._incident = stage, incident
         self._closed = tuple(stage.lane(incident.edge, lane) for lane in incident.closed_lanes)
+        stage.signs.refuse_if_fixed(incident.edge)
         if len(set(self._closed)) >= len(stage.edge(incident.edge).lane_ids):
             raise ScenarioError(
                 f"[[incidents]]: roadworks on {incident.edge!r} leave no lane; use kind = 'closure'"
@@ -223,6 +224,7 @@ class _SchoolZone(StagedIncident):
         self._stage, self._edges = stage, incident.edges
         for edge in incident.edges:
             stage.edge(edge)
+            stage.signs.refuse_if_fixed(edge)
         opens, closes = incident.opens, incident.closes
         hours = Hours(
             SCHOOL_DAYS,
@@ -376,6 +378,8 @@ class _Ahead(StagedIncident):
         if on_edge_m > NEAR_M:  # they begin where their road does
             return None
         if incident.what in ("roadworks", "left_sign"):
+            if edges[0].cars_mps is not None:
+                return None
             limit_kmh = max(20.0, 10.0 * round(0.06 * edges[0].speed_mps * KMH_PER_MPS))
             over = incident.what == "left_sign"
             return incidents.Roadworks(edge=way[0], limit_kmh=limit_kmh, over=over, from_s=from_s, to_s=to_s)

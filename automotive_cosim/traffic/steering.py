@@ -68,6 +68,9 @@ class SumoPedals:
         self._stops = tuple(stops)
         self._service_mps2: float = sumo.vehicle.getDecel(ego_id)
         self._own_mps2: float = sumo.vehicle.getAccel(ego_id)
+        self._alignment = "center"
+        self._made_way = False
+        """Whether there was a vehicle with its blue lights on a step ago."""
         self._expected_mps2 = self._service_mps2
         """How hard those behind expect the driver to brake: as hard as he can, however gently he means to."""
         self._factor = 1.0
@@ -115,6 +118,10 @@ class SumoPedals:
 
         SUMO applies the speed factor in bends too, but drivers who speed on straights do not corner as fast.
         """
+        is_near = self._sensor.knows_emergency
+        if (is_near or self._made_way) and not self._sensor.makes_way:
+            self._sumo.give_back(self._ego, self._factor, self._alignment)
+        self._made_way = is_near
         top_mps = self._top_mps
         if self._factor > 1.0:
             position_m = self._sensor.position_m
@@ -154,8 +161,8 @@ class SumoPedals:
     def change_lane(self, lanes_from_kerb: int, for_s: float) -> bool:
         """See ``pedals.Pedals``; SUMO changes as soon as there is a gap."""
         lane = self._sumo.lane_of(self._ego)
-        edge_id = self._sumo.edge_of(self._ego)
-        lanes = self._network.edges[edge_id].lane_ids if edge_id in self._network.edges else ()
+        edge_id = self._rest()[0]
+        lanes = self._network.edges[edge_id].lane_ids
         if lane not in lanes or not 0 <= lanes.index(lane) + lanes_from_kerb < len(lanes):
             return False
         target = lanes[lanes.index(lane) + lanes_from_kerb]
@@ -174,7 +181,8 @@ class SumoPedals:
         edge = self._network.edges.get(self._sumo.edge_of(self._ego))
         is_innermost = edge is not None and len(edge.lane_ids) > 1 and lane == edge.lane_ids[-1]
         side = "left" if is_innermost != self._network.map.left_hand else "right"
-        self._sumo.vehicle.setLateralAlignment(self._ego, side if leave else "center")
+        self._alignment = side if leave else "center"
+        self._sumo.vehicle.setLateralAlignment(self._ego, self._alignment)
         return f"keeps to the {side}" if leave else "drives in the middle of the lane"
 
     # --- routes -------------------------------------------------------------------------------------------
@@ -264,13 +272,13 @@ class SumoPedals:
 
     def _driven_m(self) -> float:
         """Distance driven on the present edge."""
-        return self._sumo.lane_position(self._ego)
+        return self._sensor.on_edge_m
 
     def _fixed(self) -> tuple[str, tuple[str, ...]]:
         """The car's edge, and the edges that can no longer be changed."""
         route, index = self._sensor.route, self._sumo.route_index(self._ego)
         here = route.edge_ids[index]
-        left_m = self._network.edges[here].length_m - self._sumo.lane_position(self._ego)
+        left_m = self._network.edges[here].length_m - self._sensor.on_edge_m
         needed_m = TURN_TIME_S * self._sumo.speed(self._ego) + TURN_RESERVE_M
         return here, route.edge_ids[index : index + (2 if left_m < needed_m else 1)]
 

@@ -11,7 +11,7 @@ import os
 import re
 import sys
 import tempfile
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator, Sequence
 from contextlib import contextmanager, redirect_stdout
 from typing import Any
 
@@ -29,8 +29,22 @@ SUMO_VARIABLES = ("SUMO_HOME", "PROJ_DATA", "PROJ_LIB")
 EGO = "ego"
 EGO_TYPE = "automotive_cosim.ego"
 
+BLUE_LIGHT, REROUTING = "bluelight", "rerouting"
+"""SUMO's devices of vehicles with their blue lights on, and of those that choose their way again and again."""
+
+ANY_LANE_CHANGE, WAYMAKING = 1621, 1605
+"""SUMO's lane change modes: its default, and what the blue-light device sets."""
+
 HAZARD_SIGNAL = 4
 """SUMO's bit for the hazard lights (VEH_SIGNAL_BLINKER_EMERGENCY)."""
+
+
+NOW = -1.0
+"""SUMO's departure time of a route that is looked for at once."""
+
+LIMITS, AVERAGED = 0, 1
+"""SUMO's routing modes: times at the limits unless weights are given, and times averaged over the adaptation of its
+rerouting devices, which begins with the speeds of the moment if no vehicle has one."""
 
 
 class LibSumo:
@@ -54,6 +68,7 @@ class LibSumo:
         self.teleporting: Callable[[], Sequence[str]] = compiled("simulation_getStartingTeleportIDList")
         self.teleporting_count: Callable[[], int] = compiled("simulation_getStartingTeleportNumber")
         self.colliding_count: Callable[[], int] = compiled("simulation_getCollidingVehiclesNumber")
+        self.colliding: Callable[[], Sequence[str]] = compiled("simulation_getCollidingVehiclesIDList")
         self.collisions: Callable[[], Sequence[Any]] = compiled("simulation_getCollisions")
         self.to_lon_lat: Callable[[float, float], tuple[float, float]] = compiled("simulation_convertGeo")
         self.find_road: Callable[[float, float, bool, str], tuple[str, float, int]] = simulation.convertRoad
@@ -95,6 +110,8 @@ class LibSumo:
         self.person: Any = library.person
         self.simulation: Any = simulation
         self.lights: Any = library.trafficlight
+        self.variable_signs: Any = library.variablespeedsign
+        self.calibrators: Any = library.calibrator
         self.light_ids: Callable[[], Sequence[str]] = library.trafficlight.getIDList
         self.controlled_links: Callable[[str], Sequence[Sequence[tuple[str, str, str]]]] = (
             library.trafficlight.getControlledLinks
@@ -115,12 +132,49 @@ class LibSumo:
         self.edge_vehicles: Callable[[str], Sequence[str]] = edge.getLastStepVehicleIDs
         self.vehicle_ids: Callable[[], Sequence[str]] = vehicle.getIDList
 
-    def on_lanes(self) -> Iterator[tuple[str, float]]:
-        """The lane and speed of every vehicle in one; parked vehicles and those off the road are not."""
+    def on_lanes(self, without: Collection[str] = ()) -> Iterator[tuple[str, float]]:
+        """The lane and speed of every other vehicle in one; parked vehicles and those off the road are not."""
         lane_of, speed = self.lane_of, self.speed
         for vehicle in self.vehicle_ids():
-            if lane := lane_of(vehicle):
+            if vehicle not in without and (lane := lane_of(vehicle)):
                 yield lane, speed(vehicle)
+
+    def has_device(self, vehicle: str, device: str) -> bool:
+        """Whether a vehicle has a device."""
+        return bool(self.vehicle.getParameter(vehicle, f"has.{device}.device") == "true")
+
+    def reroute(self, vehicle: str) -> None:
+        """Gives a vehicle the quickest way by averaged times. ``rerouteTraveltime`` alone goes by the limits.
+
+        Raises:
+            one of ``refusals``: there is no way.
+        """
+        self.vehicle.setRoutingMode(vehicle, AVERAGED)
+        try:
+            self.vehicle.rerouteTraveltime(vehicle, False)
+        finally:
+            self.vehicle.setRoutingMode(vehicle, LIMITS)
+
+    def keep_to(self, vehicle: str, route: Sequence[str]) -> None:
+        """Gives a vehicle a route that its own rerouting device, if it has one, does not change again.
+
+        Raises:
+            one of ``refusals``: it cannot drive it.
+        """
+        self.set_route(vehicle, route)
+        if self.has_device(vehicle, REROUTING):
+            self.set_parameter(vehicle, "device.rerouting.period", "0")
+
+    def give_back(self, vehicle: str, speed_factor: float, alignment: str) -> None:
+        """Gives a driver back what the blue-light device of a vehicle that has passed leaves changed for good: the
+        readiness to overtake, the speed as a factor on the limit, and the place in the lane."""
+        each = self.vehicle
+        if each.getLaneChangeMode(vehicle) == WAYMAKING:
+            each.setLaneChangeMode(vehicle, ANY_LANE_CHANGE)
+        if each.getLateralAlignment(vehicle) != alignment:
+            each.setLateralAlignment(vehicle, alignment)
+        if each.getSpeedFactor(vehicle) != speed_factor:  # last: other changes may draw it anew
+            self.set_speed_factor(vehicle, speed_factor)
 
     def vehicles_around(
         self, vehicle: str, radius_m: float

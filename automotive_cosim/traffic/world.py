@@ -38,9 +38,24 @@ from automotive_cosim.traffic.road_weather import G_MPS2, Forecast, Surface
 from automotive_cosim.traffic.rounds import ONWARD_M, Round, planned
 from automotive_cosim.traffic.router import Router
 from automotive_cosim.traffic.sensing import Sensor
+from automotive_cosim.traffic.signs import variable_edges
 from automotive_cosim.traffic.stage import TEMPLATE_TYPE, IncidentStage
 from automotive_cosim.traffic.steering import PARKING, SumoPedals
-from automotive_cosim.traffic.sumo import EGO, EGO_TYPE, LibSumo, load_library, start
+from automotive_cosim.traffic.sumo import (
+    AVERAGED,
+    BLUE_LIGHT,
+    EGO,
+    EGO_TYPE,
+    LIMITS,
+    NOW,
+    LibSumo,
+    load_library,
+    start,
+)
+
+NOT_LIKE_CARS = frozenset(("bicycle", "scooter", "moped", "wheelchair", "bus", "tram", "rail_urban"))
+"""SUMO's classes of vehicles whose speed tells nothing of the cars': slower ones that are passed, and those that go
+by a timetable."""
 
 SEARCHING_TYPE = "automotive_cosim.search"
 """A vehicle type that no vehicle has."""
@@ -87,14 +102,17 @@ class World:
         self.vehicle_count = 0
         """Number of vehicles, kept here because SUMO counts them one by one, which costs more than all the rest."""
         self._emergency: set[str] = set()
+        """Vehicles with their blue lights on."""
+        self._not_like_cars: set[str] = set()
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
         # the recorded traces of scenarios with a scenario.toml have what calls to distributions made of them
         drawn = self._configuration.distributions if scenario.as_stated else None
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE), drawn)
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
-        self.congestion = Congestion(self.network, self._sumo.on_lanes)
+        variable = variable_edges(self._sumo, self.network)
+        self.congestion = Congestion(self.network, lambda: self._sumo.on_lanes(self._not_like_cars), variable)
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
-        self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO), scenario)
+        self._incidents = Incidents(IncidentStage(self._sumo, self.network, self._surface, EGO, variable), scenario)
         self._has_incidents = self._incidents.are_left
         self._takes_any_route = takes_any_route(self._configuration, self.network)
         self._second_steps = max(1, round(1.0 / self.step_s))
@@ -102,7 +120,6 @@ class World:
         """The incidents of the last step."""
         self.arrived: Sequence[str] = ()
         """Vehicles that left in the last step."""
-        self._limits_mps = self._read_limits() if setup.flow_s is not None else {}
         self._sample_steps = max(1, round(SAMPLE_PERIOD_S / self.step_s))
         self._sensor: Sensor | None = None
         self._looks_around = True
@@ -156,7 +173,8 @@ class World:
         self._incidents.move(scenario.start)
 
     def prepare_copies(self) -> None:
-        """Makes SUMO build its router's table of all edges, which copies of this process then share.
+        """Makes SUMO build its routers' tables of all edges, which copies of this process then share, and begin to
+        average the speeds by which its rerouting devices choose, whether or not a vehicle has one.
 
         The type of the search neither deviates in speed nor carries a device, so no random number is drawn.
         """
@@ -165,7 +183,8 @@ class World:
         sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
         sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
         edge = next(iter(self.network.edges))
-        sumo.find_route(edge, edge, SEARCHING_TYPE)
+        for mode in (LIMITS, AVERAGED):
+            sumo.find_route(edge, edge, SEARCHING_TYPE, NOW, mode)
 
     def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoDrive:
         """Inserts the ego and runs until it is on the road; ``beat`` is called after every step.
@@ -252,13 +271,8 @@ class World:
         self._has_incidents = True
 
     def slowed(self) -> dict[str, float]:
-        """Edges whose limit has changed since the beginning, and their limit now as a share of it."""
-        now = self._read_limits() if self._limits_mps else {}
-        return {edge: now[edge] / limit for edge, limit in self._limits_mps.items() if now[edge] != limit}
-
-    def _read_limits(self) -> dict[str, float]:
-        """Speed of the first lane for cars of every edge."""
-        return {name: self._sumo.lane_speed(edge.lane_ids[0]) for name, edge in self.network.edges.items()}
+        """Edges with another limit than the scenario has there now, and that limit as a share of it."""
+        return self._incidents.slowed
 
     def advisor(self, advice: Advice, seed: int) -> Advisor:
         """Begins to advise other cars, with a search of its own."""
@@ -277,13 +291,16 @@ class World:
         arrived = self.arrived = sumo.arrived() if sumo.arrived_count() else ()
         self.vehicle_count += len(departed) - len(arrived)
         for vehicle in departed:
-            if sumo.vehicle_class(vehicle) == "emergency":
+            if sumo.vehicle_class(vehicle) in NOT_LIKE_CARS:
+                self._not_like_cars.add(vehicle)
+            elif sumo.has_device(vehicle, BLUE_LIGHT):
                 self._emergency.add(vehicle)
             if vehicle != EGO:
                 self._surface.departed(vehicle)
                 self._check_route(vehicle)
         if self.detours.are_needed:
             self.detours.after_step()
+        self._not_like_cars.difference_update(arrived)
         for vehicle in arrived:
             self._surface.arrived(vehicle)
         now_s = sumo.time()
@@ -350,11 +367,14 @@ class World:
                 )
         edges: list[str] = [trip.from_edge]
         for origin, goal in pairwise(stops):
-            found = self._sumo.find_route(origin, goal, "DEFAULT_VEHTYPE").edges
+            try:
+                found, why = self._sumo.find_route(origin, goal, "DEFAULT_VEHTYPE").edges, ""
+            except self._sumo.refusals as error:  # no car may set out there now
+                found, why = (), f" ({error})"
             if not found:
                 raise ScenarioError(
                     f"trip {trip.name!r} of scenario {self._scenario.name!r} has no route: "
-                    f"no route for a car leads from {origin!r} to {goal!r}"
+                    f"no route for a car leads from {origin!r} to {goal!r}{why}"
                 )
             edges += found[1:]
         return tuple(edges)

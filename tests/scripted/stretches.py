@@ -122,6 +122,7 @@ class Layout:
             lane_ids=tuple(f"{edge_id}_{lane}" for lane in range(stretch.lane_count)),
             length_m=stretch.length_m,
             speed_mps=stretch.free_mps,
+            lane_mps=(stretch.free_mps,) * stretch.lane_count,
             limit_mps=None if stretch.limit_kmh is None else stretch.limit_kmh / KMH_PER_MPS,
             limit_source=stretch.limit_source,
             in_tunnel=stretch.in_tunnel,

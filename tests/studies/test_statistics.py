@@ -80,6 +80,10 @@ def drive(*decisions: Decision, seed: int = 0) -> DriveRow:
         ("delay:60", decision(-30.0), 0),
         ("delay:90", decision(30.0), None),
         ("delay:60", decision(30.0, offered_s=101.0), None),
+        ("worthwhile:1.2:20", decision(-30.0), 0),
+        ("worthwhile:1.3:20", decision(30.0), None),
+        ("worthwhile:1.2:21", decision(30.0), None),
+        ("worthwhile:1:0", decision(30.0, offered_s=100.0), None),
         ("sumo", decision(30.0, 2.0, own=1), 1),
         ("sumo", decision(30.0), None),
         ("agent:asurada", decision(30.0, 2.0, agents={"asurada": 1}), 1),
@@ -92,7 +96,9 @@ def test_who_chooses_what(policy: str, row: Decision, expected: int | None) -> N
     assert chosen(parse_policy(policy), row, 0.0) == expected
 
 
-@pytest.mark.parametrize("text", ["alway", "delay:", "delay:-1", "delay:nan", "agent:", "rule"])
+@pytest.mark.parametrize(
+    "text", ["alway", "delay:", "delay:-1", "delay:nan", "agent:", "rule", "worthwhile:1.2", "worthwhile:0.9:60"]
+)
 def test_a_policy_that_is_none_is_refused(text: str) -> None:
     with pytest.raises(UserError, match=text.partition(":")[0]):
         parse_policy(text)

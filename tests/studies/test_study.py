@@ -663,6 +663,7 @@ def test_the_command_says_when_nothing_counts(two_ways: Draw, tmp_path: Path) ->
         (["--seeds", "a"], "--seeds"),
         (["--shares", ""], "--shares is empty"),
         (["--policies", "delay:soon"], "delay:60"),
+        (["--policies", "worthwhile:2"], "worthwhile:1.2:60"),
         (["--scenario", "atlantis"], "atlantis"),
     ],
 )

@@ -87,10 +87,12 @@ def tell_whole(
 def raise_errors(errors: Sequence[JobRow], count: int, unit: str) -> None:
     """Raises an ``InfrastructureError`` that tells the first of the errors, if there are any."""
     if errors:
+        from automotive_cosim.run.row import remedy
+
         first = errors[0]
         raise InfrastructureError(
             f"{len(errors)} of {counted(count, unit)} ended in an error, the first one {first.id}: "
-            f"{first.error_kind}: {first.error}; rerun the command to retry them"
+            f"{first.error_kind}: {first.error}; {remedy(errors)}"
         )
 
 

@@ -23,7 +23,6 @@ from automotive_cosim.studies.congestion.outputs import (
     cells,
     class_in,
     read_flows,
-    read_queues,
     write_edges,
 )
 from automotive_cosim.studies.congestion.plan import (
@@ -106,9 +105,9 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
             copy.close()
             assert copy.outputs is not None
             flows = list(read_flows(copy.outputs, begin_s, [each.slowed for each in summaries[1:]]))
-            queues = read_queues(copy.outputs, begin_s)
             edges.append(flows)
-            outcomes.append(_outcome(name, plan, cells(flows, queues, of), summaries))
+            found = cells(flows, [each.queues for each in summaries[1:]], of)
+            outcomes.append(_outcome(name, plan, found, summaries))
     write_edges(folder / EDGES, job.id, edges)
     return replace(_planned(job), outcomes=tuple(outcomes))
 
@@ -139,6 +138,7 @@ def _outcome(
             departed=each.summary.departed - first.summary.departed,
             arrived=each.arrived - first.arrived,
             teleported=each.summary.teleported - first.summary.teleported,
+            collided=each.summary.collided - first.summary.collided,
         )
         for number, each in enumerate(summaries)
     )

@@ -1,4 +1,4 @@
-"""Reads SUMO's outputs of the flow on every edge and of the queues, and sums them by class of road."""
+"""Reads SUMO's output of the flow on every edge, and sums it and the queues by class of road."""
 
 from __future__ import annotations
 
@@ -13,8 +13,9 @@ from pathlib import Path
 from automotive_cosim.formats.csvs import write_packed_csv
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
 from automotive_cosim.studies.congestion.rows import EdgeRow, FlowCell, FlowSums
+from automotive_cosim.traffic.accounts import QUEUE_PERIOD_S
 from automotive_cosim.traffic.network import Network
-from automotive_cosim.traffic.options import EDGE_FLOWS, QUEUE_PERIOD_S, QUEUES
+from automotive_cosim.traffic.options import EDGE_FLOWS
 
 EDGES = "edges"
 """Folder of the flows on every edge, in a study's."""
@@ -60,18 +61,6 @@ def read_flows(folder: Path, begin_s: float, slowed: Sequence[Mapping[str, float
             yield EdgeFlow(element.attrib["id"], from_s, flow)
 
 
-def read_queues(folder: Path, begin_s: float) -> Iterator[tuple[str, float, float]]:
-    """Lane, seconds since ``begin_s`` and length in m of every queue, every ``QUEUE_PERIOD_S``."""
-    for _, element in ET.iterparse(folder / QUEUES):
-        if element.tag == "data":
-            at_s = float(element.attrib["timestep"]) - begin_s
-            for lane in element.iter("lane"):
-                length_m = float(lane.attrib["queueing_length"])
-                if at_s >= 0 and length_m > 0:
-                    yield lane.attrib["id"], at_s, length_m
-            element.clear()
-
-
 def class_in(network: Network) -> Callable[[str], str]:
     """What gives the class of an edge's road."""
 
@@ -85,18 +74,19 @@ def class_in(network: Network) -> Callable[[str], str]:
 
 
 def cells(
-    flows: Sequence[EdgeFlow], queues: Iterator[tuple[str, float, float]], of: Callable[[str], str]
+    flows: Sequence[EdgeFlow], queues: Sequence[Sequence[Mapping[str, float]]], of: Callable[[str], str]
 ) -> tuple[FlowCell, ...]:
-    """The flows by class of road and five minutes."""
+    """The flows and the queues of every interval (``FlowSummary.queues``), by class of road and five minutes."""
     sums: dict[tuple[float, str], FlowSums] = defaultdict(FlowSums)
     for each in flows:
         sums[each.from_s // EPOCH_S * EPOCH_S, of(each.edge)] += each.flow
     total_m: dict[tuple[float, str], float] = defaultdict(float)
     longest_m: dict[tuple[float, str], float] = defaultdict(float)
-    for lane, at_s, length_m in queues:
-        key = at_s // EPOCH_S * EPOCH_S, of(lane.rpartition("_")[0])
-        total_m[key] += length_m
-        longest_m[key] = max(longest_m[key], length_m)
+    for number, interval in enumerate(queues):
+        for lane, length_m in (each for lanes in interval for each in lanes.items()):
+            key = number * INTERVAL_S // EPOCH_S * EPOCH_S, of(lane.rpartition("_")[0])
+            total_m[key] += length_m
+            longest_m[key] = max(longest_m[key], length_m)
     samples = EPOCH_S / QUEUE_PERIOD_S
     return tuple(
         FlowCell(

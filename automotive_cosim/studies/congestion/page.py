@@ -159,6 +159,8 @@ def _found(study: CongestionStudy) -> Iterator[str]:
         teleported = [outcome.states[-1].teleported for _, outcome in study.outcomes(measure)]
         if sum(teleported):
             yield f"{where}, SUMO moved {counted(sum(teleported), 'vehicle')} on that stood too long."
+        if collided := sum(outcome.states[-1].collided for _, outcome in study.outcomes(measure)):
+            yield f"{where}, {counted(collided, 'vehicle')} collided and left the road without arriving."
         if away := _kept_away(study, measure):
             yield f"{where}, {away}."
         if measure and isinstance(measure_in(measure, "--measure"), Jam):

@@ -45,7 +45,7 @@ class FlowCell:
     """OpenStreetMap's, or ``junctions``, ``other``, ``unknown`` (``outputs``)."""
     flow: Annotated[FlowSums, InColumns("")]
     queue_m: float
-    """Mean over time of the total length of the queues, by SUMO's queue output."""
+    """Mean over time of the total length of the queues: of the waiting vehicles, with the gaps that they keep."""
     longest_m: float
     """The longest queue of a lane."""
 
@@ -62,6 +62,8 @@ class FlowState:
     departed: int
     arrived: int
     teleported: int
+    collided: int = 0
+    """Vehicles that a collision has taken off the road, which have not arrived."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -28,7 +28,7 @@ from automotive_cosim.studies.congestion.results import (
 from automotive_cosim.studies.congestion.rows import Emitted, FlowSums, MeasureOutcome
 from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
-from automotive_cosim.studies.tables import NONE, told, told_mean
+from automotive_cosim.studies.tables import NONE, errors_table, told, told_mean
 from automotive_cosim.traffic.network import Network, read_network
 from automotive_cosim.traffic.options import read_configuration
 
@@ -264,9 +264,7 @@ def network_of(study: CongestionStudy) -> Network:
 
 def errors(study: CongestionStudy) -> Table:
     """Seeds that ended in an infrastructure error."""
-    rows = tuple((row.id, row.error_kind or "", row.error or "") for row in study.errors)
-    note = "Rerun the command to retry them."
-    return Table("errors", "Infrastructure errors", ("Seed", "Kind", "Message"), rows, note, heads=3)
+    return errors_table("Seed", study.errors)
 
 
 def all_measures(study: CongestionStudy) -> Iterator[tuple[int, str]]:

@@ -1,0 +1,442 @@
+"""What of SUMO decides what the ego is told, and what SUMO does when it is asked: each row against SUMO itself.
+
+Every row was seen in SUMO 1.28.0. One that fails with another version tells what that version does differently.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from contextlib import closing, contextmanager, suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from automotive_cosim.contracts import DrivingState
+from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.incidents import Breakdown, Closure, EmergencyVehicle, Roadworks
+from automotive_cosim.scenarios import Scenario, open_scenario
+from automotive_cosim.traffic import sumo_programs
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.divert import divert
+from automotive_cosim.traffic.drive import EgoDrive
+from automotive_cosim.traffic.flow import SignalControl, control
+from automotive_cosim.traffic.ledger import Ledger, own_choice
+from automotive_cosim.traffic.sumo import EGO, load_library
+from automotive_cosim.traffic.world import World
+from tests.traffic.in_process import InProcess
+
+pytestmark = pytest.mark.sumo
+
+NODES = {
+    **{"a": (0, 0), "b": (800, 0), "c": (2000, 0), "d": (2800, 0)},
+    **{"q": (1400, 300), "s": (1400, -300), "north": (2000, 300), "south": (2000, -300)},
+}
+CAR = '<vType id="car" sigma="0" speedFactor="1" speedDev="0"/>'
+CARS = CAR + '<flow id="car" type="car" end="9999" period="20" departSpeed="max"><route edges="e1 e2 e3"/></flow>'
+FIRST, LAST = '<edge id="e1" from="a" to="b" speed="25"/>', '<edge id="e3" from="c" to="d" speed="25"/>'
+MIDDLE = '<edge id="e2" from="b" to="c" speed="25"/>'
+LINE = FIRST + MIDDLE + LAST
+QUICK = '<edge id="q1" from="b" to="q" speed="20"/><edge id="q2" from="q" to="c" speed="20"/>'
+SLOW = '<edge id="s1" from="b" to="s" speed="12"/><edge id="s2" from="s" to="c" speed="12"/>'
+LIMITED = '<types><type id="own" speed="{}"><restriction vClass="passenger" speed="{}"/></type></types>'
+SIGN = '<variableSpeedSign id="v" lanes="{}">{}</variableSpeedSign>'
+STEP = '<step time="{}" speed="{}"/>'
+
+
+@dataclass(frozen=True)
+class Road:
+    """A network with its demand."""
+
+    edges: str = LINE
+    routes: str = CARS
+    more: str = ""
+    """Additional elements."""
+    types: str = ""
+    nodes: Mapping[str, str] = field(default_factory=dict)
+    """Types of nodes."""
+    options: tuple[str, ...] = ()
+    """Of netconvert."""
+
+    def opened(self, folder: Path, warm_up_s: float = 200.0, rerouting: float = 0.0) -> Scenario:
+        """Writes it, and opens it as a scenario."""
+        nodes = "".join(
+            f'<node id="{name}" x="{x}" y="{y}" {self.nodes.get(name, "")}/>' for name, (x, y) in NODES.items()
+        )
+        (folder / "n.nod.xml").write_text(f"<nodes>{nodes}</nodes>")
+        (folder / "n.edg.xml").write_text(f"<edges>{self.edges}</edges>")
+        (folder / "n.typ.xml").write_text(self.types or "<types/>")
+        plain: list[str | Path] = ["-n", folder / "n.nod.xml", "-e", folder / "n.edg.xml"]
+        net: list[str | Path] = [
+            "-t",
+            folder / "n.typ.xml",
+            "--no-turnarounds",
+            *self.options,
+            "-o",
+            folder / "n.net.xml",
+        ]
+        built = sumo_programs.run("netconvert", [*plain, *net])
+        assert built[0], built[1]
+        (folder / "n.rou.xml").write_text(f"<routes>{self.routes}</routes>")
+        (folder / "n.add.xml").write_text(f"<additional>{self.more}</additional>")
+        names = {"net-file": "n.net.xml", "route-files": "n.rou.xml", "additional-files": "n.add.xml"}
+        inputs = "".join(f'<{name} value="{value}"/>' for name, value in names.items())
+        (folder / "n.sumocfg").write_text(f"<configuration>{inputs}</configuration>")
+        opened = open_scenario(folder / "n.sumocfg", from_place="e1", to_place="e3", gps=False)
+        sumo = replace(
+            opened.sumo,
+            warm_up_s=warm_up_s,
+            step_length_s=1.0,
+            action_step_length_s=1.0,
+            background_rerouting=rerouting,
+        )
+        return replace(opened, sumo=sumo)
+
+
+@contextmanager
+def running(scenario: Scenario) -> Iterator[tuple[InProcess, World, Any]]:
+    """The simulation, its world, and libsumo."""
+    with closing(InProcess(scenario, seed=1, allow_unprojected=True)) as simulation:
+        assert simulation.world is not None
+        import libsumo
+
+        yield simulation, simulation.world, libsumo
+
+
+def driven(drive: EgoDrive) -> Iterator[DrivingState]:
+    """The states of a drive, second by second, to its end."""
+    while drive.state.end is None:
+        yield drive.state
+        drive.advance(1.0)
+
+
+def depart(world: World, scenario: Scenario, driver: str = "steady", *incidents: EmergencyVehicle) -> EgoDrive:
+    return world.depart(EgoPlan(scenario.ego.trips[0], driver, seed=1, incidents=incidents))
+
+
+# --- limits -----------------------------------------------------------------------------------------------
+
+TWO_LANES = (
+    '<edge id="e2" from="b" to="c" numLanes="2" speed="25"><lane index="0" speed="15"/>'
+    '<lane index="1" speed="20"/></edge>'
+)
+OWN = '<edge id="e2" from="b" to="c" type="own" numLanes="1"/>'
+
+LIMITS = {
+    "a variable sign": Road(more=SIGN.format("e2_0", STEP.format(0, 12))),
+    "a variable sign that changes": Road(
+        more=SIGN.format("e2_0", STEP.format(0, 12) + STEP.format(260, 20) + STEP.format(290, -1))
+    ),
+    "a calibrator": Road(
+        more='<calibrator id="k" edge="e2" pos="0"><flow begin="0" end="999" speed="12"/></calibrator>'
+    ),
+    "lower for cars": Road(FIRST + OWN + LAST, types=LIMITED.format(25, 12)),
+    "higher for cars": Road(FIRST + OWN + LAST, types=LIMITED.format(12, 25)),
+    "lower for cars, a lower sign": Road(
+        FIRST + OWN + LAST, more=SIGN.format("e2_0", STEP.format(0, 8)), types=LIMITED.format(25, 12)
+    ),
+    "lower for cars, a higher sign": Road(
+        FIRST + OWN + LAST, more=SIGN.format("e2_0", STEP.format(0, 20)), types=LIMITED.format(25, 12)
+    ),
+    "lane by lane": Road(FIRST + TWO_LANES + LAST),
+}
+
+
+@pytest.mark.parametrize("name", LIMITS)
+def test_the_limit_told_is_what_sumo_lets_a_car_drive_and_no_jam(name: str, tmp_path: Path) -> None:
+    """The present one and the next; and at its limits the traffic is neither slow nor late."""
+    scenario = LIMITS[name].opened(tmp_path)
+    with running(scenario) as (_, world, libsumo):
+        drive = depart(world, scenario)
+        first = drive.state.ahead
+        told, allowed = [], []
+        for state in driven(drive):
+            if not state.road.edge_id.startswith(":"):
+                told.append(state.road.limit.mps)
+                allowed.append(libsumo.vehicle.getAllowedSpeed(EGO))
+            assert state.ahead.slow_edges == ()
+    assert told == pytest.approx(allowed, abs=0.01)
+    later = next((mps for mps in told if mps != told[0]), None)
+    assert (later is None) is ("higher for cars" in name)
+    if "changes" not in name:
+        assert (None if first.next_limit is None else first.next_limit.mps) == later
+    assert first.delay_s < 8.0
+
+
+# --- whose speeds count -----------------------------------------------------------------------------------
+
+BESIDE = (
+    '<edge id="e2" from="b" to="c" numLanes="2" speed="25">'
+    '<lane index="0" allow="{0}"/><lane index="1" disallow="{0}"/></edge>'
+)
+SLOWLY = '<vType id="other" vClass="{}" maxSpeed="4" sigma="0"/>'
+OTHERS = SLOWLY + '<flow id="other" type="other" begin="0" end="9999" period="10"><route edges="e2"/></flow>'
+
+KEPT = CAR.replace("/>", ' lcSpeedGain="0" lcKeepRight="9"/>').replace("car", "kept")
+
+SPEEDS = {
+    "cars in a slower lane": Road(
+        FIRST + TWO_LANES + LAST,
+        KEPT + '<flow id="k" type="kept" end="9999" period="9" departLane="0"><route edges="e2"/></flow>' + CARS,
+    ),
+    "bicycles on their lane": Road(FIRST + BESIDE.format("bicycle") + LAST, OTHERS.format("bicycle") + CARS),
+    "buses on their lane": Road(FIRST + BESIDE.format("bus") + LAST, OTHERS.format("bus") + CARS),
+    "trams on their lane": Road(FIRST + BESIDE.format("tram") + LAST, OTHERS.format("tram") + CARS),
+    "bicycles beside cars": Road(
+        LINE.replace('id="e2"', 'id="e2" numLanes="3"'),
+        SLOWLY.format("bicycle")
+        + '<flow id="o" type="other" end="9999" period="10" departLane="0"><route edges="e2"/></flow>'
+        + CARS,
+    ),
+}
+
+
+@pytest.mark.parametrize("name", SPEEDS)
+def test_the_delay_told_is_what_cars_lose(name: str, tmp_path: Path) -> None:
+    scenario = SPEEDS[name].opened(tmp_path)
+    with running(scenario) as (_, world, libsumo):
+        drive = depart(world, scenario)
+        first, lost_s = drive.state.ahead, 0.0
+        for _ in driven(drive):
+            with suppress(libsumo.TraCIException):
+                lost_s = libsumo.vehicle.getTimeLoss(EGO)
+    assert first.slow_edges == ()
+    assert first.delay_s == pytest.approx(lost_s, abs=5.0)
+
+
+def test_a_car_on_the_other_side_is_still_on_its_own_road(tmp_path: Path) -> None:
+    """SUMO gives the opposite edge, its limit and position, no leader and a wrong distance driven."""
+    back = '<edge id="-e2" from="c" to="b" speed="18"/><edge id="-e1" from="b" to="a" speed="18"/>'
+    slow = '<vType id="slow" maxSpeed="6" sigma="0" speedDev="0" lcOpposite="0"/>'
+    flow = '<flow id="slow" type="slow" end="9999" period="60" departSpeed="max"><route edges="e1 e2 e3"/></flow>'
+    scenario = Road(LINE + back, slow + flow, options=("--opposites.guess",)).opened(tmp_path)
+    with running(scenario) as (_, world, libsumo):
+        drive = depart(world, scenario)
+        seen = {}
+        for state in driven(drive):
+            if libsumo.vehicle.getRoadID(EGO).startswith("-"):
+                seen[state.time_s] = state
+                assert libsumo.vehicle.getLeader(EGO, 200.0) is None
+            if state.time_s - 1 in seen:  # even while it is on its own side again
+                before = seen[state.time_s - 1]
+                went_m = state.x_m - before.x_m
+                assert state.distance_m - before.distance_m == pytest.approx(went_m, abs=0.5)
+                assert before.ahead.route_left_m - state.ahead.route_left_m == pytest.approx(went_m, abs=0.5)
+        assert seen
+        for state in seen.values():
+            assert state.road.edge_id in ("e1", "e2")
+            assert state.road.lane_id == f"{state.road.edge_id}_0"
+            assert state.road.limit.mps == 25
+            assert state.road.lane_position_m == pytest.approx(
+                state.x_m - 800 * (state.road.edge_id == "e2"), abs=15
+            )
+        led = [state.around.leader for state in seen.values() if state.around.leader is not None]
+        assert led
+        assert all(leader.time_to_collision_s is None for leader in led)
+
+
+# --- what is closed, and what is a signal -----------------------------------------------------------------
+
+CLOSED = (
+    '<rerouter id="r" edges="e1"><interval begin="0" end="9999"><closingReroute id="e2" {}/></interval></rerouter>'
+)
+
+
+@pytest.mark.parametrize(
+    ("how", "is_closed"),
+    [
+        ("", True),
+        ('disallow="all"', True),
+        ('allow="bus"', True),
+        ('disallow="bus"', False),
+        ('allow="passenger"', False),
+    ],
+)
+def test_drawn_trips_begin_and_end_where_cars_may_drive(how: str, is_closed: bool, tmp_path: Path) -> None:
+    road = Road(LINE + QUICK, more=CLOSED.format(how))
+    scenario = road.opened(tmp_path)
+    drawn = open_scenario(scenario.config, gps=False).ego.trips
+    ends = {edge for trip in drawn for edge in (trip.from_edge, trip.to_edge)}
+    assert ("e2" not in ends) is is_closed
+    with running(scenario) as (_, world, libsumo):
+        ways = {libsumo.vehicle.getRoute(each)[1] for each in libsumo.vehicle.getIDList()}
+        assert ("e2" not in ways) is is_closed
+        if how and is_closed:
+            on_it = open_scenario(scenario.config, gps=False, from_place="e2", to_place="e3")
+            with pytest.raises(ScenarioError, match="no route for a car leads from 'e2'"):
+                depart(world, on_it)
+
+
+def test_a_rail_crossing_is_no_signal_to_control(tmp_path: Path) -> None:
+    rails = '<edge id="r1" from="north" to="c" allow="rail"/><edge id="r2" from="c" to="south" allow="rail"/>'
+    flow = '<flow id="t" type="train" end="9999" period="90"><route edges="r1 r2"/></flow>'
+    train = f'<vType id="train" vClass="rail"/>{flow}'
+    scenario = Road(LINE + rails, train + CARS, nodes={"c": 'type="rail_crossing"'}).opened(tmp_path)
+    with running(scenario) as (_, world, libsumo):
+        assert libsumo.trafficlight.getIDList() == ("c",)
+        assert not any(way.has_signal for ways in world.network.crossings.values() for way in ways.values())
+        before = libsumo.trafficlight.getProgram("c")
+        assert control(load_library(), SignalControl(control="static")) == 0
+        assert libsumo.trafficlight.getProgram("c") == before
+
+
+# --- what is asked of SUMO --------------------------------------------------------------------------------
+
+CRAWLERS = (
+    '<vType id="crawler" sigma="0" maxSpeed="0.5"/>'
+    '<flow id="crawler" type="crawler" end="999" period="20"><route edges="q1 q2 e3"/></flow>'
+)
+FORK = LINE + QUICK + SLOW
+
+
+def ways(libsumo: Any) -> set[str]:
+    return {libsumo.vehicle.getRoute(each)[1] for each in libsumo.vehicle.getIDList() if each.startswith("car")}
+
+
+def test_a_detour_is_the_quickest_way_at_the_speeds_driven(tmp_path: Path) -> None:
+    """``rerouteTraveltime`` alone goes by the limits, into the jam."""
+    scenario = Road(FORK, CRAWLERS + CARS).opened(tmp_path, warm_up_s=300.0)
+    with running(scenario) as (_, world, libsumo):
+        car = next(each for each in libsumo.vehicle.getIDList() if libsumo.vehicle.getRoadID(each) == "e1")
+        libsumo.lane.setDisallowed("e2_0", ["all"])
+        libsumo.vehicle.rerouteTraveltime(car, False)
+        assert libsumo.vehicle.getRoute(car)[1] == "q1", "of SUMO"
+        libsumo.lane.setDisallowed("e2_0", [])
+        libsumo.vehicle.setRoute(car, ["e1", "e2", "e3"])
+        world.stage(Closure(edge="e2"))
+        for _ in range(60):
+            world.step()
+        assert ways(libsumo) - {"e2"} == {"s1"}
+
+
+def test_the_choice_of_sumos_device_sees_the_traffic_though_nobody_has_one(tmp_path: Path) -> None:
+    scenario = Road(FIRST + LAST + QUICK + SLOW, CRAWLERS).opened(tmp_path, warm_up_s=300.0)
+    with running(scenario) as (_, world, libsumo):
+        world.prepare_copies()
+        depart(world, scenario)
+        assert libsumo.vehicle.getRoute(EGO)[1] == "q1"
+        libsumo.vehicle.rerouteTraveltime(EGO, False)
+        assert libsumo.vehicle.getRoute(EGO)[1] == "q1", "of SUMO"
+        assert own_choice(load_library())[1] == "s1"
+
+
+def test_cars_that_are_told_to_take_another_way_keep_it(tmp_path: Path) -> None:
+    """SUMO's device turns back at its next period who was given a slower way."""
+    road = Road(FIRST.replace("25", "10") + LAST + QUICK + SLOW, CARS.replace("e2", "q1 q2"))
+    with running(road.opened(tmp_path, rerouting=1.0)) as (_, world, libsumo):
+        other = max(libsumo.vehicle.getIDList(), key=libsumo.vehicle.getDeparture)
+        libsumo.vehicle.setRoute(other, ("e1", "s1", "s2", "e3"))
+        took, could = divert(load_library(), ("e1", "q1", "q2", "e3"), ("e1", "s1", "s2", "e3"), 1.0, 0)
+        assert len(took) == could > 1
+        for _ in range(75):
+            world.step()
+        assert libsumo.vehicle.getRoute(other)[1] == "q1", "of SUMO"
+        assert {libsumo.vehicle.getRoute(each)[1] for each in took if each in libsumo.vehicle.getIDList()} == {"s1"}
+
+
+@pytest.mark.parametrize("blue_light", [False, True])
+def test_after_an_ambulance_each_driver_is_who_they_were(blue_light: bool, tmp_path: Path) -> None:
+    """SUMO's device leaves lane changes and place in the lane changed for good, and draws the speed anew."""
+    wide = "".join(
+        f'<edge id="{name}" from="{start}" to="{end}" numLanes="2" speed="14"/>'
+        for name, start, end in (("e1", "a", "b"), ("e2", "b", "c"), ("e3", "c", "d"))
+    )
+    scenario = Road(wide, CARS.replace('period="20"', 'period="30"').replace('speedDev="0"', "")).opened(tmp_path)
+
+    def told(libsumo: Any) -> dict[str, tuple[float, int, str]]:
+        of = libsumo.vehicle
+        return {
+            each: (round(of.getSpeedFactor(each), 6), of.getLaneChangeMode(each), of.getLateralAlignment(each))
+            for each in of.getIDList()
+            if each == EGO or each.startswith("car")
+        }
+
+    touched, gone_s, hurried = set(), 0, round(1 + 31 / (14 * 3.6), 6)
+    with running(scenario) as (_, world, libsumo):
+        blue = EmergencyVehicle(blue_light=blue_light, speed_ratio=2.4, behind_m=100.0)
+        drive = depart(world, scenario, "hurried", blue)
+        before: dict[str, tuple[float, int, str]] = {}
+        for state in driven(drive):
+            there = [each for each in libsumo.vehicle.getIDList() if each.startswith("automotive_cosim")]
+            if now := told(libsumo):
+                touched |= {each for each, values in now.items() if values[1] == 1605}
+            for each, values in now.items():
+                before.setdefault(each, (hurried, 1621, "center") if each == EGO else values)
+            gone_s = 0 if there or state.distance_m < 300 else gone_s + 1
+            if gone_s > 2:
+                assert now == {each: before[each] for each in now}
+    assert gone_s > 9
+    assert (EGO in touched) is (len(touched) > 3) is blue_light
+
+
+@pytest.mark.parametrize(("device", "is_told"), [("true", True), ("false", False)])
+def test_an_ambulance_is_told_with_its_blue_lights_on(device: str, is_told: bool, tmp_path: Path) -> None:
+    """SUMO shows the light on every vehicle of the class, and models it by the device."""
+    param = f'<param key="has.bluelight.device" value="{device}"/>'
+    kind = f'<vType id="amb" vClass="emergency" speedFactor="2">{param}</vType>'
+    vehicle = '<vehicle id="amb" type="amb" depart="215" departSpeed="max"><route edges="e1 e2 e3"/></vehicle>'
+    scenario = Road(routes=CAR + kind + vehicle).opened(tmp_path)
+    with running(scenario) as (_, world, _):
+        drive = depart(world, scenario)
+        assert any(state.around.emergency_behind for state in driven(drive)) is is_told
+
+
+def test_roadworks_hold_their_limit_beside_a_sign_of_sumos(tmp_path: Path) -> None:
+    """Each step of a sign writes the lane's speed, the same as was written to it or not."""
+    steps = ((0, 20.0), (60, 10.0), (80, 15.0), (100, 22.0), (120, 9.0), (160, -1))
+    sign = SIGN.format("e2_0", "".join(STEP.format(at_s, mps) for at_s, mps in steps))
+    scenario = Road(more=sign).opened(tmp_path, warm_up_s=30.0)
+    shown = []
+    with running(scenario) as (_, world, libsumo):
+        world.stage(Roadworks(edge="e2", limit_kmh=36, from_s=10.0, to_s=110.0))
+        for _ in range(150):
+            world.step()
+            shown.append((round(libsumo.lane.getMaxSpeed("e2_0"), 3), world.network.edges["e2"].limit_mps))
+    sumo_mps, told_mps = zip(*(shown[at_s - 31] for at_s in (35, 45, 65, 85, 105, 125, 145, 165)), strict=True)
+    assert sumo_mps == told_mps == (20, 10, 10, 10, 10, 9, 9, 25)
+
+
+def test_no_sign_is_put_up_where_sumo_keeps_another_limit_for_cars(tmp_path: Path) -> None:
+    scenario = LIMITS["lower for cars"].opened(tmp_path)
+    with running(scenario) as (_, world, libsumo):
+        libsumo.lane.setMaxSpeed("e2_0", 5)
+        world.step()
+        (car, *_) = (each for each in libsumo.vehicle.getIDList() if libsumo.vehicle.getRoadID(each) == "e2")
+        assert libsumo.vehicle.getAllowedSpeed(car) == 12, "of SUMO"
+        with pytest.raises(ScenarioError, match="'e2' has a limit for cars in its type"):
+            world.stage(Roadworks(edge="e2", limit_kmh=36))
+
+
+# --- what studies count -----------------------------------------------------------------------------------
+
+
+def test_a_queue_is_as_long_as_those_who_wait(tmp_path: Path) -> None:
+    """SUMO's queue output counts from the end of the lane: over the free road before a breakdown too."""
+    scenario = Road().opened(tmp_path, warm_up_s=100.0)
+    with running(scenario) as (_, world, libsumo):
+        world.stage(Breakdown(edge="e2", position_m=100.0))
+        for _ in range(120):
+            world.step()
+        found = Ledger(load_library(), 1.0).queues_m()
+        waiting = [each for each in libsumo.vehicle.getIDList() if libsumo.vehicle.getWaitingTime(each) > 0]
+        assert len(waiting) > 2
+        assert found == {"e2_0": 7.5 * len(waiting)}
+
+
+def test_who_collides_has_not_arrived(tmp_path: Path) -> None:
+    """SUMO lists both among those that have arrived."""
+    with running(Road().opened(tmp_path)) as (_, world, libsumo):
+        ledger = Ledger(load_library(), 1.0)
+        front, rear, *_ = sorted(libsumo.vehicle.getIDList(), key=libsumo.vehicle.getDistance, reverse=True)[1:]
+        libsumo.vehicle.setSpeed(front, 0)
+        libsumo.vehicle.setSpeedMode(rear, 0)
+        libsumo.vehicle.setSpeed(rear, 25)
+        arrived: set[str] = set()
+        for _ in range(80):
+            world.step()
+            ledger.note()
+            arrived |= set(libsumo.simulation.getArrivedIDList())
+        assert {front, rear} <= arrived, "of SUMO"
+        assert not {front, rear} & ledger.arrivals_s.keys()
+        assert ledger.summary().collided == 2
