@@ -26,8 +26,9 @@ class Sumo:
     """The ``.sumocfg``, relative to the folder."""
     step_length_s: Annotated[float, Ge(0.01), Le(10)] = 0.1
     """0.1 for safety (the ego acts each step), 1 for studies."""
-    action_step_length_s: Annotated[float, Ge(0.01), Le(10)] = 1.0
-    """How often the other drivers act; a multiple of the step length."""
+    # None, which a scenario.toml cannot say, leaves it to the .sumocfg
+    action_step_length_s: Annotated[float, Ge(0.01), Le(10)] | None = 1.0
+    """How often the other drivers act; a multiple of the step length. With it, SUMO integrates ballistically."""
     warm_up_s: Annotated[float, Ge(0), Le(86_400)] = 900.0
     """Traffic runs this long before the ego departs."""
     scale: Annotated[float, Ge(0), Le(100)] = 1.0
@@ -44,7 +45,10 @@ class Sumo:
 
     def stepping(self, step_s: float) -> Sumo:
         """The same in steps of another length; nobody acts more often than that."""
-        return replace(self, step_length_s=step_s, action_step_length_s=max(step_s, self.action_step_length_s))
+        action_s = self.action_step_length_s
+        return replace(
+            self, step_length_s=step_s, action_step_length_s=None if action_s is None else max(step_s, action_s)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,8 +179,9 @@ class Scenario(Described):
     """Assumptions, in words for the user."""
     language: str = ""
     """Of the names of streets in a network that is moved, as an ISO 639-1 code."""
-    states_step: bool = True
-    """Whether its files state the length of a step, or it was chosen for them."""
+    as_stated: bool = False
+    """Whether it is SUMO's own experiment: the traffic of a ``.sumocfg`` without a ``scenario.toml``, to which a
+    run adds nothing but the ego."""
     mirrored: bool = False
     """Whether the network is the mirror image of the one in its file, because traffic keeps the other side."""
 

@@ -20,13 +20,13 @@ from automotive_cosim.scenarios.routes import drawn_trips
 from automotive_cosim.traffic.georeference import middle
 from automotive_cosim.traffic.network import FORM, Network, NetworkReader
 from automotive_cosim.traffic.options import (
-    ANY_ROUTE,
-    DEFAULTS,
-    FIXED,
     INPUTS,
     QUIET,
+    REROUTING,
+    SUMO_STEP_S,
     Configuration,
     read_configuration,
+    stated_and_set,
 )
 from automotive_cosim.traffic.random_traffic import vehicles_per_hour
 from automotive_cosim.traffic.vetting import vet
@@ -39,17 +39,15 @@ DEPARTURE = timedelta(hours=10)
 
 WARM_UP_S = 600.0
 
-STEP_S, LONGEST_STEP_S = 0.1, 1.0
-"""Default step length, and the longest that is kept: the cockpit is updated once per second."""
+DRAWN_STEP_S, LONGEST_STEP_S = 0.1, 1.0
+"""Step length of traffic that is drawn for a network, and the longest that is kept: the cockpit is updated once per
+second."""
 
 RANDOM_PER_KM_H = 15.0
 """Light traffic: at 40 km/h, one vehicle per 2 to 3 km of lane for each kilometre of its route."""
 
 FAIR = Weather(20.0, 55.0, 0.0, 1, 25.0, 20_000.0, 10.0)
 """The weather if the place, and so the climate, is unknown."""
-
-BALLISTIC = "step-method.ballistic"
-"""Without it, SUMO 1.28 changes from Euler's integration to the ballistic one if an action step length is given."""
 
 TRAVELLERS = frozenset(["vehicle", "trip", "flow"])
 """Elements of an additional file that are traffic."""
@@ -88,7 +86,7 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         count = vehicles_per_hour(network, random_per_km_h)
         notes.append(f"{path.name} has no traffic of its own: {count:.0f} vehicles per hour are drawn")
     sumo = _sumo(configuration, random_per_km_h)
-    notes += _overridden(configuration, sumo)
+    notes += _kept_and_not(configuration, sumo, network)
     name = re.sub(r"\.(net\.xml|sumocfg|xml)$", "", path.name.removesuffix(".gz"))
     return Scenario(
         name=name if name != "run" else path.absolute().parent.name,
@@ -102,46 +100,56 @@ def foreign_scenario(path: Path, *, to_be_moved: bool = False) -> Scenario:
         weather=(WeatherAt(0.0, FAIR),) if network.unplaced else (),
         has_place=not network.unplaced,
         notes=tuple(notes),
-        states_step="step-length" in configuration.options,
+        as_stated=not random_per_km_h,
     )
 
 
 def _sumo(configuration: Configuration, random_per_km_h: float) -> Sumo:
-    step_s = configuration.number("step-length", STEP_S)
+    step_s = configuration.number("step-length", DRAWN_STEP_S if random_per_km_h else SUMO_STEP_S)
     if step_s <= 0:
         raise ScenarioError(f"{configuration.path}: step-length is {step_s:g} s; give a number above 0")
-    step_s = min(step_s, LONGEST_STEP_S)
-    # As in SUMO, other vehicles act every step, unless we chose the step: SUMO 1.28 has been seen to crash
-    # when vehicles reroute and act on every other step of 0.5 s.
-    action_s = step_s if "step-length" in configuration.options else LONGEST_STEP_S
+    # Drawn traffic in steps that are ours acts once a second. SUMO 1.28 has been seen to crash when vehicles
+    # reroute and act on every other step of 0.5 s.
+    ours = random_per_km_h and "step-length" not in configuration.options
     return Sumo(
         config=configuration.path.name,
-        step_length_s=step_s,
-        action_step_length_s=configuration.number("default.action-step-length", action_s),
+        step_length_s=min(step_s, LONGEST_STEP_S),
+        action_step_length_s=LONGEST_STEP_S if ours else None,
         warm_up_s=WARM_UP_S,
         scale=configuration.number("scale", 1.0, 100),
-        background_rerouting=max(0.0, configuration.number("device.rerouting.probability", 0.0)),
+        background_rerouting=max(0.0, configuration.number(REROUTING, 0.0)),
         random_traffic_per_km_h=random_per_km_h,
     )
 
 
-def _overridden(configuration: Configuration, sumo: Sumo) -> Iterator[str]:
+def _kept_and_not(configuration: Configuration, sumo: Sumo, network: Network) -> Iterator[str]:
     """What a run sets or leaves out whatever the configuration says."""
-    run = DEFAULTS | dict(configuration.options) | FIXED
-    run["step-length"] = f"{sumo.step_length_s:g}"
-    del run[ANY_ROUTE]  # what it lets pass is refused anyway
-    if sumo.action_step_length_s != sumo.step_length_s:
-        run["default.action-step-length"] = f"{sumo.action_step_length_s:g}"
-    settings = [
-        f"{name} {value}" + " (a study: its --step)" * (name == "step-length")
-        for name, value in run.items()
-        if configuration.options.get(name) != value
-    ]
-    if BALLISTIC not in configuration.options and "default.action-step-length" not in configuration.options:
-        settings.append("the ballistic integration that SUMO chooses with an action step length")
-    yield f"{configuration.path.name} runs with {', '.join(settings)}, and with the run's seed"
-    if ignored := [name for name in configuration.ignored if name not in QUIET]:
-        yield f"{configuration.path.name} runs without its {', '.join(ignored)}"
+    name = configuration.path.name
+    if not sumo.random_traffic_per_km_h:
+        other = [
+            f"{option} {value:g} instead of {stated:g}"
+            for option, (stated, value) in stated_and_set(configuration, sumo).items()
+            if stated != value
+        ]
+        hours = sum(
+            bool(each.timed_limits or each.timed_access or each.timed_turns) for each in network.edges.values()
+        )
+        other += [f"the hours of limits and closures on {hours} edges"] * bool(hours)
+        but = f", but for {', '.join(other)}, so figures differ from SUMO's" if other else ""
+        yield (
+            f"{name} runs as `sumo -c` runs it with the run's seed{but}; an ego is one car more from its departure "
+            "on, and a drive's weather slows everybody"
+        )
+    yield from set_aside(configuration)
+    if ignored := [option for option in configuration.ignored if option not in QUIET]:
+        yield f"{name} runs without its {', '.join(ignored)}"
+
+
+def set_aside(configuration: Configuration) -> Iterator[str]:
+    """What would make SUMO work in parallel."""
+    if configuration.parallel:
+        named = ", ".join(configuration.parallel)
+        yield f"{configuration.path.name}'s {named} set aside: what is copied works with one thread"
 
 
 def _start(configuration: Configuration, sumo: Sumo, place: Place) -> datetime:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.scenario import Ego, Scenario
-from automotive_cosim.scenarios.foreign import foreign_scenario
+from automotive_cosim.scenarios.foreign import foreign_scenario, set_aside
 from automotive_cosim.scenarios.reader import load
 from automotive_cosim.scenarios.relocation import at_home, relocated
 from automotive_cosim.scenarios.routes import chosen_trips
@@ -84,6 +84,13 @@ def own_files(name: str | Path) -> tuple[Path, ...]:
     return tuple(dict.fromkeys((*described, path.absolute(), *(file for files in named for file in files))))
 
 
+def _loaded(name_or_folder: str | Path) -> Scenario:
+    """A scenario with a ``scenario.toml``, and what of its configuration is set aside."""
+    scenario = load(name_or_folder)
+    told = set_aside(read_configuration(scenario.config)) if scenario.config.is_file() else ()
+    return replace(scenario, notes=(*scenario.notes, *told))
+
+
 def _configuration(path: Path) -> Path:
     """The only configuration of a folder without ``scenario.toml``; any other path as it is."""
     if path.is_dir() and not (path / "scenario.toml").is_file():
@@ -100,9 +107,9 @@ def _opened(name: str | Path, *, to_be_moved: bool) -> Scenario:
     if not path.is_file():
         if path.name.endswith((".sumocfg", ".xml", ".gz")):
             raise ScenarioError(f"there is no file {path}")
-        return load(name)
+        return _loaded(name)
     if path.name == "scenario.toml":
-        return load(path.parent)
+        return _loaded(path.parent)
     root = root_of(path).tag
     if root == "osm":
         raise ScenarioError(f"{path} is an OpenStreetMap extract; import it first: scenarios import {path}")

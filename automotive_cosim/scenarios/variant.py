@@ -122,6 +122,7 @@ def write_variant(
         kept = {name: value for name, value in configuration.options.items() if name not in OF_GIVEN_DEMAND}
         options = {**_copied(configuration, draft), **kept}
         config = f"{scenario.name}.sumocfg"
+    options.pop("end", None)  # which only spaces out the flows of the old demand
     (draft / routes[0]).write_text(routes[1], encoding="utf-8")
     options["route-files"] = routes[0]
     if begin_s is not None:

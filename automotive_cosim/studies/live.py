@@ -63,7 +63,7 @@ class LiveDrive:
         with self._spared():
             if self._road is None:
                 self._begin()
-        step_s = self._job.plan.step_s
+        step_s = self._job.plan.driven_step_s(self._job.plan.opened)
         left, second = round(duration_s / step_s), max(1, round(1 / step_s))
         while left > 0 and self._traffic.state.end is None:
             steps = min(second, left)

@@ -82,7 +82,7 @@ class StudyPlan(RerouteSettings):
         """
         return driven_at(
             self.opened,
-            step_s=self.step_s,
+            step_s=self.driven_step_s(self.opened),
             share=share,
             scale=self.scale,
             warm_up_s=self.warm_up_s,

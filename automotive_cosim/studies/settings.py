@@ -11,6 +11,7 @@ from automotive_cosim.contracts import OLDEST_NEWS_S, Json
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.annotations import Option
 from automotive_cosim.formats.options import option
+from automotive_cosim.formats.scenario import Scenario
 
 CarShare = Annotated[float, Ge(0), Le(1)]
 TrafficSeed = Annotated[int, Ge(0)]
@@ -66,8 +67,13 @@ class DrivenSettings(TrafficSettings):
     """Redraw the trips of the demand for every seed, as on another day."""
     emissions: bool = False
     """Measure what every vehicle emits and consumes, by emission class."""
-    step_s: Annotated[float, Ge(0.1), Le(1)] = 1.0
+    step_s: Annotated[Annotated[float, Ge(0.1), Le(1)] | None, Option(default="1, or the .sumocfg's")] = None
     """SUMO's step length in seconds."""
+
+    def driven_step_s(self, scenario: Scenario) -> float:
+        """The step length with which the scenario is driven."""
+        own_s = scenario.sumo.step_length_s if scenario.as_stated else 1.0
+        return own_s if self.step_s is None else self.step_s
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

@@ -95,6 +95,7 @@ def one_trip(study: Study) -> Iterator[str]:
 def placebos(study: Study) -> Iterator[str]:
     """There is no noise floor, or it cannot be believed."""
     noise = study.noise()
+    step_s = study.plan.driven_step_s(study.plan.opened)
     if study.decisions and not noise.placebos:
         yield "There is no placebo, so the noise floor is unknown and any difference counts."
     elif noise.placebos and not noise.is_known:
@@ -106,20 +107,20 @@ def placebos(study: Study) -> Iterator[str]:
     elif noise.placebos and not noise.time_s:
         yield (
             f"{counted(noise.placebos, 'placebo')} with fresh random numbers moved others, but never the ego's "
-            f"arrival, which is told in steps of {study.plan.step_s:g} s: wins and losses of that size are not "
+            f"arrival, which is told in steps of {step_s:g} s: wins and losses of that size are not "
             "told from chance."
         )
 
 
 def other_steps(study: Study) -> Iterator[str]:
     """The study drives at other steps than the scenario's files state."""
-    yield from steps_told(study.plan.opened, study.plan.step_s)
+    yield from steps_told(study.plan.opened, study.plan.driven_step_s(study.plan.opened))
 
 
 def steps_told(scenario: Scenario, driven_s: float) -> Iterator[str]:
     """The same for any study of a scenario."""
     own_s = scenario.sumo.step_length_s
-    if scenario.states_step and own_s != driven_s:
+    if own_s != driven_s and not scenario.sumo.random_traffic_per_km_h:
         yield (
             f"Driven at steps of {driven_s:g} s, while the scenario's own are {own_s:g} s: figures differ from "
             f"those at its own steps (--step {own_s:g})."

@@ -3,16 +3,21 @@
 A ``<location>`` tag may name a projection that does not fit the network, because SUMO's tools write one without
 checking. It is believed if the network's original coordinates (``origBoundary``) lie where the projection puts the
 network and, for UTM, if that is inside the grid at all.
+
+A projection may also be a code (``EPSG:2154``), which `sumo` looks up and libsumo 1.28 cannot (its wheel names a
+database of another version). ``in_full`` writes it out, for both.
 """
 
 from __future__ import annotations
 
 import math
+import re
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 
-from pyproj import Proj
-from pyproj.exceptions import CRSError
+from pyproj import CRS, Proj, Transformer
+from pyproj.exceptions import CRSError, ProjError
 
 from automotive_cosim.contracts import RoadNetwork
 
@@ -21,6 +26,88 @@ UTM_EASTINGS_M = (100_000.0, 900_000.0)
 
 MARGIN_DEG, MARGIN_M = 0.1, 10_000.0
 """Edited networks may reach beyond their ``origBoundary``."""
+
+
+TURNED = "+axis=neu"
+"""PROJ's word for northings before eastings."""
+
+HELMERT = re.compile(r"step (inv )?proj=helmert (.*?)(?= step|$)")
+"""The change of datum in a pipeline of PROJ's."""
+
+
+def in_full(location: Mapping[str, str]) -> str:
+    """The ``projParameter`` of a ``<location>`` as PROJ's string, with its change of datum; "!" if there is none.
+
+    For codes that count northings first, netconvert 1.28 writes northings as x, which makes the network its own
+    mirror image: the string then says so (``TURNED``), and ``doubt`` tells.
+
+    Raises:
+        ValueError: an attribute contains something other than numbers.
+    """
+    given = location.get("projParameter", "!")
+    if given in ("!", "-") or given.startswith(("+", "proj=")):
+        return given
+    try:
+        crs = CRS.from_user_input(given)
+    except CRSError:
+        return given
+    if not crs.is_projected:
+        return "!"
+    with warnings.catch_warnings(action="ignore"):  # that names are lost
+        text = crs.to_proj4().replace("+type=crs", "").strip()
+    east_m, north_m = _middle_m(location)
+    turned = crs.axis_info[0].direction == "north" and not _lies(crs, location, east_m, north_m)
+    if turned:
+        east_m, north_m = north_m, east_m
+    return " ".join(filter(None, (text, _datum(crs, east_m, north_m), TURNED if turned else "")))
+
+
+def _middle_m(location: Mapping[str, str]) -> tuple[float, float]:
+    """The middle of a network in its projection."""
+    x_min, y_min, x_max, y_max = map(float, location.get("convBoundary", "0,0,0,0").split(","))
+    offset_x_m, offset_y_m = map(float, location.get("netOffset", "0,0").split(","))
+    return (x_min + x_max) / 2 - offset_x_m, (y_min + y_max) / 2 - offset_y_m
+
+
+def _lies(crs: CRS, location: Mapping[str, str], east_m: float, north_m: float) -> bool:
+    """Whether the network can be there: where it was made from, or at least where the code is used."""
+    made_from = _made_from(location)
+    if not (made_from and _in_degrees(made_from)):
+        made_from = (-180.0, -90.0, 180.0, 90.0) if crs.area_of_use is None else crs.area_of_use.bounds
+    lon_deg, lat_deg = Proj(crs)(east_m, north_m, inverse=True)
+    return _within(lon_deg, lat_deg, made_from, MARGIN_DEG)
+
+
+def _made_from(location: Mapping[str, str]) -> tuple[float, ...]:
+    """The original coordinates: west, south, east, north, in degrees or metres; empty without any."""
+    try:
+        numbers = tuple(float(number) for number in location.get("origBoundary", "").split(",") if number)
+    except ValueError as error:
+        raise ValueError("its origBoundary contains something other than numbers") from error
+    return numbers if len(numbers) == 4 and numbers[0] <= numbers[2] else ()
+
+
+def _in_degrees(bounds: tuple[float, ...]) -> bool:
+    west, south, east, north = bounds
+    return west >= -180 and east <= 180 and south >= -90 and north <= 90
+
+
+def _datum(crs: CRS, east_m: float, north_m: float) -> str:
+    """PROJ's ``+towgs84`` for the change of datum that it takes there itself; empty without one."""
+    change = Transformer.from_crs(crs, "EPSG:4326", always_xy=True)
+    try:
+        change.transform(east_m, north_m)
+        found = HELMERT.search(change.get_last_used_operation().definition)
+    except ProjError:
+        return ""
+    if found is None:
+        return ""
+    values = dict(part.split("=", 1) for part in found[2].split() if "=" in part)
+    moves = [float(values.get(key, 0)) for key in ("x", "y", "z", "rx", "ry", "rz", "s")]
+    if values.get("convention") == "coordinate_frame":
+        moves[3:6] = (-turn for turn in moves[3:6])
+    sign = -1 if found[1] else 1
+    return "+towgs84=" + ",".join(f"{sign * move:.12g}" for move in moves)
 
 
 class GeoReference:
@@ -69,6 +156,11 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
     """
     if network.projection is None:
         return "has no projection"
+    if TURNED in network.projection:
+        return (
+            f"has its axes the other way round (it is made with {location.get('projParameter')}, which counts "
+            "northings first, and netconvert took them for x: left is right in it; build it again with --proj.utm)"
+        )
     try:
         lon_deg, lat_deg = middle(network)
     except CRSError:
@@ -80,14 +172,11 @@ def doubt(network: RoadNetwork, location: Mapping[str, str]) -> str:
         return "has a projection that puts it outside the earth"
     if "+proj=utm" in network.projection and not UTM_EASTINGS_M[0] <= east_m <= UTM_EASTINGS_M[1]:
         return f"has a projection that puts it at an easting of {east_m:.0f} m, outside every UTM zone"
-    try:
-        made_from = tuple(float(number) for number in location.get("origBoundary", "").split(",") if number)
-    except ValueError as error:
-        raise ValueError("its origBoundary contains something other than numbers") from error
-    if len(made_from) != 4 or made_from[0] > made_from[2]:
+    made_from = _made_from(location)
+    if not made_from:
         return ""
     west, south, east, north = made_from
-    if west >= -180 and east <= 180 and south >= -90 and north <= 90:
+    if _in_degrees(made_from):
         fits = _within(lon_deg, lat_deg, made_from, MARGIN_DEG)
     else:
         fits = _within(east_m, north_m, made_from, MARGIN_M)

@@ -496,7 +496,7 @@ def _opposite(edges: Iterable[Edge]) -> dict[str, str]:
 def _map(reading: NetworkReader) -> RoadNetwork:
     bounds = tuple(quantity(number) for number in reading.location.get("convBoundary", "").split(",") if number)
     east_m, north_m = map(quantity, reading.location.get("netOffset", "0,0").split(","))
-    projection = reading.location.get("projParameter", "!")
+    projection = georeference.in_full(reading.location)
     return RoadNetwork(
         roads=tuple(road_of(edge) for edge in reading.edges.values()),
         bounds_m=(bounds[0], bounds[1], bounds[2], bounds[3]) if len(bounds) == 4 else _bounds(reading),

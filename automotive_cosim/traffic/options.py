@@ -17,7 +17,7 @@ from xml.sax.saxutils import quoteattr
 
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file
-from automotive_cosim.formats.scenario import Ego, Scenario, Trip
+from automotive_cosim.formats.scenario import Ego, Scenario, Sumo, Trip
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.traffic import random_traffic
 from automotive_cosim.traffic.mirror import mirrored, write_mirrored
@@ -25,7 +25,7 @@ from automotive_cosim.traffic.network import FORM, Network, NetworkReader, read_
 from automotive_cosim.traffic.redraw import redraw
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vetting import OTHER_EGO, copy_vetted, refuse_variables
-from automotive_cosim.traffic.vocabulary import IGNORED, MESOSCOPIC, REFUSED, TAKEN, WINDOW
+from automotive_cosim.traffic.vocabulary import IGNORED, MESOSCOPIC, PARALLEL, REFUSED, TAKEN, WINDOW
 
 INPUTS = ("net-file", "route-files", "additional-files", "weight-files")
 """Options that name files."""
@@ -42,7 +42,8 @@ DEFAULTS = {
     "device.rerouting.period": "60",
     "device.rerouting.adaptation-steps": "180",
 }
-"""Options that keep traffic from locking up; a configuration may override them."""
+"""Options that keep traffic from locking up; a configuration may override them. SUMO's own experiments
+(``Scenario.as_stated``) do without."""
 
 QUIET = {
     "no-step-log": "true",
@@ -54,9 +55,17 @@ QUIET = {
 
 ANY_ROUTE = "ignore-route-errors"
 
-FIXED = {"collision.action": "remove", ANY_ROUTE: "true"}
-"""Options of every run: SUMO's default would teleport who collides, and the ego's collision must end its drive. It
-would also stop at a vehicle whose fixed route leads over a closed road; that goes round instead (``detours``)."""
+COLLISIONS = "collision.action"
+
+FIXED = {COLLISIONS: "remove"}
+"""Options of a run that is not SUMO's own experiment, which would teleport who collides by default."""
+
+UNCHECKED = {ANY_ROUTE: "true"}
+"""Options of every run. SUMO would stop at a vehicle whose fixed route leads over a closed road; that goes round
+instead (``detours``), and a route that is broken anyway is refused."""
+
+NOTICED = {COLLISIONS: "warn", "collision.stoptime": "0"}
+"""Of a run in which collisions have no effect: SUMO tells of the ego's, and nobody else drives otherwise."""
 
 SCRATCH = "automotive-cosim-"
 """Beginning of the name of a simulation's scratch folder."""
@@ -64,6 +73,10 @@ SCRATCH = "automotive-cosim-"
 EDGE_FLOWS, QUEUES = "edges.xml", "queues.xml"
 OUTPUTS = ("fcd.xml", "tripinfo.xml", EDGE_FLOWS, QUEUES)
 """SUMO's own outputs that a run may write."""
+
+SUMO_STEP_S = 1.0
+"""SUMO's own step length."""
+REROUTING = "device.rerouting.probability"
 
 QUEUE_PERIOD_S = 10.0
 """Simulated time between two measurements of the queues."""
@@ -122,6 +135,8 @@ class Configuration:
     """Option of ``INPUTS`` -> its files, absolute."""
     ignored: tuple[str, ...] = ()
     """Names of the options that have no effect here."""
+    parallel: tuple[str, ...] = ()
+    """Those that would make SUMO work in parallel."""
 
     @property
     def begin_s(self) -> float:
@@ -160,6 +175,9 @@ class Copied(Configuration):
     """The folder of the copies."""
     given: Mapping[str, tuple[Path, ...]] = field(default_factory=dict)
     """The files that were copied, like ``files``."""
+    distributions: frozenset[str] = frozenset()
+    """Names of the distributions of vehicle types. SUMO lists them among the types, but each call to one of that
+    name is about another type, drawn at random (seen in SUMO 1.28)."""
 
     @contextmanager
     def named_as_given(self) -> Iterator[None]:
@@ -187,7 +205,14 @@ def read_configuration(path: Path) -> Configuration:
     scan(path, reader.start, text=reader.text, error=ScenarioError, what="a SUMO configuration")
     if "net-file" not in reader.files:
         raise ScenarioError(f"{path} names no net-file")
-    return Configuration(path, reader.files["net-file"][0], reader.options, reader.files, tuple(reader.ignored))
+    return Configuration(
+        path,
+        reader.files["net-file"][0],
+        reader.options,
+        reader.files,
+        tuple(reader.ignored),
+        tuple(reader.parallel),
+    )
 
 
 @dataclass(slots=True)
@@ -199,6 +224,7 @@ class _Reader:
     files: dict[str, tuple[Path, ...]] = field(default_factory=dict)
     ignored: dict[str, None] = field(default_factory=dict)
     """Names, in their order."""
+    parallel: dict[str, None] = field(default_factory=dict)
 
     def start(self, element: str, attributes: dict[str, str], line: int) -> None:
         """Takes an option, or passes a section."""
@@ -210,6 +236,8 @@ class _Reader:
             self._take(TAKEN[element], value, where)
         elif element in IGNORED or element in WINDOW:
             self.ignored[IGNORED.get(element, element)] = None
+        elif element in PARALLEL:
+            self.parallel[PARALLEL[element]] = None
         elif element == MESOSCOPIC:
             if value.lower() not in FALSE:
                 raise ScenarioError(
@@ -260,14 +288,49 @@ def copied(configuration: Configuration, folder: Path, network: NetworkReader | 
         ScenarioError: a file of the scenario is not one of SUMO's, or may write (``vetting``).
     """
     net = folder / copy_vetted(configuration.net, folder, "net-file0", network, FORM)
+    distributions = _Distributions()
     files = {
-        name: tuple(folder / copy_vetted(file, folder, f"{name}{number}") for number, file in enumerate(originals))
+        name: tuple(
+            folder / copy_vetted(file, folder, f"{name}{number}", distributions)
+            for number, file in enumerate(originals)
+        )
         for name, originals in configuration.files.items()
         if name != "net-file"
     }
     files["net-file"] = (net,)
     return Copied(
-        configuration.path, net, configuration.options, files, configuration.ignored, folder, configuration.files
+        configuration.path,
+        net,
+        configuration.options,
+        files,
+        configuration.ignored,
+        configuration.parallel,
+        folder,
+        configuration.files,
+        frozenset(distributions.names),
+    )
+
+
+class _Distributions:
+    """Reads the names of distributions of vehicle types."""
+
+    def __init__(self) -> None:
+        self.names: set[str] = set()
+
+    def start(self, name: str, attributes: dict[str, str]) -> None:
+        """Takes the start of an element."""
+        if name == "vTypeDistribution":
+            self.names.add(attributes.get("id", ""))
+
+    def end(self, name: str) -> None:
+        """Takes its end."""
+
+
+def edge_data(file: str, begin_s: float, period_s: float) -> str:
+    """An additional file by which SUMO writes the flow on every edge, also within junctions."""
+    return (
+        f'<additional><edgeData id="flow" file={quoteattr(file)} begin="{begin_s:g}" period="{period_s:g}" '
+        f'excludeEmpty="true" withInternal="true" writeAttributes="{FLOW_ATTRIBUTES}"/></additional>'
     )
 
 
@@ -275,6 +338,29 @@ def takes_any_route(configuration: Configuration, network: Network) -> bool:
     """Whether vehicles may set out on routes that their class cannot drive: the configuration says so, or roads of
     the network are closed at certain hours."""
     return network.has_hours or configuration.options.get(ANY_ROUTE, "").lower() in TRUE
+
+
+def stated_and_set(configuration: Configuration, sumo: Sumo) -> dict[str, tuple[float, float]]:
+    """What a configuration states, with SUMO's default if it does not, and what a scenario has, by option.
+
+    Raises:
+        ScenarioError: the configuration states no number.
+    """
+    number = configuration.number
+    return {
+        "step-length": (number("step-length", SUMO_STEP_S), sumo.step_length_s),
+        "scale": (number("scale", 1.0, 100), sumo.scale),
+        REROUTING: (max(0.0, number(REROUTING, 0.0)), sumo.background_rerouting),
+    }
+
+
+def _given(configuration: Configuration, scenario: Scenario) -> dict[str, str]:
+    """The configuration's options as a run takes them."""
+    options = dict(configuration.options)
+    if not scenario.as_stated:
+        options.pop("end", None)
+        return DEFAULTS | options | FIXED
+    return options | (NOTICED if options.get(COLLISIONS) == "none" else {})
 
 
 def run_options(configuration: Copied, setup: Setup, network: Network | None = None) -> dict[str, str]:
@@ -285,7 +371,7 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
         setup: seed, and the scenario's step lengths, scale and rerouting.
         network: the configuration's as it drives, if it has been read.
     """
-    options = DEFAULTS | dict(configuration.options) | QUIET | FIXED
+    options = _given(configuration, setup.scenario) | QUIET | UNCHECKED
     for name, value in options.items():
         if name.endswith(EGO_LISTS):
             options[name] = ",".join(OTHER_EGO if each == EGO else each for each in value.split(","))
@@ -295,7 +381,6 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
         inputs["net-file"] = ["mirrored.net.xml"]
         write_mirrored(configuration.net, configuration.folder / "mirrored.net.xml", image.map)
     sumo = setup.scenario.sumo
-    step_s = sumo.step_length_s
     if sumo.redraws_trips:
         days = [f"day{number}.rou.xml" for number in range(len(inputs.get("route-files", ())))]
         for number, (file, day) in enumerate(zip(configuration.files.get("route-files", ()), days, strict=True)):
@@ -309,21 +394,16 @@ def run_options(configuration: Copied, setup: Setup, network: Network | None = N
     if setup.outputs is not None and setup.flow_s is not None:
         wanted = "flow.add.xml"
         begin_s = configuration.begin_s + sumo.warm_up_s
-        path = quoteattr(str(setup.outputs / EDGE_FLOWS))
-        (configuration.folder / wanted).write_text(
-            f'<additional><edgeData id="flow" file={path} begin="{begin_s:g}" period="{setup.flow_s:g}" '
-            f'excludeEmpty="true" withInternal="true" writeAttributes="{FLOW_ATTRIBUTES}"/></additional>',
-            encoding="utf-8",
-        )
+        flows = edge_data(str(setup.outputs / EDGE_FLOWS), begin_s, setup.flow_s)
+        (configuration.folder / wanted).write_text(flows, encoding="utf-8")
         inputs.setdefault("additional-files", []).append(wanted)
     options |= {name: ",".join(names) for name, names in inputs.items() if names}
-    options |= {
-        "step-length": f"{step_s:g}",
-        "default.action-step-length": f"{max(step_s, sumo.action_step_length_s):g}",
-        "seed": str(setup.seed),
-        "scale": f"{sumo.scale:g}",
-        "device.rerouting.probability": f"{sumo.background_rerouting:g}",
-    }
+    options["seed"] = str(setup.seed)
+    for option, (stated, to_set) in stated_and_set(configuration, sumo).items():
+        if stated != to_set:
+            options[option] = f"{to_set:g}"
+    if sumo.action_step_length_s is not None:
+        options["default.action-step-length"] = f"{max(sumo.step_length_s, sumo.action_step_length_s):g}"
     if sumo.lateral_resolution_m is not None:
         options["lateral-resolution"] = f"{sumo.lateral_resolution_m:g}"
     if setup.outputs is not None and setup.flow_s is not None:

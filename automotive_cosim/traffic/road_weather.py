@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from bisect import bisect_right
+from collections.abc import Container
 from dataclasses import dataclass, replace
 
 from automotive_cosim.contracts import Weather
@@ -25,6 +26,9 @@ HEAVY_RAIN_FROM_MM_PER_H = 7.6
 
 LOSS_PER_KELVIN = 0.0023
 """Asphalt loses 0.232 BPN, hundredths of friction, per kelvin (Bazlamit and Reza, J. Transp. Eng. 131 (2005))."""
+
+FASTEST_MPS = 100.0
+"""Nobody drives as fast: sight that allows it limits nobody."""
 
 WARM_FROM_C = 20.0
 """Reference temperature of friction tests."""
@@ -55,6 +59,11 @@ class RoadCondition:
     """Speed from which a driver can stop within the visibility."""
     weather: str = ""
     """``"wet"`` or ``"snow"``, for signs that hold in that weather only."""
+
+    @property
+    def is_felt(self) -> bool:
+        """Whether anybody drives otherwise than on a dry road in clear air."""
+        return (self.friction, self.speed_ratio, self.headway_ratio) != (1, 1, 1) or self.sight_mps < FASTEST_MPS
 
 
 DRY = RoadCondition()
@@ -175,16 +184,21 @@ class Surface:
     Lanes in tunnels stay dry. Desired speeds are set per vehicle, the rest per type.
     """
 
-    def __init__(self, sumo: LibSumo, network: Network, left_out: tuple[str, ...]) -> None:
+    def __init__(
+        self, sumo: LibSumo, network: Network, left_out: tuple[str, ...], drawn: Container[str] | None = None
+    ) -> None:
         """Starts dry.
 
         Args:
             sumo: the simulation.
             network: its roads.
             left_out: types, or prefixes of their names, that stay unchanged.
+            drawn: distributions, which SUMO lists among the types, and which stay unchanged too, as does everybody
+                in weather that is not felt. None treats them as types and sets all types in any weather.
         """
         self._sumo = sumo
         self._left_out = left_out
+        self._drawn = drawn
         self.condition = DRY
         tunnels = {lane for edge in network.edges.values() if edge.in_tunnel for lane in edge.lane_ids}
         self._lanes = tuple(lane for lane in sumo.lane.getIDList() if lane not in tunnels)
@@ -196,12 +210,15 @@ class Surface:
         """Changes the condition for everything on the road."""
         if condition == self.condition:
             return
+        if self._drawn is not None and not (condition.is_felt or self.condition.is_felt):
+            self.condition = condition
+            return
         if condition.friction != self.condition.friction:
             for lane in self._lanes:
                 self._sumo.lane.setFriction(lane, condition.friction)
         self.condition = condition
         for type_id in self._sumo.type.getIDList():
-            if not type_id.startswith(self._left_out):
+            if not type_id.startswith(self._left_out) and type_id not in (self._drawn or ()):
                 self._treat(type_id)
         for vehicle in self._sumo.vehicle.getIDList():
             if not self._sumo.type_of(vehicle).startswith(self._left_out):

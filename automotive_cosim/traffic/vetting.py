@@ -18,6 +18,7 @@ from xml.sax.saxutils import escape, quoteattr
 from automotive_cosim.errors import ScenarioError, UnknownNameError
 from automotive_cosim.formats.files import is_file, opened
 from automotive_cosim.formats.xml import SHARED_ENCODINGS, OnStart, scan
+from automotive_cosim.traffic.georeference import in_full
 from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.vocabulary import ELEMENTS, INPUTS, OUTPUTS, WRITING_LIGHT, parameter
 
@@ -113,7 +114,7 @@ def _vet(
 ) -> str:
     if path.resolve() in through:
         raise ScenarioError(f"{path} includes itself")
-    reader = _Reader(path, folder, name, (*through, path.resolve()))
+    reader = _Reader(path, folder, name, (*through, path.resolve()), also)
     copy = None if folder is None else folder / f"{name}.xml"
     start, end = (reader.start, reader.end) if also is None else _both(reader, also)
     encoding = scan(path, start, end, error=ScenarioError, what=what, copy=copy)
@@ -149,6 +150,8 @@ class _Reader:
     """The copy's name, without an ending."""
     through: tuple[Path, ...]
     """This file, and those that include it."""
+    also: ElementHandler | None = None
+    """Reads it too, and what it includes."""
     changed: dict[int, dict[str, str] | None] = field(default_factory=dict)
     """Number of an element, in the order of the file -> its attributes in a copy; None leaves it out."""
     count: int = 0
@@ -163,6 +166,10 @@ class _Reader:
             raise ScenarioError(f"{self.path} line {line}: {unknown}")
         if name == "param":
             self._take_parameter(attributes, line)
+        elif name == "location":
+            new = attributes | {"projParameter": in_full(attributes)}
+            if new != attributes:
+                self.changed[self.count] = new
         elif name in NAMING or PICTURE in attributes:
             new = dict(attributes)
             self._take_files(name, new, line)
@@ -206,7 +213,7 @@ class _Reader:
             raise ScenarioError(f"{where}: {missing}")
         name = f"{self.name}-{next(self.inner)}"
         if element not in LISTS:
-            return _vet(file, self.folder, name, self.through)
+            return _vet(file, self.folder, name, self.through, also=self.also if element == "include" else None)
         if self.folder is not None:
             with opened(file) as given, (self.folder / name).open("wb") as copy:
                 shutil.copyfileobj(given, copy)

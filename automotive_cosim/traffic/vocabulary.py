@@ -18,7 +18,7 @@ TAKEN = _words(
     """
     net-file/n/net route-files/r/routes additional-files/a/additional weight-files/w/weights
     weight-attribute/measure/x junction-taz
-    begin/b step-length
+    begin/b end/e step-length
     step-method.ballistic extrapolate-departpos lateral-resolution route-steps/s ignore-junction-blocker
     ignore-route-errors ignore-accidents collision.action intermodal-collision.action collision.stoptime
     intermodal-collision.stoptime collision.check-junctions collision.check-junctions.mingap
@@ -161,9 +161,7 @@ IGNORED = _words(
     save-state.period save-state.period.keep save-state.prefix save-state.suffix save-state.files save-state.rng
     save-state.transportables save-state.constraints save-state.precision pedestrian.jupedsim.wkt
     pedestrian.jupedsim.wkt.geo pedestrian.jupedsim.py
-    end/e
-    threads no-internal-links
-    device.rerouting.threads/routing-threads device.rerouting.output
+    no-internal-links device.rerouting.output
     verbose/v print-options help/? version/V xml-validation/X xml-validation.net xml-validation.routes
     no-warnings/W/suppress-warnings aggregate-warnings log/l/log-file message-log error-log log.timestamps
     log.processid language duration-log.disable/no-duration-log duration-log.statistics/t no-step-log
@@ -181,8 +179,12 @@ IGNORED = _words(
     tracker-interval gui-testing gui-testing-debug gui-testing.setting-output
     """
 )
-"""Options without effect here: outputs, reports, the window, what a run sets itself, and ``threads``, of which a
-simulation that forks has one. SUMO does not read a configuration inside a configuration either."""
+"""Options without effect here: outputs, reports, the window, and what a run sets itself. SUMO does not read a
+configuration inside a configuration either."""
+
+PARALLEL = _words("threads device.rerouting.threads/routing-threads")
+"""Options that make SUMO work in parallel. A copy by fork has the thread that forks and no other, and waits for the
+rest for ever (seen in SUMO 1.28), so they are set aside."""
 
 WINDOW = _words("osg-view")
 """Options without effect here that SUMO knows only where its window is built with them."""
@@ -284,6 +286,6 @@ def parameter(key: str) -> bool | None:
         return None if device == "ssm" else True
     if key in TAKEN or key in DEVICE_PARAMETERS:
         return True
-    if key in IGNORED:
+    if key in IGNORED or key in PARALLEL:
         return None
     raise KeyError(key)

@@ -88,7 +88,9 @@ class World:
         """Number of vehicles, kept here because SUMO counts them one by one, which costs more than all the rest."""
         self._emergency: set[str] = set()
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
-        self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE))
+        # the recorded traces of scenarios with a scenario.toml have what calls to distributions made of them
+        drawn = self._configuration.distributions if scenario.as_stated else None
+        self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE), drawn)
         self._forecast = Forecast(scenario.weather[:1], scenario.sumo.warm_up_s)
         self.congestion = Congestion(self.network, self._sumo.on_lanes)
         self._router = Router(self._sumo, self.network, self.congestion, EGO_TYPE)
@@ -459,6 +461,8 @@ class _EgoRoad:
             text = f"{collision.collider} hits {collision.victim}"
             events.append(Event(sumo.time(), "collision", text))
             if EGO in (collision.collider, collision.victim):
+                if end is None and EGO not in self._world.arrived:
+                    sumo.vehicle.remove(EGO)  # where a collision takes nobody off the road for good
                 end = EgoEnd.COLLIDED
         for vehicle in sumo.teleporting():
             events.append(Event(sumo.time(), "teleport", f"{vehicle} stood too long and is teleported"))

@@ -57,7 +57,7 @@ def test_a_plain_network_runs_and_says_what_was_assumed(cli, flat):
     result = _episode(ran)
     assert result["scenario"] == "grid"
     notes = ran.err.splitlines()
-    assert len(notes) == 3
+    assert len(notes) == 2
     assert all(note.startswith("note: ") for note in notes)
     assert "without GPS" in ran.err
     assert "no traffic of its own" in ran.err

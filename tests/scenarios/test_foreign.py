@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
+from collections.abc import Callable
 from contextlib import closing
 from itertools import pairwise
 from pathlib import Path
@@ -18,18 +19,15 @@ from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.scenarios.routes import LONG_M, chosen_trips, edges_at
 from automotive_cosim.scenarios.variant import write_variant
+from automotive_cosim.studies.congestion.plan import CongestionPlan
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference
-from automotive_cosim.traffic.options import read_configuration
+from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
 from automotive_cosim.traffic.ways import way_through
+from tests.scenarios.beside_sumo import INTERVAL_S, OTHERS, beside, made
 
 GRID = scenarios.load("grid").folder
-OTHERS = {
-    "ingolstadt1": "ingolstadt/ingolstadt1/ingolstadt1.sumocfg",
-    "ingolstadt7": "ingolstadt/ingolstadt7/ingolstadt7.sumocfg",
-    "bologna": "bologna/acosta/run.sumocfg",
-}
 
 OUTPUTS = '<output><summary-output value="summary.xml"/><fcd-output value="fcd.xml"/></output>'
 DETECTOR = '<e1Detector id="d" lane="c1c2_0" pos="50" period="60" file="detector.xml"/>'
@@ -73,17 +71,56 @@ def _drive(scenario: Scenario, trip: int = 0, *, for_s: float = 5.0) -> tuple[fl
 def test_a_configuration_is_read_for_what_it_says(foreign: Path) -> None:
     scenario = open_scenario(foreign)
     assert (scenario.name, scenario.country, scenario.has_place) == ("town", "FR", True)
-    assert scenario.sumo.step_length_s == scenario.sumo.action_step_length_s == 0.5
+    assert (scenario.as_stated, scenario.sumo.step_length_s, scenario.sumo.action_step_length_s) == (
+        True,
+        0.5,
+        None,
+    )
+    assert CongestionPlan(str(foreign)).scene().sumo.step_length_s == 0.5
+    assert CongestionPlan(str(foreign), step_s=1.0).scene().sumo.step_length_s == 1.0
     assert scenario.weather == ()
     assert str(scenario.start.tzinfo) == "Europe/Paris"
     after_midnight_s = scenario.start.hour * 3600 + scenario.start.minute * 60 + scenario.start.second
     assert after_midnight_s == 36_000 + scenario.sumo.warm_up_s
     runs_with, without = scenario.notes
-    assert "collision.action remove" in runs_with
-    assert "ignore-junction-blocker 20" in runs_with
+    assert "runs as `sumo -c` runs it" in runs_with
     assert "step-length" not in runs_with
-    assert "the ballistic integration that SUMO chooses" in runs_with
-    assert without == "town.sumocfg runs without its end, summary-output, fcd-output"
+    assert without == "town.sumocfg runs without its summary-output, fcd-output"
+
+
+@pytest.mark.parametrize("name", scenarios.shipped())
+def test_without_an_ego_every_road_is_as_in_sumo(name: str, sumo: None) -> None:
+    ours, sumos = beside(scenarios.load(name).config, 10.0, INTERVAL_S, trips=False)
+    assert ours.edges == sumos.edges != []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["all classes", *OTHERS])
+def test_without_an_ego_every_vehicle_drives_as_in_sumo(
+    name: str, tmp_path: Path, data_of_others: Callable[[str], Path], sumo: None
+) -> None:
+    ours, sumos = beside(data_of_others(OTHERS[name]) if name in OTHERS else made(tmp_path))
+    assert dict(ours.trips.items() - sumos.trips.items()) == {}
+    assert len(ours.trips) > 50
+    assert ours == sumos
+
+
+def test_what_works_in_parallel_and_other_settings_that_are_not_kept_are_told(
+    foreign: Path, tmp_path: Path
+) -> None:
+    more = '<threads value="4"/><device.rerouting.threads value="2"/><step-length value="2"/>'
+    foreign.write_text(foreign.read_text().replace('<step-length value="0.5"/>', more))
+    scenario = open_scenario(foreign)
+    assert any("step-length 1 instead of 2, so figures differ" in note for note in scenario.notes)
+    assert any("threads, device.rerouting.threads set aside" in note for note in scenario.notes)
+    (tmp_path / "scratch").mkdir()
+    options = run_options(copied(read_configuration(foreign), tmp_path / "scratch"), Setup(scenario))
+    assert not [name for name in options if "threads" in name or "action" in name]
+    assert (options["step-length"], options["end"]) == ("1", "39600")
+    shutil.copytree(GRID, tmp_path / "grid")
+    described = tmp_path / "grid" / "grid.sumocfg"
+    described.write_text(described.read_text().replace("<time>", '<time><threads value="4"/>'))
+    assert any("threads set aside" in note for note in open_scenario(described.parent).notes)
 
 
 @pytest.mark.sumo
@@ -116,8 +153,6 @@ def test_a_bare_network_runs_with_light_traffic_and_says_so(name: str) -> None:
 
 
 def test_light_traffic_is_the_seeds(tmp_path: Path) -> None:
-    from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
-
     scenario = open_scenario(GRID / "grid.net.xml")
     written = []
     for number, seed in enumerate((1, 1, 2)):
@@ -315,7 +350,7 @@ def test_a_copy_with_another_demand_has_the_configurations_files_and_no_others(t
     (here / "scenario.toml").unlink()
     (here / "diary.txt").touch()
     config = here / "grid.sumocfg"
-    options = '<scale value="2"/><device.rerouting.probability value="0.5"/>'
+    options = '<scale value="2"/><device.rerouting.probability value="0.5"/><end value="99"/>'
     config.write_text(config.read_text().replace("</configuration>", f"{options}</configuration>"))
     given = open_scenario(config)
     assert (given.sumo.scale, given.sumo.background_rerouting) == (2.0, 0.5)
@@ -323,6 +358,7 @@ def test_a_copy_with_another_demand_has_the_configurations_files_and_no_others(t
     write_variant(there, given, read_configuration(config), routes, ("record.json", {}))
     made = open_scenario(there)
     assert (made.sumo.scale, made.sumo.background_rerouting) == (1.0, 0.0)
+    assert "end" not in read_configuration(made.config).options
     files = read_configuration(made.config).files
     assert [path.name for path in files["route-files"]] == ["mine.rou.xml"]
     named = {path.name for paths in files.values() for path in paths}

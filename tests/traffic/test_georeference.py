@@ -3,16 +3,22 @@
 from __future__ import annotations
 
 import gzip
+import math
 import re
 from pathlib import Path
 
 import pytest
+from pyproj import Proj
 
 from automotive_cosim.contracts import RoadNetwork
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.scenarios import load
+from automotive_cosim.scenarios import load, open_scenario
+from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.georeference import GeoReference, doubt, middle, moved
 from automotive_cosim.traffic.network import drives_on_left, read_network, root_of
+from automotive_cosim.traffic.options import Setup
+from automotive_cosim.traffic.sumo import load_library
+from automotive_cosim.traffic.world import World
 
 UTM32 = "+proj=utm +zone=32 +ellps=WGS84 +datum=WGS84 +units=m +no_defs"
 LOCAL = "+proj=tmerc +lat_0=48 +lon_0=11 +k=1 +x_0=0 +y_0=0 +ellps=WGS84 +units=m +no_defs"
@@ -70,6 +76,72 @@ def test_a_network_whose_projection_is_not_believed_has_none(tmp_path: Path) -> 
     assert placed.unplaced == ""
     assert placed.moved
     assert placed.edges == network.edges
+
+
+GEO = ("--fcd-output.geo", "--precision.geo", "12")
+CODES = [  # code, where it is used, and how far SUMO's own registry is away (1.28.0 beside pyproj 3.7)
+    ("EPSG:2154", (2.3, 48.9), 0.1),
+    ("EPSG:25832", (11.4, 48.8), 0.1),
+    ("EPSG:27700", (-1.5, 52.0), 0.1),
+    ("EPSG:2056", (8.5, 47.4), 0.1),
+    ("EPSG:28992", (5.2, 52.1), 10.0),
+]
+
+
+@pytest.mark.parametrize(("code", "north_first"), [("EPSG:31468", True), ("EPSG:2180", True), ("EPSG:5514", False)])
+def test_a_network_with_its_axes_the_other_way_round_is_told(
+    code: str, north_first: bool, tmp_path: Path, sumo: None
+) -> None:
+    """As netconvert 1.28 makes one of a code that counts northings first."""
+    (tmp_path / "a.nod.xml").write_text(
+        '<nodes><node id="a" x="15" y="50"/><node id="b" x="15.01" y="50"/><node id="c" x="15" y="50.01"/></nodes>'
+    )
+    (tmp_path / "a.edg.xml").write_text(
+        '<edges><edge id="e" from="a" to="b"/><edge id="n" from="a" to="c"/></edges>'
+    )
+    options = ["-n", "a.nod.xml", "-e", "a.edg.xml", "--proj", code, "-o", "a.net.xml"]
+    assert sumo_programs.run("netconvert", options, tmp_path)[0]
+    network = read_network(tmp_path / "a.net.xml")
+    (x1, y1), *_, (x2, y2) = network.edges["e"].shape_m
+    assert (abs(y2 - y1) > abs(x2 - x1)) == north_first, "the road east leads north"
+    assert ("axes the other way round" in network.unplaced) == north_first
+
+
+@pytest.mark.parametrize(("code", "where", "apart_mm"), CODES)
+def test_a_code_is_written_out_so_that_sumo_has_the_same_place_and_its_library_loads_it(
+    code: str, where: tuple[float, float], apart_mm: float, tmp_path: Path, sumo: None
+) -> None:
+    """``sumo`` itself reads the code; libsumo 1.28 cannot ("Could not build projection!")."""
+    x_m, y_m = Proj(code)(*where)
+    offset = f"{round(500 - x_m, 2)},{round(250 - y_m, 2)}"
+    made_from = f"{where[0] - 0.1},{where[1] - 0.1},{where[0] + 0.1},{where[1] + 0.1}"
+    net = tmp_path / "coded.net.xml"
+    text = (load("grid").folder / "grid.net.xml").read_text(encoding="utf-8")
+    for key, value in (("projParameter", code), ("netOffset", offset), ("origBoundary", made_from)):
+        text = re.sub(rf'{key}="[^"]*"', f'{key}="{value}"', text, count=1)
+    net.write_text(text, encoding="utf-8")
+    (tmp_path / "one.rou.xml").write_text('<routes><trip id="v" depart="0" from="c1c2" to="c2c3"/></routes>')
+    (tmp_path / "one.sumocfg").write_text(
+        '<configuration><net-file value="coded.net.xml"/><route-files value="one.rou.xml"/></configuration>'
+    )
+    done, told = sumo_programs.run(
+        "sumo", ["-c", "one.sumocfg", "-e", "1", "--fcd-output", "f.xml", *GEO], tmp_path
+    )
+    assert done, told
+    of_sumo = [float(each) for each in re.findall(r' [xy]="([^"]*)"', (tmp_path / "f.xml").read_text())]
+    scenario = open_scenario(tmp_path / "one.sumocfg")
+    (tmp_path / "scratch").mkdir()
+    world, library = World(Setup(scenario), tmp_path / "scratch"), load_library()
+    try:
+        world.step()
+        at_m = library.position("v")
+        ours = GeoReference(world.network.map).lon_lat(*at_m), library.to_lon_lat(*at_m)
+    finally:
+        world.close()
+    assert scenario.has_place
+    for lon_deg, lat_deg in ours:
+        east_mm = (lon_deg - of_sumo[0]) * 111e6 * math.cos(math.radians(where[1]))
+        assert math.hypot(east_mm, (lat_deg - of_sumo[1]) * 111e6) < apart_mm
 
 
 @pytest.mark.parametrize(("name", "left"), [("grid", False), ("london", True), ("tokyo", True), ("gulf", False)])

@@ -130,7 +130,8 @@ def _template(folder: Path) -> dict[str, str]:
 @pytest.mark.sumo
 def test_every_option_of_the_installed_sumo_is_in_one_table(tmp_path: Path) -> None:
     meso = {vocabulary.MESOSCOPIC: vocabulary.MESOSCOPIC}
-    tables: tuple[Mapping[str, str], ...] = (vocabulary.TAKEN, vocabulary.IGNORED, vocabulary.REFUSED, meso)
+    tables: list[Mapping[str, str]] = [vocabulary.TAKEN, vocabulary.IGNORED, vocabulary.PARALLEL]
+    tables += [vocabulary.REFUSED, meso]
     known = {word: name for table in tables for word, name in table.items()}
     assert _template(tmp_path) == known
     assert len(known) == sum(map(len, tables))

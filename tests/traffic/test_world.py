@@ -26,7 +26,7 @@ from automotive_cosim.contracts import (
     Severity,
     SlowDown,
 )
-from automotive_cosim.scenarios import Scenario, Trip, load
+from automotive_cosim.scenarios import Scenario, Trip, load, open_scenario
 from automotive_cosim.traffic.base import Advance, EgoPlan, Traffic
 from automotive_cosim.traffic.congestion import SAMPLE_PERIOD_S
 from automotive_cosim.traffic.fork import Forked
@@ -213,7 +213,42 @@ def test_arrival(empty: Forked, hurried: EgoPlan) -> None:
 def test_collision(in_process: InProcess, hurried: EgoPlan) -> None:
     import libsumo
 
-    traffic = in_process.depart(hurried)
+    drive = _collided(in_process, hurried)
+    assert "ego" not in libsumo.vehicle.getIDList()
+    assert drive.states[-1].end is EgoEnd.COLLIDED
+    assert "ego hits wall" in [event.text for event in drive.events]
+
+
+@pytest.mark.parametrize("action", ["none", "warn", "teleport"])
+def test_a_collision_takes_the_ego_off_the_road_whatever_it_does_to_others(
+    action: str, variant: Variant, hurried: EgoPlan
+) -> None:
+    import libsumo
+
+    def stated(folder: Path) -> None:
+        path = folder / "grid.sumocfg"
+        path.write_text(
+            path.read_text().replace("<processing>", f'<processing><collision.action value="{action}"/>')
+        )
+
+    scenario = open_scenario(variant(stated).config)
+    assert scenario.as_stated
+    simulation = InProcess(replace(scenario, sumo=replace(scenario.sumo, warm_up_s=10.0)), seed=1)
+    try:
+        assert _collided(simulation, hurried).states[-1].end is EgoEnd.COLLIDED
+        assert simulation.world is not None
+        for _ in range(200):
+            simulation.world.step()
+        assert "ego" not in libsumo.vehicle.getIDList()
+    finally:
+        simulation.close()
+
+
+def _collided(simulation: InProcess, plan: EgoPlan) -> Advance:
+    """The ego drives into a car that stands."""
+    import libsumo
+
+    traffic = simulation.depart(plan)
     traffic.advance(1.0)
     lane, position_m = traffic.state.road.lane_id, traffic.state.road.lane_position_m
     libsumo.vehicle.add("wall", "automotive_cosim.ego", departLane=lane[-1], departPos=str(position_m + 200))
@@ -222,9 +257,7 @@ def test_collision(in_process: InProcess, hurried: EgoPlan) -> None:
         libsumo.vehicle.setLaneChangeMode(vehicle, 0)
     libsumo.vehicle.setSpeedMode("ego", 0)
     libsumo.vehicle.setSpeed("ego", 20.0)
-    drive = traffic.advance(10.0)
-    assert drive.states[-1].end is EgoEnd.COLLIDED
-    assert "ego hits wall" in [event.text for event in drive.events]
+    return traffic.advance(10.0)
 
 
 def test_removal(in_process: InProcess, hurried: EgoPlan) -> None:

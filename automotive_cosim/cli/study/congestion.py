@@ -39,7 +39,7 @@ def congestion(
     console = Console(stderr=as_json, highlight=False)
     measures, over = counted(len(plan.measures), "measure"), counted(len(plan.seeds), "seed")
     console.print(
-        f"{measures} and none, {over}, in steps of {plan.step_s:g} s, into {folder}",
+        f"{measures} and none, {over}, in steps of {plan.driven_step_s(plan.opened):g} s, into {folder}",
         soft_wrap=True,
     )
     with where, driven(console, "seeds", folder) as tell:

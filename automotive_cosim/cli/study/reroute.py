@@ -173,7 +173,7 @@ def _announce(console: Console, plan: StudyPlan, folder: Path) -> None:
     table.add_row("seeds", f"{len(plan.seeds)}")
     table.add_row("policies", ", ".join(plan.policies))
     table.add_row("replicates", str(plan.replicates))
-    table.add_row("steps", f"{plan.step_s:g} s")
+    table.add_row("steps", f"{plan.driven_step_s(plan.opened):g} s")
     for incident in plan.incidents:
         table.add_row("incident", incident)
     if plan.close:

@@ -166,7 +166,7 @@ def _found(study: CongestionStudy) -> Iterator[str]:
         pairs = [(dict(study.outcomes(""))[seed], outcome) for seed, outcome in study.outcomes(measure)]
         if measure and pairs and all(one.states == two.states and one.cells == two.cells for one, two in pairs):
             yield f"“{name_of(measure)}” changes nothing in any seed."
-    yield from steps_told(plan.opened, plan.step_s)
+    yield from steps_told(plan.opened, plan.driven_step_s(plan.opened))
     if dry_s := _dry_from_s(study):
         yield (
             f"Hardly anybody departs after {dry_s / 60:.0f} of {plan.minutes:g} min: the demand ends before the "

@@ -75,7 +75,7 @@ class CongestionPlan(CongestionSettings):
         incidents: list[AnyIncident] = [read_line(text, KINDS, place) for text, place in self._incidents]
         scenario = driven_at(
             self.opened,
-            step_s=self.step_s,
+            step_s=self.driven_step_s(self.opened),
             share=self.share,
             scale=self.scale,
             warm_up_s=self.warm_up_s,
