@@ -41,7 +41,8 @@ def hold(cases: Sequence[tuple[Any, ...]], check: Callable[..., None]) -> None:
         try:
             check(*case)
         except Exception as error:
-            error.add_note(f"for {', '.join(getattr(part, 'id', str(part))[:80] for part in case)}")
+            names = (getattr(part, "id", None) or getattr(part, "__name__", None) or part for part in case)
+            error.add_note(f"for {', '.join(str(name)[:80] for name in names)}")
             broken.append(error)
     if broken:
         raise ExceptionGroup(f"{len(broken)} of {len(cases)} cases", broken)
