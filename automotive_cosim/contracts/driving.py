@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 
-from automotive_cosim.contracts.plain import KMH_PER_MPS
+from automotive_cosim.contracts.plain import KMH_PER_MPS, RARE
 
 STANDING_BELOW_MPS = 0.1
 """A slower vehicle is stationary, as in SUMO's count of halted vehicles."""
@@ -192,10 +192,10 @@ class RoadAhead:
     divided by the limit, as reported by a live-traffic service."""
     incidents: tuple[RoadIncident, ...] = ()
     """Incidents anywhere in the network that such a service reports now."""
-    next_sign: str = ""
-    """The next stop or give-way sign on the route, ``"stop"`` or ``"give_way"``, and its distance; empty and None
+    next_sign: str | None = field(default=None, metadata=RARE)
+    """The next stop or give-way sign on the route, ``"stop"`` or ``"give_way"``, and its distance, metres; None
     if the map has none."""
-    sign_distance_m: float | None = None
+    sign_distance_m: float | None = field(default=None, metadata=RARE)
 
     @property
     def delay_min(self) -> int:

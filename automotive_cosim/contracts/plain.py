@@ -9,6 +9,9 @@ from typing import Any
 KMH_PER_MPS = 3.6
 MPH_PER_MPS = 3600 / 1609.344
 
+RARE = {"rare": True}
+"""Metadata of a field that traces leave out where it is None: it came later than traces on record."""
+
 Json = dict[str, Any]
 """A JSON object: the edge of the package, where types end."""
 

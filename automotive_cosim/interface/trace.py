@@ -11,10 +11,11 @@ import json
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache, lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 from automotive_cosim.cockpit.actions import to_json
 from automotive_cosim.contracts import Action, BoundingBox, Element, Feedback, Json
+from automotive_cosim.contracts.plain import RARE
 from automotive_cosim.cosim.moment import Moment
 
 STATES = ("traffic", "signals", "elements")
@@ -122,16 +123,28 @@ def plain(value: Any) -> Any:
         return value
     names = _names(kind)
     if names is not None:
-        return {name: plain(getattr(value, name)) for name in names}
+        made = {name: plain(getattr(value, name)) for name in names.every}
+        for name in names.rare:
+            if made[name] is None:
+                del made[name]
+        return made
     if isinstance(value, tuple | list):
         return [plain(entry) for entry in value]
     return value
 
 
+class _Names(NamedTuple):
+    every: tuple[str, ...]
+    rare: tuple[str, ...]
+
+
 @cache
-def _names(kind: type) -> tuple[str, ...] | None:
+def _names(kind: type) -> _Names | None:
     """The fields of a dataclass; None of any other class."""
-    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None
+    if not is_dataclass(kind):
+        return None
+    rare = tuple(field.name for field in fields(kind) if field.metadata == RARE)
+    return _Names(tuple(field.name for field in fields(kind)), rare)
 
 
 _ENCODER = json.JSONEncoder(sort_keys=True, separators=(",", ":"), ensure_ascii=False, allow_nan=False)

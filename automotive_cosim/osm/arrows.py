@@ -34,11 +34,11 @@ NO_ARROW = frozenset(("", "none"))
 KNOWN = TURNS.keys() | MERGES | NO_ARROW
 """The values of a lane."""
 
-Lanes = tuple[frozenset[str], ...]
+LaneArrows = tuple[frozenset[str], ...]
 """The arrows of each lane, from the left."""
 
 
-def arrows_of(tags: Mapping[str, str], end: str, may: Directions) -> Lanes:
+def arrows_of(tags: Mapping[str, str], end: str, may: Directions) -> LaneArrows:
     """Those of a direction of ``access.ENDS``; empty if the tags have none, or arrows on no lane."""
     text = tags.get(f"turn:lanes:{end}", "")
     if not text and not may.is_two_way:
@@ -77,7 +77,7 @@ def for_netconvert(
     return told
 
 
-Built = Sequence[Sequence[tuple[str, str]]]
+BuiltLanes = Sequence[Sequence[tuple[str, str]]]
 """The connections of each lane from the left: the letter and the edge that it leads onto."""
 
 
@@ -88,7 +88,7 @@ def _mirror(word: re.Match[str]) -> str:
     return "left" if word[0] == "right" else "right"
 
 
-def leads_there(lanes: Lanes, built: Built) -> bool:
+def leads_there(lanes: LaneArrows, built: BuiltLanes) -> bool:
     """Whether the lanes of an edge lead where their arrows point, and nowhere else.
 
     By the angles of the roads, or by their order where a road parts: what a mapper calls left and right there,
@@ -105,7 +105,7 @@ def leads_there(lanes: Lanes, built: Built) -> bool:
     return by_angle or _in_order(pairs, built)
 
 
-def _in_order(pairs: Sequence[tuple[frozenset[str], Sequence[tuple[str, str]]]], built: Built) -> bool:
+def _in_order(pairs: Sequence[tuple[frozenset[str], Sequence[tuple[str, str]]]], built: BuiltLanes) -> bool:
     """Whether each lane leads onto the roads that are as far to the left among all as its arrows."""
     if not all(arrows and arrows <= TURNS.keys() for arrows, _ in pairs):
         return False

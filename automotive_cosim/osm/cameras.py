@@ -11,7 +11,7 @@ from itertools import islice
 import shapely
 
 from automotive_cosim.osm.access import ENDS
-from automotive_cosim.osm.extract import Camera, Extract
+from automotive_cosim.osm.extract import Extract, MappedCamera
 from automotive_cosim.osm.facing import ALONG_DEG, bearing_deg, facing, turned_deg
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.network import Edge, Network
@@ -32,7 +32,7 @@ class Cameras:
     told: dict[str, list[int]] = field(default_factory=dict)
     """Nodes of cameras about which something is to be told, by what."""
 
-    def tell(self, what: str, camera: Camera) -> None:
+    def tell(self, what: str, camera: MappedCamera) -> None:
         """Notes something about one."""
         self.told.setdefault(what, []).append(camera.node)
 
@@ -75,7 +75,7 @@ _Near = Sequence[tuple[Edge, shapely.LineString]]
 
 
 def _watched(
-    camera: Camera, near: _Near, point: shapely.Point, network: Network, found: Cameras, *, is_joint: bool
+    camera: MappedCamera, near: _Near, point: shapely.Point, network: Network, found: Cameras, *, is_joint: bool
 ) -> _Near:
     """The edges whose traffic a camera watches, of those near it, the nearest first."""
     nearest = near[0][0]

@@ -158,7 +158,7 @@ def _of_arrows(extract: Extract, roads: Mapping[int, MappedRoad], built: Built) 
                 yield way, f"{key}={way.tags[key]}"
 
 
-def _leads_there(edge: Edge, wanted: arrows.Lanes, built: Built, roads: Mapping[int, MappedRoad]) -> bool:
+def _leads_there(edge: Edge, wanted: arrows.LaneArrows, built: Built, roads: Mapping[int, MappedRoad]) -> bool:
     """Whether an edge at the end of a way leads where its arrows say; one without a choice does if it goes on into
     a road with arrows of its own."""
     links = built.links.of.get(edge.edge_id, ())

@@ -82,18 +82,18 @@ class Relation:
     members: tuple[tuple[str, int, str], ...]
 
 
-Course = tuple[Position, Position]
+Passage = tuple[Position, Position]
 """Where watched traffic comes from and goes to."""
 
 
 @dataclass(frozen=True, slots=True)
-class Camera:
+class MappedCamera:
     """A speed camera, on a road or beside it."""
 
     node: int
     position: Position
     tags: Mapping[str, str]
-    courses: tuple[Course, ...] = ()
+    courses: tuple[Passage, ...] = ()
     """The traffic that it watches, by the enforcement relations of which it is the device."""
 
 
@@ -105,7 +105,7 @@ class Extract:
     """Those that cars may drive, in the order of their ids."""
     nodes: Mapping[int, Node]
     restrictions: tuple[Relation, ...]
-    cameras: tuple[Camera, ...] = ()
+    cameras: tuple[MappedCamera, ...] = ()
     ground: tuple[MappedArea, ...] = ()
     """Water, green and buildings, wherever in the extract."""
     closed: tuple[OsmWay, ...] = ()
@@ -193,9 +193,9 @@ def read(source: Path) -> Extract:
 
 def _watching(
     tagged: Mapping[int, Node], relations: Iterable[Relation], nodes: Mapping[int, Node], ways: Mapping[int, OsmWay]
-) -> Iterator[Camera]:
+) -> Iterator[MappedCamera]:
     """The nodes tagged as speed cameras, and the devices of relations that enforce a limit, with what these say."""
-    cameras, courses = dict(tagged), dict[int, list[Course]]()
+    cameras, courses = dict(tagged), dict[int, list[Passage]]()
 
     def place(kind: str, ref: int) -> Position | None:
         if kind == "w" and ref in ways:
@@ -216,7 +216,7 @@ def _watching(
             course = product(roles.get("from", here), roles.get("to", here))
             courses.setdefault(ref, []).extend((start, goal) for start, goal in course if start != goal)
     for ref, node in sorted(cameras.items()):
-        yield Camera(ref, node.position, node.tags, tuple(courses.get(ref, ())))
+        yield MappedCamera(ref, node.position, node.tags, tuple(courses.get(ref, ())))
 
 
 LIMITS_ENFORCED = frozenset(("maxspeed", "average_speed"))

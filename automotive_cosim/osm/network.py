@@ -19,7 +19,7 @@ from automotive_cosim.osm.extract import Extract
 from automotive_cosim.osm.links import Links, read_links, with_stops
 from automotive_cosim.osm.repair import open_traps
 from automotive_cosim.osm.roads import MappedRoad, id_of, way_of
-from automotive_cosim.osm.signs import STOP, Joints, Signs, dark, followed, patches, read_signs
+from automotive_cosim.osm.signs import STOP, Joints, MappedSigns, dark, followed, patches, read_signs
 from automotive_cosim.osm.turns import Ban, BannedTurns, read_turns
 from automotive_cosim.traffic.network import DERESTRICTED_MPS, SIGN, TIMED_TURN, Edge, Network, read_network
 from automotive_cosim.traffic.posted import sign_mps
@@ -62,7 +62,7 @@ class Built:
     """The roads, and the barriers at which they were cut."""
     turns: BannedTurns
     """The turn restrictions, as read for cars."""
-    signs: Signs
+    signs: MappedSigns
     """Its stop and give-way signs."""
     cameras: Cameras
     """Its speed cameras."""

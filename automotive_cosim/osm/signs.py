@@ -142,7 +142,7 @@ class Joints:
 
 
 @dataclass(slots=True)
-class Signs:
+class MappedSigns:
     """The signs of a map, and what netconvert is told of them."""
 
     approaches: dict[Approach, tuple[str, list[int]]] = field(default_factory=dict)
@@ -163,9 +163,9 @@ class Signs:
         self.left_out.setdefault(why, []).extend(nodes)
 
 
-def read_signs(joints: Joints) -> Signs:
+def read_signs(joints: Joints) -> MappedSigns:
     """The signs of a map, each with its approach."""
-    signs, every = Signs(), set[int]()
+    signs, every = MappedSigns(), set[int]()
     for ref, node in joints.nodes.items():
         kind, stop = node.tags.get("highway", ""), node.tags.get("stop", "")
         if kind not in KINDS or ref not in joints.at:
@@ -183,7 +183,7 @@ def read_signs(joints: Joints) -> Signs:
     return signs
 
 
-def _place(kind: str, ref: int, tags: Mapping[str, str], joints: Joints, signs: Signs) -> list[Approach]:
+def _place(kind: str, ref: int, tags: Mapping[str, str], joints: Joints, signs: MappedSigns) -> list[Approach]:
     """Finds the approaches of a sign on a road; if no direction is said, it is for the nearest junction."""
     told = facing(tags, kind)
     ends: tuple[str, ...] = ENDS
@@ -207,7 +207,7 @@ def _place(kind: str, ref: int, tags: Mapping[str, str], joints: Joints, signs: 
     return [approach for _, approach in found]
 
 
-def _rule(joints: Joints, signs: Signs, every: set[int]) -> None:
+def _rule(joints: Joints, signs: MappedSigns, every: set[int]) -> None:
     """Says which junctions get a type, and at which the approaches get priorities."""
     signals = [node.position for ref, node in joints.nodes.items() if joints.has_signal(ref)]
 
@@ -234,7 +234,7 @@ def _rule(joints: Joints, signs: Signs, every: set[int]) -> None:
     signs.types = {ref: kind for ref, kind in wanted.items() if ref in joints.nodes and is_free(ref)}
 
 
-def patches(signs: Signs, first_number: int) -> dict[str, str]:
+def patches(signs: MappedSigns, first_number: int) -> dict[str, str]:
     """What netconvert is told of the signs, by the option that takes it; empty without any.
 
     Args:
@@ -253,7 +253,7 @@ def patches(signs: Signs, first_number: int) -> dict[str, str]:
     return {"--node-files": f"<nodes>{nodes}</nodes>", "--edge-files": f"<edges>{edges}</edges>"}
 
 
-def followed(signs: Signs, joints: Joints, links: Links, goals: Mapping[str, str]) -> dict[str, str]:
+def followed(signs: MappedSigns, joints: Joints, links: Links, goals: Mapping[str, str]) -> dict[str, str]:
     """The edges of a built network at whose end cars yield as a sign says, or are to stop, and its kind; the other
     signs are left out.
 

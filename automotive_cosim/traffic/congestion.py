@@ -267,7 +267,7 @@ class Route:
         eta_s = on_edge_m / leg.speed_mps + leg.time_after_s
         free_s = on_edge_m / leg.edge.speed_mps + leg.free_after_s
         next_sign = bisect_right(self._signs, position_m, key=lambda each: each[0])
-        sign_m, sign = self._signs[next_sign] if next_sign < len(self._signs) else (None, "")
+        sign_m, sign = self._signs[next_sign] if next_sign < len(self._signs) else (None, None)
         return make_ahead(
             left_m,
             eta_s,

@@ -89,7 +89,7 @@ def test_the_route_tells_how_far_the_camera_is(built: Built) -> None:
     signed = replace(built.network, edges=built.network.edges | {edge.edge_id: replace(edge, sign="stop")})
     ahead = Route([edge.edge_id], signed, Free()).ahead(0, 10.0, None)
     assert (ahead.next_sign, ahead.sign_distance_m) == ("stop", pytest.approx(edge.length_m - 10.0))
-    assert route.ahead(0, 10.0, None).next_sign == ""
+    assert route.ahead(0, 10.0, None).next_sign is None
 
 
 def test_a_crop_holds_what_lies_within(formats: dict[str, Path]) -> None:

@@ -91,7 +91,7 @@ class Road:
             action_step_length_s=1.0,
             background_rerouting=rerouting,
         )
-        return replace(opened, sumo=sumo)
+        return replace(opened, sumo=sumo, as_stated=False)
 
 
 @contextmanager

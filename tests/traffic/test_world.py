@@ -179,7 +179,8 @@ def test_vehicles_are_counted_as_sumo_counts_them(in_process: InProcess, hurried
 def test_an_ambulance_behind_is_seen(variant: Variant, hurried: EgoPlan) -> None:
     def ambulance(folder: Path) -> None:
         (folder / "grid.rou.xml").write_text("""<routes>
-            <vType id="ambulance" vClass="emergency" speedFactor="1.5" maxSpeed="40"/>
+            <vType id="ambulance" vClass="emergency" speedFactor="1.5" maxSpeed="40">
+                <param key="has.bluelight.device" value="true"/></vType>
             <vehicle id="help" type="ambulance" depart="75"><route edges="cwc0 c0c1 c1c2 c2c3 c3c4 c4ce"/></vehicle>
             </routes>""")
 
