@@ -2,11 +2,15 @@ import json
 
 import pytest
 
+from automotive_cosim.run import measure
+
 
 @pytest.mark.sumo
 @pytest.mark.slow
-def test_every_figure_is_there_and_a_fork_beats_a_reload(cli):
-    ran = cli("bench", "--json", "--scenario", "grid", "--steps", "200")
+def test_every_figure_is_there_and_a_fork_beats_a_reload(cli, monkeypatch):
+    monkeypatch.setattr(measure, "REPEATS", 1)
+    monkeypatch.setattr(measure, "RESETS", 3)
+    ran = cli("bench", "--json", "--scenario", "grid", "--steps", "100")
     assert (ran.code, ran.err) == (0, "")
     figures = json.loads(ran.out)
     assert figures["vehicles"] > 0

@@ -138,6 +138,7 @@ def mine(tmp_path, monkeypatch):
     return folder
 
 
+@pytest.mark.proof
 def test_the_rows_and_files_are_those_of_a_local_run(cluster, tmp_path):
     wanted = plan("oracle", "always-alert", seeds=[0, 1])
     with OnRay(cluster.address) as executor:

@@ -180,7 +180,7 @@ def test_others_lose_by_what_a_road_takes_longer_than_when_it_is_calm() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.long
+@pytest.mark.proof
 def test_routes_that_take_less_in_all_than_those_that_drivers_find(sumo: None, tmp_path: Path) -> None:
     """The neck of the main way carries less than comes, and the other way takes 83 s longer: drivers queue until
     that takes as long, though fewer of them on the main way would cost less in all."""
