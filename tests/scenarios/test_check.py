@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import shutil
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -182,10 +183,9 @@ def test_progress_is_told() -> None:
 
 @pytest.mark.proof
 @pytest.mark.sumo
+@pytest.mark.timeout(1200)
 @pytest.mark.parametrize("name", scenarios.shipped())
-def test_every_shipped_scenario_holds(name: str) -> None:
-    """In steps of a second, as the others act; in the scenarios' own, of a tenth, CI checks one in turn.
-
-    The hour of traffic is looked at in ``tests/sumo_scenarios``.
-    """
-    assert _failing(check(_coarse(open_scenario(name)), quick=True)) == {}
+@pytest.mark.parametrize("steps", [_coarse, lambda scenario: scenario], ids=["of a second", "its own"])
+def test_every_shipped_scenario_holds(name: str, steps: Callable[[Scenario], Scenario]) -> None:
+    """The hour of traffic is looked at in ``tests/sumo_scenarios``."""
+    assert _failing(check(steps(open_scenario(name)), quick=True)) == {}
