@@ -222,7 +222,7 @@ def test_agents_that_count_or_look_around_never_know_the_second_half_nor_the_job
 @pytest.mark.sumo
 def test_an_episode_that_takes_too_long_is_ended_when_its_wall_time_is_over(trouble):
     began_s = time.monotonic()
-    run_plan(plan("oracle", limits={"wall_s": 0.1, "agent_s": 0.1, "model_s": 0.1}), trouble / "e", retries=0)
+    run_plan(plan("oracle", limits={"wall_s": 0.01, "agent_s": 0.01, "model_s": 0.01}), trouble / "e", retries=0)
     assert time.monotonic() - began_s < 60
     (row,) = read_rows(trouble / "e", EpisodeRow).values()
     assert (row.error_kind, row.success) == ("WallTime", None)
