@@ -42,7 +42,7 @@ CEILINGS = {
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
-    "models": (2083, 24, 0),
+    "models": (2081, 24, 0),
     "osm": (6006, 43, 0),
     "proof": (2958, 15, 0),
     "publish": (1596, 9, 0),
@@ -58,7 +58,7 @@ CEILINGS = {
     "tasking": (4166, 120, 0),
     "tasks": (29394, 1, 0),
     "tests": (57918, 116, 0),
-    "traffic": (11605, 83, 0),
+    "traffic": (11606, 83, 0),
     "beside them": (299, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""

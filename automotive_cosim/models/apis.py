@@ -330,9 +330,7 @@ class Gemini:
         return replace(found, reasoning=reasoning, tokens_reasoning=thoughts, tokens_cached=cached)
 
 
-_ENDS = dict.fromkeys(("stop", "end_turn", "tool_use"), "stop") | dict.fromkeys(
-    ("max_tokens", "max_output_tokens"), "length"
-)
+_ENDS = {"end_turn": "stop", "tool_use": "stop", "max_tokens": "length", "max_output_tokens": "length"}
 """The providers' words for an answer that ended by itself or was cut off; any other word is kept."""
 
 

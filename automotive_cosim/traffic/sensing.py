@@ -114,13 +114,14 @@ class Sensor:
         else:
             self._is_opposite = False
             if (edge_id,) != self.route.edge_ids[index : index + 1]:
-                if tuple(edges := sumo.route(ego)) != self.route.edge_ids:
+                edges = sumo.route(ego)
+                if tuple(edges) != self.route.edge_ids:
                     self.refresh()  # a rerouter of the scenario's has sent it another way
                 self._is_opposite = edge_id != edges[index]
-            if self._is_opposite:
-                odometer_m -= lane_position_m
-                edge_id, lane_id, lane_position_m = self._own_side(edges[index], lane_position_m)
-                odometer_m += lane_position_m
+                if self._is_opposite:
+                    odometer_m -= lane_position_m
+                    edge_id, lane_id, lane_position_m = self._own_side(edges[index], lane_position_m)
+                    odometer_m += lane_position_m
             self._edge = self._network.edges[edge_id]
             self.position_m = self.route.position_m(index, lane_position_m)
         self._odometer_m, self.on_edge_m = odometer_m, lane_position_m
