@@ -65,6 +65,24 @@ def test_what_lacks_is_told_as_what_is_and_what_should_be(check: Check, words: s
     assert missing(check, start, moment(), [start]) == words
 
 
+@pytest.mark.parametrize(
+    ("check", "short_pct", "enough_pct"),
+    [
+        (SignalIs(FAN, (100.0,)), 99.0, 100.0),
+        (SignalRaised(FAN, 20.0), 49.0, 50.0),
+        (SignalLowered(FAN, 10.0), 21.0, 20.0),
+        (SignalWithin(FAN, 40.0, 60.0), 39.0, 40.0),
+        (SignalWithin(FAN, 40.0, 60.0), 61.0, 60.0),
+        (SignalChanged(FAN), 30.0, 31.0),
+    ],
+)
+def test_a_signal_holds_from_its_bound_on(check: Check, short_pct: float, enough_pct: float) -> None:
+    start = moment()
+    for fan_pct, holds in ((short_pct, False), (enough_pct, True)):
+        now = SimpleNamespace(signals=start.signals | {FAN.path: fan_pct}, commands=start.commands)
+        assert check.holds(start, now, [start, now]) is holds, fan_pct
+
+
 def test_a_wrong_alert_is_told() -> None:
     start, now = moment(), moment(alerts=[alert(AlertKind.SPEED, 80.0)])
     told_of = missing(AlertGiven(AlertKind.SPEED, 50.0), start, now, [start, now])
