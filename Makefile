@@ -70,6 +70,7 @@ $(VENV)/.%: pyproject.toml constraints.txt
 	@$(PIP) install --quiet -c constraints.txt uv || true
 	@echo "$$(date +%T) $(NEEDS)"
 	@index=$$($(PIP) config list | sed -n "s/.*\.index-url='\(.*\)'/\1/p" | tail -1); \
-	    $(BIN)/uv pip install --python $(BIN)/python $${index:+--default-index "$$index"} $(WHAT) || $(PIP) install $(WHAT)
+	    $(BIN)/uv pip install --python $(BIN)/python $${index:+--default-index "$$index"} $(WHAT) || \
+	    { echo "$$(date +%T) uv could not; pip installs the same, which takes longer"; $(PIP) install $(WHAT); }
 	@touch $@ $(VENV)/.run $(if $(filter dev,$*),$(VENV)/.test)
 	@echo "$$(date +%T) set up"

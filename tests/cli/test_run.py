@@ -148,7 +148,6 @@ def test_a_signal_keeps_what_was_recorded_and_ends_every_process(
     until(lambda: not session(long_run.pid))
 
 
-@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 def test_a_kill_keeps_the_steps_and_leaves_no_process(long_run, tmp_path, until, session):
     long_run.kill()
     long_run.communicate()

@@ -190,7 +190,6 @@ PRINTS = ("--help", "agents list --json", "show signals", "show drives", "show s
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(sys.platform != "linux", reason="forks, and asks for /dev/full")
 def test_no_command_ends_with_a_traceback_whatever_its_output_and_names(tmp_path: Path) -> None:
     """A name that is neither ASCII nor UTF-8, for every command; some that print, with every output."""
     every = [command for command in every_command() if command]

@@ -55,7 +55,6 @@ print(json.dumps({"figures": figures, "left": len(tree(os.getpid())) - 1}))
 
 @pytest.mark.proof
 @pytest.mark.sumo
-@pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
 def test_two_hundred_episodes_leave_nothing() -> None:
     ran = subprocess.run([sys.executable, "-c", PROGRAM], capture_output=True, text=True, check=True)
     found = json.loads(ran.stdout)

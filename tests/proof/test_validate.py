@@ -146,7 +146,6 @@ def test_another_plan_or_a_changed_task_wants_another_folder(validate, whole, tm
 @pytest.mark.long
 @pytest.mark.sumo
 @pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 @pytest.mark.parametrize("how", ["kill", "ctrl-c"])
 def test_however_it_is_ended_no_worker_is_left_and_the_command_goes_on(
     command, program, tmp_path, until, session, how

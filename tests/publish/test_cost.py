@@ -4,7 +4,6 @@ import gzip
 import json
 import lzma
 import os
-import sys
 import time
 import zipfile
 from dataclasses import replace
@@ -26,8 +25,6 @@ from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.jobs import DriveJob
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.store import read_rows, trace_file
-
-linux = pytest.mark.skipif(sys.platform != "linux", reason="limits memory on Linux")
 
 
 def lists(most_values: int) -> bytes:
@@ -68,9 +65,8 @@ def refuses() -> None:
 def test_a_call_that_takes_too_much_memory_is_refused_and_the_next_one_is_answered(tmp_path):
     (tmp_path / "b").write_bytes(b"small")
     with LimitedProcesses(tmp_path / "b") as processes:
-        if sys.platform == "linux":
-            with pytest.raises(UserError, match="more memory or processor time than a file of its size"):
-                processes.call(takes, 2 * limited.FREE_BYTES >> 20)
+        with pytest.raises(UserError, match="more memory or processor time than a file of its size"):
+            processes.call(takes, 2 * limited.FREE_BYTES >> 20)
         assert processes.call(takes, 100) == 100 << 20
         assert list(processes.map(takes, [1, 2, 3])) == [1 << 20, 2 << 20, 3 << 20]
         with pytest.raises(UserError, match="not this"):
@@ -80,7 +76,6 @@ def test_a_call_that_takes_too_much_memory_is_refused_and_the_next_one_is_answer
 
 
 @pytest.mark.slow
-@linux
 def test_a_larger_file_may_take_more(tmp_path, monkeypatch):
     monkeypatch.setattr(limited, "FREE_BYTES", 2**28)
     with (tmp_path / "b").open("wb") as file:

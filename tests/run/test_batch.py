@@ -7,7 +7,6 @@ from collections import Counter
 from contextlib import nullcontext
 from dataclasses import replace
 from functools import partial
-from pathlib import Path
 
 import pytest
 
@@ -204,7 +203,6 @@ def test_what_an_agent_does_is_its_own_failure_and_nobody_elses_error(trouble):
 
 @pytest.mark.sumo
 @pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 def test_agents_that_count_or_look_around_never_know_the_second_half_nor_the_job(trouble, monkeypatch):
     for name in ("PYTEST_CURRENT_TEST", ADDRESS):
         monkeypatch.delenv(name)
@@ -293,7 +291,6 @@ def test_a_disk_that_is_full_stops_the_run_and_the_command_goes_on(tmp_path, mon
 
 @pytest.mark.sumo
 @pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 def test_a_kill_loses_at_most_the_running_episodes(program, trouble, until, session):
     wanted = plan("trouble:Held", seeds=[0, 1], repeats=2, limits={"steps": 2})
     script = (

@@ -204,7 +204,6 @@ class Marks(RulePerfect):
 @pytest.mark.slow
 @pytest.mark.long
 @pytest.mark.proof
-@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 def test_an_evaluation_killed_in_the_middle_of_a_drive_resumes_to_the_same_rows_and_traces(
     program: Callable[..., subprocess.Popen[str]],
     until: Callable[[Callable[[], object]], None],

@@ -260,7 +260,6 @@ def test_every_episode_has_an_empty_folder_that_goes_with_it(outside, mine):
     assert sorted(path.name for path in mine.iterdir() if path.suffix == ".py") == ["mine.py"]
 
 
-@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
 def test_nothing_that_an_agent_starts_outlives_it(outside):
     agent = outside("Forks")
     pids = agent.act(None).text.split(",")
@@ -402,7 +401,6 @@ def test_reading_and_answering_have_one_limit(outside, observation):
         agent.act(observation("x", screenshot=screen))
 
 
-@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
 @pytest.mark.parametrize("how", ["kill", "stop"])
 def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(outside, monkeypatch, until, how):
     monkeypatch.setattr("automotive_cosim.run.fork_server.END_S", 1.0)
@@ -420,7 +418,6 @@ def test_nothing_outlives_an_agent_that_turns_on_the_process_it_was_forked_from(
     assert outside("Counts", "next").act(None).text.startswith("[1")
 
 
-@pytest.mark.skipif(not Path("/proc/self/task").is_dir(), reason="Linux finds orphans")
 def test_a_long_chain_of_processes_ends_too(outside):
     agent = outside("Chains", step_s=1.0)
     agent.channels  # noqa: B018, starts it
@@ -514,7 +511,6 @@ def test_one_that_cannot_be_made_is_told_before_anything_runs(mine, fork_server,
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not Path("/proc").is_dir(), reason="looks at /proc")
 def test_nothing_is_left_of_a_worker_that_was_killed(program, mine, until):
     (mine / "go.py").write_text(
         "import sys; from automotive_cosim.run.fork_server import ForkServer\n"

@@ -26,8 +26,6 @@ pytestmark = pytest.mark.sumo
 
 Variant = Callable[[Callable[[Path], None]], Scenario]
 
-linux = pytest.mark.skipif(sys.platform != "linux", reason="looks at processes through /proc")
-
 
 @pytest.fixture(scope="module")
 def forked(grid: Scenario) -> Iterator[Forked]:
@@ -61,7 +59,6 @@ def open_files(pid: int) -> int:
 # --- processes --------------------------------------------------------------------------------------------
 
 
-@linux
 def test_a_killed_drive_is_named_and_the_next_departs(forked: Forked, hurried: EgoPlan) -> None:
     traffic = forked.depart(hurried)
     expected = traffic.branch()
@@ -77,7 +74,6 @@ def test_a_killed_drive_is_named_and_the_next_departs(forked: Forked, hurried: E
     expected.close()
 
 
-@linux
 def test_a_warm_process_that_died_between_drives_costs_a_reload(grid: Scenario, hurried: EgoPlan) -> None:
     short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
     with closing(Forked(short, seed=1)) as simulation:
@@ -91,7 +87,6 @@ def test_a_warm_process_that_died_between_drives_costs_a_reload(grid: Scenario, 
                 assert traffic.advance(5.0) == expected
 
 
-@linux
 def test_a_warm_process_that_dies_as_it_is_copied_costs_a_reload(grid: Scenario, hurried: EgoPlan) -> None:
     short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
     with closing(Forked(short, seed=1)) as simulation:
@@ -105,7 +100,6 @@ def test_a_warm_process_that_dies_as_it_is_copied_costs_a_reload(grid: Scenario,
         assert simulation._source._warm is not warm
 
 
-@linux
 def test_what_was_asked_of_a_warm_process_is_asked_of_the_next(grid: Scenario, hurried: EgoPlan) -> None:
     short = replace(grid, sumo=replace(grid.sumo, warm_up_s=10.0))
     with closing(Forked(short, seed=1)) as simulation:
@@ -119,7 +113,6 @@ def test_what_was_asked_of_a_warm_process_is_asked_of_the_next(grid: Scenario, h
             assert (traffic.state, traffic.others()) == expected
 
 
-@linux
 def test_a_hung_drive_is_ended_in_time(grid: Scenario, hurried: EgoPlan) -> None:
     simulation = Forked(grid, seed=1, timeout_s=1.0)
     traffic = simulation.depart(hurried)
@@ -132,7 +125,6 @@ def test_a_hung_drive_is_ended_in_time(grid: Scenario, hurried: EgoPlan) -> None
     simulation.close()
 
 
-@linux
 def test_a_drive_that_waits_for_a_processor_is_waited_for(grid: Scenario, hurried: EgoPlan) -> None:
     with closing(Forked(grid, seed=1, timeout_s=1.0)) as simulation, closing(simulation.depart(hurried)) as traffic:
         expected = traffic.branch()
@@ -159,7 +151,6 @@ def test_a_silent_process_that_does_not_work_hangs(
     assert [silence.may_last() for _ in told][-1] is False
 
 
-@linux
 def test_a_crash_says_what_it_was(forked: Forked, hurried: EgoPlan) -> None:
     traffic = forked.depart(hurried)
     os.kill(traffic.pid, signal.SIGSEGV)
@@ -168,7 +159,6 @@ def test_a_crash_says_what_it_was(forked: Forked, hurried: EgoPlan) -> None:
     traffic.close()
 
 
-@linux
 def test_a_lost_warm_process_is_started_again(grid: Scenario, hurried: EgoPlan) -> None:
     simulation = Forked(grid, seed=1)
     traffic = simulation.depart(hurried)
@@ -183,7 +173,6 @@ def test_a_lost_warm_process_is_started_again(grid: Scenario, hurried: EgoPlan) 
     simulation.close()
 
 
-@linux
 def test_thirty_drives_leave_nothing_behind(grid: Scenario, hurried: EgoPlan) -> None:
     simulation = Forked(grid, seed=1)
     traffic = simulation.depart(hurried)
@@ -228,7 +217,6 @@ except KeyboardInterrupt:
 """
 
 
-@linux
 @pytest.mark.parametrize("how", [signal.SIGKILL, signal.SIGINT])
 def test_no_process_outlives_the_program(
     program: Callable[..., subprocess.Popen[str]], how: signal.Signals
