@@ -241,7 +241,7 @@ def data_of_others() -> Callable[[str], Path]:
 
     def find(name: str) -> Path:
         folder = os.environ.get(OTHERS)
-        if folder is None:
+        if not folder:
             pytest.skip(f"{OTHERS} is not set: the folder with the networks, maps and counts of others")
         if not (found := Path(folder) / name).exists():
             pytest.skip(f"{found} is not there")
