@@ -30,7 +30,7 @@ CEILINGS = {
     "benchmarks": (1818, 16, 0),
     "calibration": (2217, 22, 0),
     "cli": (4926, 14, 320),
-    "cockpit": (19538, 185, 0),
+    "cockpit": (19242, 185, 0),
     "contracts": (1404, 60, 0),
     "cosim": (494, 3, 0),
     "doors": (1793, 18, 0),
