@@ -43,7 +43,7 @@ CEILINGS = {
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
     "models": (2081, 24, 0),
-    "osm": (6006, 43, 0),
+    "osm": (6022, 43, 0),
     "proof": (2958, 15, 0),
     "publish": (1596, 9, 0),
     "replay": (188, 1, 0),
@@ -57,8 +57,8 @@ CEILINGS = {
     "studies": (7781, 69, 0),
     "tasking": (4166, 120, 0),
     "tasks": (29394, 1, 0),
-    "tests": (57950, 116, 0),
-    "traffic": (11606, 83, 0),
+    "tests": (57952, 116, 0),
+    "traffic": (11608, 83, 0),
     "beside them": (299, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
