@@ -6,13 +6,13 @@ blocks everyone else. The bounds are those of a lane's saturation flow and, at f
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections import defaultdict
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from automotive_cosim.formats.files import opened
+from automotive_cosim.errors import CountsError
+from automotive_cosim.formats.xml import scan
 
 LANE_PER_H = 1800.0
 """Saturation flow of a lane, vehicles per hour: SUMO's default driver keeps about two seconds."""
@@ -45,17 +45,34 @@ def read_capacity(net: Path, additional: Iterable[Path] = ()) -> Capacity:
     Args:
         net: the network's file.
         additional: files that may hold other signal programs, as SUMO loads them.
+
+    Raises:
+        CountsError: one is no XML.
     """
     lanes: dict[str, int] = {}
     links: list[dict[str, str]] = []
     programs: dict[str, list[tuple[float, str]] | None] = {}
-    for element in _elements((net, *additional)):
-        if element.tag == "edge" and element.get("function", "normal") == "normal":
-            lanes[element.attrib["id"]] = len(element.findall("lane"))
-        elif element.tag == "connection" and "from" in element.attrib:
-            links.append(dict(element.attrib))
-        elif element.tag == "tlLogic":
-            programs[element.attrib["id"]] = _program(element)
+    edge = program = ""
+
+    def start(tag: str, attributes: dict[str, str], line: int) -> None:
+        nonlocal edge, program
+        match tag:
+            case "edge":
+                edge = attributes["id"] if attributes.get("function", "normal") == "normal" else ""
+                if edge:
+                    lanes[edge] = 0
+            case "lane" if edge:
+                lanes[edge] += 1
+            case "connection" if "from" in attributes:
+                links.append(attributes)
+            case "tlLogic":
+                program = attributes["id"]
+                programs[program] = [] if attributes.get("type", "static") == "static" else None
+            case "phase" if (phases := programs.get(program)) is not None:
+                phases.append((float(attributes.get("duration", 0)), attributes.get("state", "")))
+
+    for path in (net, *additional):
+        scan(path, start, error=CountsError)
     turns: dict[Movement, float] = defaultdict(float)
     of_lane: dict[tuple[str, str], float] = defaultdict(float)
     for link in links:
@@ -69,22 +86,6 @@ def read_capacity(net: Path, additional: Iterable[Path] = ()) -> Capacity:
     for (edge, _), per_h in of_lane.items():
         edges[edge] += per_h
     return Capacity({edge: edges.get(edge) or count * LANE_PER_H for edge, count in lanes.items()}, dict(turns))
-
-
-def _elements(files: Iterable[Path]) -> Iterator[ET.Element]:
-    for path in files:
-        with opened(path) as stream:
-            for _, element in ET.iterparse(stream):
-                yield element
-                if element.tag in ("edge", "connection", "tlLogic", "junction"):
-                    element.clear()
-
-
-def _program(element: ET.Element) -> list[tuple[float, str]] | None:
-    """Durations and states; None if the green times are not fixed."""
-    if element.get("type", "static") != "static":
-        return None
-    return [(float(phase.get("duration", 0)), phase.get("state", "")) for phase in element.findall("phase")]
 
 
 def _of_link(link: Mapping[str, str], programs: Mapping[str, list[tuple[float, str]] | None]) -> float:

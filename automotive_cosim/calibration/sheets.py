@@ -12,16 +12,17 @@ import codecs
 import csv
 import io
 import re
+import zipfile
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime, time
+from importlib.util import find_spec
 from pathlib import Path
 
 from automotive_cosim.errors import CountsError, SetupError, install_hint
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import opened
-
-MOST_BYTES = 2**28
-"""A year of one of Paris' detectors has a megabyte."""
+from automotive_cosim.formats.limited import read_limited
 
 WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 """How .xlsx and .ods begin, which are archives, and .xls."""
@@ -88,7 +89,10 @@ def _tables(path: Path) -> Iterator[tuple[Cells, bool]]:
     """What the file may mean, and whether its decimals may have commas."""
     data = _data(path)
     if data.startswith(WORKBOOKS):
-        yield from ((cells, False) for cells in _workbook(path, data))
+        if find_spec("python_calamine") is None:
+            hint = install_hint("import")
+            raise SetupError(f"{path} is a workbook, which requires python-calamine: {hint}, or save it as CSV")
+        yield from ((cells, False) for cells in read_limited(_workbook, path, bounds.WORKBOOK, CountsError))
     else:
         text = _text(path, data)
         for delimiter in DELIMITERS:
@@ -116,12 +120,12 @@ def _column(name: str, known: Collection[str]) -> str:
 def _data(path: Path) -> bytes:
     try:
         with opened(path) as file:
-            data = file.read(MOST_BYTES + 1)
+            data = file.read(bounds.TABLE_BYTES + 1)
     except OSError as error:
         reason = getattr(error, "strerror", None) or error
         raise CountsError(f"{path} cannot be read ({reason}); give a table of counts") from error
-    if len(data) > MOST_BYTES:
-        raise CountsError(f"{path} is larger than {MOST_BYTES // 2**20} MB; give the rows of fewer detectors")
+    if len(data) > bounds.TABLE_BYTES:
+        raise _too_large(path, f"is larger than {bounds.TABLE_BYTES / 2**20:g} MB")
     return data
 
 
@@ -142,34 +146,69 @@ def _text(path: Path, data: bytes) -> str:
 def _separated(path: Path, text: str, delimiter: str) -> Cells:
     """The lines of a text; a row whose cell has a line break counts as one."""
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=delimiter, skipinitialspace=True)
+    left, cells = bounds.CELLS, []
     try:
-        return [[cell.strip() for cell in line] for line in reader]
+        for line in reader:
+            left -= len(line)
+            if left < 0:
+                raise _too_large(path, f"has over {bounds.CELLS:,} cells")
+            cells.append([cell.strip() for cell in line])
+        return cells
     except csv.Error as error:
         raise CountsError(f"{path} line {reader.line_num}: {error}; give a table of counts") from error
 
 
-def _workbook(path: Path, data: bytes) -> Iterator[Cells]:
-    """The visible sheets."""
+def _too_large(path: Path, why: str) -> CountsError:
+    return CountsError(f"{path} {why}; give the rows of fewer detectors")
+
+
+def _workbook(path: Path) -> list[Cells]:
+    """The visible sheets; runs in a process with limits, since only its library knows what it unpacks to."""
+    from python_calamine import CalamineError, CalamineWorkbook, SheetVisibleEnum, ZipError
+
+    _refuse_bomb(path)
+    sheets: list[Cells] = []
+    left = bounds.CELLS, bounds.CELL_BYTES
     try:
-        from python_calamine import CalamineError, CalamineWorkbook, SheetVisibleEnum, ZipError
-    except ImportError as error:
-        raise SetupError(
-            f"{path} is a workbook, which requires python-calamine: {install_hint('import')}, or save it as CSV"
-        ) from error
-    try:
-        book = CalamineWorkbook.from_filelike(io.BytesIO(data))
+        book = CalamineWorkbook.from_filelike(io.BytesIO(_data(path)))
         for about in book.sheets_metadata:
-            if about.visible == SheetVisibleEnum.Visible:
-                sheet = book.get_sheet_by_name(about.name)
-                cells = [[_told(cell) for cell in line] for line in sheet.to_python(skip_empty_area=False)]
-                for (top, left), (bottom, right) in sheet.merged_cell_ranges or ():
-                    for line in cells[top : bottom + 1]:
-                        line[left : right + 1] = [cells[top][left]] * len(line[left : right + 1])
-                yield cells
+            if about.visible != SheetVisibleEnum.Visible:
+                continue
+            sheet = book.get_sheet_by_name(about.name)
+            bottom, right = sheet.end or (-1, -1)
+            left = left[0] - (bottom + 1) * (right + 1), left[1]
+            if left[0] < 0:
+                raise _too_large(path, f"has over {bounds.CELLS:,} cells")
+            cells: list[list[str]] = []
+            for found in sheet.to_python(skip_empty_area=False):
+                cells.append([_told(cell) for cell in found])
+                left = left[0], left[1] - sum(map(len, cells[-1]))
+                if left[1] < 0:
+                    raise _too_large(path, f"has over {bounds.CELL_BYTES / 2**20:g} MB of text in its cells")
+            for (top, left_), (bottom, right) in sheet.merged_cell_ranges or ():
+                for line in cells[top : bottom + 1]:
+                    line[left_ : right + 1] = [cells[top][left_]] * len(line[left_ : right + 1])
+            sheets.append(cells)
     except (CalamineError, ZipError) as error:
         raise CountsError(
             f"{path} is not a workbook that can be read ({error}); save it as .xlsx or CSV"
         ) from error
+    return sheets
+
+
+def _refuse_bomb(path: Path) -> None:
+    """
+    Raises:
+        CountsError: what the workbook declares to hold is far more than it is.
+    """
+    try:
+        with opened(path) as file, zipfile.ZipFile(io.BytesIO(file.read())) as parts:
+            declared = sum(part.file_size for part in parts.infolist())
+    except (zipfile.BadZipFile, NotImplementedError, ValueError):
+        return  # .xls, which packs nothing; or damaged, which calamine says
+    most = max(bounds.FREELY_UNPACKED_BYTES, bounds.BOOK_TIMES * path.stat().st_size)
+    if declared > most:
+        raise _too_large(path, f"unpacks to over {most / 1e6:.0f} MB")
 
 
 def _told(cell: object) -> str:

@@ -17,7 +17,7 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 from collections import defaultdict
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
@@ -25,6 +25,7 @@ from pathlib import Path
 from automotive_cosim.calibration.sheets import Sheet
 from automotive_cosim.errors import CountsError
 from automotive_cosim.formats.files import opened
+from automotive_cosim.formats.xml import read_tree
 
 DETECTOR, MINUTES, CARS, LORRIES = "Detector", "Time", "qPKW", "qLKW"
 """Columns of dfrouter's table."""
@@ -165,16 +166,9 @@ def _lanes(path: Path, detectors: Path | None) -> dict[str, str]:
     return lanes
 
 
-def _elements(path: Path) -> Sequence[ET.Element]:
+def _elements(path: Path) -> Iterable[ET.Element]:
     """All elements, each before what it contains."""
-    try:
-        with opened(path) as file:
-            return list(ET.parse(file).getroot().iter())
-    except OSError as error:
-        reason = error.strerror or error
-        raise CountsError(f"{path} cannot be read ({reason}); give a file that is there") from error
-    except ET.ParseError as error:
-        raise CountsError(f"{path} is not XML ({error}); give the file as SUMO wrote it") from error
+    return read_tree(path, error=CountsError).iter()
 
 
 def _span(path: Path, element: ET.Element) -> tuple[float, float]:

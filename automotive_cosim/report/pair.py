@@ -17,7 +17,7 @@ from PIL import Image
 from automotive_cosim.cockpit.drawing import Canvas
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.theme import NIGHT, Colour, Type
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.files import read_bytes, write_whole
 from automotive_cosim.formats.layout import ROAD as ROAD_FILE
 from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.report.filmplot import speeds_plot
@@ -105,7 +105,7 @@ def write_pair(folder: Path, sides: Sequence[PairSide]) -> Path:
         sides=sides,
         outcomes=[outcome(side.result) for side in sides],
         parts=PARTS,
-        film=embedded(film.read_bytes()) if film.is_file() else None,
+        film=embedded(read_bytes(film)) if film.is_file() else None,
         records=[side.folder.relative_to(folder).as_posix() for side in sides],
     )
     write_whole(page, text)

@@ -21,8 +21,8 @@ import numpy as np
 import numpy.typing as npt
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats import files
 from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.xml import read_tree
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import (
@@ -261,8 +261,8 @@ def vehicle_types(configuration: Copied, inputs: Sequence[str] = ("route-files",
     found = []
     for name in inputs:
         for path in configuration.files.get(name, ()):
-            with files.opened(path) as file:
-                found += [ET.tostring(each, "unicode") for each in ET.parse(file).getroot().iter("vType")]
+            root = read_tree(path, error=ScenarioError)
+            found += [ET.tostring(each, "unicode") for each in root.iter("vType")]
     return "".join(found)
 
 

@@ -14,7 +14,6 @@ ratio, the price of anarchy, is at least the one printed.
 from __future__ import annotations
 
 import tempfile
-import xml.etree.ElementTree as ET
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from importlib.util import find_spec
@@ -24,7 +23,8 @@ from statistics import fmean, stdev
 import numpy as np
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.errors import SetupError, install_hint
+from automotive_cosim.errors import ScenarioError, SetupError, install_hint
+from automotive_cosim.formats.xml import read_tree
 from automotive_cosim.scenarios import variant
 from automotive_cosim.scenarios.equilibrium import ROUTES, Assigned, changes, is_stuck, opened, rerouted
 from automotive_cosim.scenarios.gap import TAIL_S, DrivenTrip, EdgeTimes, drive, run, vehicle_types
@@ -144,7 +144,7 @@ def _equilibrium(folder: Path, options: EquilibriumSettings, scratch: Path) -> A
     configuration = read_configuration(scenario.config)
     types = vehicle_types(copied(configuration, scratch), ["route-files"])
     trips = []
-    for element in ET.parse(folder / ROUTES).getroot().iter("vehicle"):
+    for element in read_tree(folder / ROUTES, error=ScenarioError).iter("vehicle"):
         route = element.find("route")
         assert route is not None
         edges = tuple(route.attrib["edges"].split())

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import csv
-import gzip
 from functools import lru_cache
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.csvs import read_packed_csv
 from automotive_cosim.formats.layout import LIVE, ROAD
 from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.scenarios import open_scenario
@@ -91,17 +90,14 @@ def _tracks(folder: Path, point: DecisionPoint, count: int) -> list[list[list[fl
     """
     tracks: list[list[list[float]]] = [[] for _ in range(count)]
     path = folder / TRACKS / f"{point.drive.id}.csv.gz"
-    if not path.is_file():
-        return tracks
     try:
-        with gzip.open(path, "rt", encoding="utf-8", newline="") as file:
-            for row in csv.DictReader(file):
-                if row["id"] == point.id and row["draw"] == "0" and row["is_placebo"] == "False":
-                    track = tracks[0 if row["branch"] == "" else int(row["branch"]) + 1]
-                    at_s = round(float(row["time_s"]) - point.decision.at_s, 1)
-                    if not track or at_s >= track[-1][0] + EVERY_S:
-                        track.append([at_s, round(float(row["x_m"]), 1), round(float(row["y_m"]), 1)])
-    except (OSError, EOFError, LookupError, ValueError) as error:
+        for row in read_packed_csv(path):
+            if row["id"] == point.id and row["draw"] == "0" and row["is_placebo"] == "False":
+                track = tracks[0 if row["branch"] == "" else int(row["branch"]) + 1]
+                at_s = round(float(row["time_s"]) - point.decision.at_s, 1)
+                if not track or at_s >= track[-1][0] + EVERY_S:
+                    track.append([at_s, round(float(row["x_m"]), 1), round(float(row["y_m"]), 1)])
+    except (OSError, LookupError, ValueError) as error:
         raise UserError(f"cannot read {path}: {error}") from error
     return tracks
 

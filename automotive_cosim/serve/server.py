@@ -28,7 +28,7 @@ from urllib.parse import parse_qs, unquote, urlsplit
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.formats.files import parse_json
+from automotive_cosim.formats.files import parse_json, read_bytes
 from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
@@ -289,13 +289,13 @@ class Site:
         """The page of a search."""
         records = self._content.records
         page = records.file(records.entry(name), PAGE)
-        return WebAnswer(page.read_bytes(), "text/html", is_alone=True)
+        return WebAnswer(read_bytes(page), "text/html", is_alone=True)
 
     def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         records = self._content.records
         entry = records.entry(path["run"])
         picture = records.picture(entry, records.trial(entry, path["episode"]), int(path["step"]))
-        return WebAnswer(picture.read_bytes(), "image/jpeg", 60)
+        return WebAnswer(read_bytes(picture), "image/jpeg", 60)
 
 
 class WebServer(ThreadingHTTPServer):

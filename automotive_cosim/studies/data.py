@@ -17,7 +17,7 @@ from typing import Annotated, Any
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.csvs import csv_text
-from automotive_cosim.formats.files import drafted, write_whole
+from automotive_cosim.formats.files import drafted, read_bytes, write_whole
 from automotive_cosim.run.row import InColumns, columns
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.policies import chosen, parse_policy
@@ -158,7 +158,7 @@ def inputs(study: Study) -> Json:
     if not config.is_file():
         return {}
     files = [path for path in sorted(config.parent.iterdir()) if path.is_file()]
-    return {path.name: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+    return {path.name: hashlib.sha256(read_bytes(path)).hexdigest() for path in files}
 
 
 def _future(
@@ -209,7 +209,7 @@ def _write_parquet(path: Path, rows: Sequence[object]) -> Path:
 
 def _resource(path: Path, rows: Sequence[object]) -> Json:
     """A file's description: where it is, its hash, and its columns."""
-    content = path.read_bytes()
+    content = read_bytes(path)
     made = [columns(row) for row in rows]
     fields = [{"name": name, "type": _type(row[name] for row in made)} for name in (made[0] if made else ())]
     return {

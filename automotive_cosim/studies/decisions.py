@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import csv
-import gzip
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
 
+from automotive_cosim.formats.csvs import read_packed_csv
 from automotive_cosim.formats.files import write_whole
 from automotive_cosim.report.templates import render
 from automotive_cosim.studies.data import choosers
@@ -115,12 +114,10 @@ def _futures(study: Study, point: DecisionPoint) -> Iterator[ExplainedFuture]:
 def _ways(path: Path, decision: str) -> Mapping[str, Way]:
     """Where the ego went in the futures of the first draw; empty without a file of tracks."""
     ways: dict[str, list[tuple[float, float]]] = defaultdict(list)
-    if path.is_file():
-        with gzip.open(path, "rt", encoding="utf-8", newline="") as file:
-            for row in csv.DictReader(file):
-                if row["id"] == decision and row["draw"] == "0":
-                    name = f"alternative {int(row['branch']) + 1}" if row["branch"] else KEPT
-                    ways[name].append((float(row["x_m"]), float(row["y_m"])))
+    for row in read_packed_csv(path):
+        if row["id"] == decision and row["draw"] == "0":
+            name = f"alternative {int(row['branch']) + 1}" if row["branch"] else KEPT
+            ways[name].append((float(row["x_m"]), float(row["y_m"])))
     return ways
 
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from automotive_cosim.errors import CosimError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.files import read_json, write_whole
 from automotive_cosim.report.tables import Table
 from automotive_cosim.run.row import from_json
 from automotive_cosim.scenarios.gap import TAIL_S, Gap, measure
@@ -54,7 +54,7 @@ def read_demand(folder: Path) -> tuple[DemandGap, ...]:
     if not path.is_file():
         return ()
     try:
-        return tuple(from_json(DemandGap, each) for each in json.loads(path.read_text(encoding="utf-8")))
+        return tuple(from_json(DemandGap, each) for each in read_json(path))
     except (ValueError, TypeError):
         return ()  # incomplete or of another version: it is measured again
 

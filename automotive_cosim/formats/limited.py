@@ -1,7 +1,7 @@
 """Reads what strangers have packed, in processes that may take so much memory and processor time and no more.
 
-What a bundle may cost is a fixed amount and a multiple of its size. One that takes more is refused, and the program
-that was asked to check it goes on.
+What reading may cost is a fixed amount and a multiple of the file's size (``bounds.Cost``). One that takes more is
+refused, and the program that was asked to read it goes on.
 """
 
 from __future__ import annotations
@@ -16,11 +16,8 @@ from pathlib import Path
 from typing import Any, Self, TypeVar
 
 from automotive_cosim.errors import UserError
-
-FREE_BYTES, TIMES = 2**30, 16
-"""Memory that reading may take beyond what the program itself has: 1 GB, and sixteen times the size of the file."""
-FREE_S, S_PER_MB = 60, 4
-"""Processor seconds for one part of the work: the files that list the episodes, or one episode."""
+from automotive_cosim.formats.bounds import BUNDLE, Cost
+from automotive_cosim.formats.files import is_file
 
 T = TypeVar("T")
 
@@ -28,17 +25,21 @@ T = TypeVar("T")
 class LimitedProcesses:
     """Some processes with limits (``setrlimit``)."""
 
-    def __init__(self, path: Path, count: int = 1) -> None:
+    def __init__(self, path: Path, count: int = 1, cost: Cost | None = None) -> None:
         """Starts nothing before the first call.
 
         Args:
             path: file or folder of strangers.
             count: number of processes.
+            cost: what one call may take; by default what a bundle may.
         """
         self._path = path
-        size = path.stat().st_size if path.is_file() else sum(map(_bytes, path.rglob("*")))
-        self._seconds = FREE_S + S_PER_MB * (size >> 20)
-        self._pool = ProcessPoolExecutor(count, initializer=_limit_memory, initargs=(FREE_BYTES + TIMES * size,))
+        most = cost or BUNDLE
+        size = path.stat().st_size if is_file(path) else sum(map(_bytes, path.rglob("*")))
+        self._seconds = most.free_s + most.s_per_mb * (size >> 20)
+        self._pool = ProcessPoolExecutor(
+            count, initializer=_limit_memory, initargs=(most.free_bytes + most.times * size,)
+        )
 
     def __enter__(self) -> Self:
         return self
@@ -50,7 +51,7 @@ class LimitedProcesses:
         """What the function returns there; it and what it is given are pickled.
 
         Raises:
-            UserError: it takes more memory or time than a bundle of that size may, or is malformed.
+            UserError: it takes more memory or time than a file of that size may, or is malformed.
         """
         return self._result(self._pool.submit(_call, self._path, self._seconds, what, given))
 
@@ -73,6 +74,19 @@ class LimitedProcesses:
                 f"{self._path} takes more memory or processor time than a file of its size may: it is damaged, or "
                 "made to do that"
             ) from error
+
+
+def read_limited(read: Callable[[Path], T], path: Path, cost: Cost, error: type[UserError]) -> T:
+    """What a function reads from a file, in a process of its own.
+
+    Raises:
+        UserError: of that class: it takes more than it may, or the function refuses it.
+    """
+    try:
+        with LimitedProcesses(path, cost=cost) as processes:
+            return processes.call(read, path)
+    except UserError as refused:
+        raise error(*refused.args) from refused
 
 
 def _bytes(path: Path) -> int:
@@ -98,3 +112,7 @@ def _call(path: Path, seconds: int, what: Callable[..., T], given: tuple[Any, ..
         raise UserError(*error.args) from None
     except (LookupError, TypeError, ValueError, AttributeError, RecursionError) as error:
         raise UserError(f"{path} is incomplete or malformed: {error!r:.200}") from None
+    except (Exception, KeyboardInterrupt, SystemExit):
+        raise
+    except BaseException as panic:  # of a library in Rust, whose class cannot be sent on
+        raise UserError(f"{path} is incomplete or malformed: {panic!r:.200}") from None
