@@ -27,6 +27,8 @@ OF_A_TRIAL = (TRIAL, STEPS, SCREENSHOTS, ROAD, FILM, PAGE)
 TRACES = "traces"
 PICTURES = "pictures"
 LIVE = "live"
+WATCHED = "watched"
+"""A file in ``LIVE`` that is locked while somebody watches."""
 
 
 def screenshot(folder: Path, step: int) -> Path:
