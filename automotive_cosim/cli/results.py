@@ -14,7 +14,7 @@ from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError, install_hint
 from automotive_cosim.report.settings import PlaybackSettings
 
-Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or a study.", show_default=False)]
+Folder = Annotated[Path, typer.Argument(help="Results folder of `eval` or `study`.", show_default=False)]
 
 
 @reads_results
