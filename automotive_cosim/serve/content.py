@@ -58,6 +58,13 @@ class Content:
         """All records, the newest first, each on one line."""
         return {"records": [_safely(entry, self._line) for entry in self.records.entries()]}
 
+    def first_page(self) -> str:
+        """The part of the address after ``#`` of what to show at first: a pair that was run last, else the list."""
+        for entry in self.records.entries()[:2]:
+            if other := self.records.beside(entry):
+                return f"#/beside/{entry.id}/{other}"
+        return ""
+
     def run(self, name: str, episode: str | None = None) -> Json:
         """One recorded trial, or one of an evaluation, without its steps.
 
@@ -221,7 +228,7 @@ class Content:
             told = {"kind": kind, "done": done, "planned": planned, "running": running, "started": started}
             told["is_search"] = (entry.folder / PAGE).is_file()
             return {**shared, **told}
-        return shared | self._head(self.records.trial(entry, None))
+        return {**shared, "beside": self.records.beside(entry), **self._head(self.records.trial(entry, None))}
 
     def _head(self, folder: Path) -> Json:
         """What is known about a trial, also of one that is running or was killed."""

@@ -109,6 +109,7 @@ class Site:
         self._game = game
         self._study = study
         self._content = Content(RecordFolders(folders))
+        self.first_page = self._content.first_page
         static = Path(str(files("automotive_cosim.serve") / "static"))
         self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
         run, episode = r"(?P<run>[0-9a-f]{12})", r"(?:/episodes/(?P<episode>[\w.+-]+))?"
@@ -339,7 +340,7 @@ class WebServer(ThreadingHTTPServer):
     @property
     def address(self) -> str:
         """The address to open in a browser, including the token."""
-        return self._address(self.token, "")
+        return self._address(self.token, self.site.first_page())
 
     @property
     def people_address(self) -> str:
