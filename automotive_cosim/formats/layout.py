@@ -29,6 +29,8 @@ PAIR = ("with_place", "without_place")
 TRACES = "traces"
 PICTURES = "pictures"
 LIVE = "live"
+WATCHED = "watched"
+"""A file in ``LIVE`` that is locked while somebody watches."""
 
 
 def screenshot(folder: Path, step: int) -> Path:
