@@ -239,7 +239,7 @@ class _Unpacked(io.RawIOBase):
 
     def readinto(self, buffer: bytearray | memoryview) -> int:  # type: ignore[override]
         try:
-            data = self._content.read(len(buffer))
+            data = self._content.read1(len(buffer))  # what is there: `read` loses it where the archive ends
         except (EOFError, zlib.error, lzma.LZMAError) as error:
             if self._growing and isinstance(error, EOFError):
                 return 0
