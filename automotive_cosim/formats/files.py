@@ -192,7 +192,7 @@ def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
 
     Args:
         path: the file.
-        growing: whether an archive that is cut short ends there, since somebody still writes it.
+        growing: whether it is an archive that somebody may still write: cut short, it ends there.
 
     Raises:
         OSError: it cannot be opened or is not a regular file. Reading raises it too, where an archive is damaged or
@@ -205,6 +205,8 @@ def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
         unpack = next((unpack for magic, unpack in _PACKED.items() if head.startswith(magic)), None)
         if unpack is not None:
             return io.BufferedReader(_Unpacked(unpack(file), path, file, growing), bounds.CHUNK_BYTES)
+        if growing and head:
+            raise OSError("it is no archive")
     except BaseException:
         file.close()
         raise

@@ -15,8 +15,8 @@ import pytest
 from PIL import Image
 
 import automotive_cosim
-from automotive_cosim.calibration.sheets import read_sheet
-from automotive_cosim.calibration.sumo_counts import read_xml_counts
+from automotive_cosim.studies.calibration.sheets import read_sheet
+from automotive_cosim.studies.calibration.sumo_counts import read_xml_counts
 from automotive_cosim.episode.own_prompt import MOST_CHARACTERS, resolved
 from automotive_cosim.errors import UserError
 from automotive_cosim.exchange.tree import read_tree
@@ -200,7 +200,7 @@ KEPT_IN = {
     "formats/files.py": "the bounds themselves",
     "formats/xml.py": "the same",
     "formats/csvs.py": "the same",
-    "calibration/sheets.py": "a process with limits",
+    "studies/calibration/sheets.py": "a process with limits",
     "osm/extract.py": "a process with limits",
     "osm/overpass_json.py": "sixty-four bytes, to tell a format",
     "publish/archive.py": "a process with limits; packs",
@@ -209,7 +209,7 @@ KEPT_IN = {
     "geo/basics.py": "a table of this package",
     "geo/climate.py": "a table of this package",
     "osm/demand.py": "what duarouter wrote of trips of ours",
-    "scenarios/gap.py": "what SUMO wrote in a scratch folder",
+    "studies/equilibrium/gap.py": "what SUMO wrote in a scratch folder",
     "studies/congestion/outputs.py": "the same",
     "traffic/channel.py": "what a process of this package sends",
 }
