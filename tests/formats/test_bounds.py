@@ -15,8 +15,6 @@ import pytest
 from PIL import Image
 
 import automotive_cosim
-from automotive_cosim.studies.calibration.sheets import read_sheet
-from automotive_cosim.studies.calibration.sumo_counts import read_xml_counts
 from automotive_cosim.episode.own_prompt import MOST_CHARACTERS, resolved
 from automotive_cosim.errors import UserError
 from automotive_cosim.exchange.tree import read_tree
@@ -30,6 +28,8 @@ from automotive_cosim.osm import extract
 from automotive_cosim.publish import archive
 from automotive_cosim.report.playback import open_picture
 from automotive_cosim.run.road import read_road
+from automotive_cosim.studies.calibration.sheets import read_sheet
+from automotive_cosim.studies.calibration.sumo_counts import read_xml_counts
 
 PACKAGE = Path(automotive_cosim.__file__).parent
 
