@@ -35,7 +35,7 @@ PACKAGE = Path(automotive_cosim.__file__).parent
 
 DEAR = bounds.Cost(free_bytes=2**21, times=0, free_s=5, s_per_mb=0)
 """Less than anything takes that reads a file of ten thousand elements."""
-OSM_JSON = '{"elements":[],"more":[' + "0," * 2_000_000 + "0]}"
+OSM_JSON = '{"elements":[],"more":[' + "0," * 12_000_000 + "0]}"
 
 
 def workbook(path: Path, cells: str, padding: int = 0) -> None:
