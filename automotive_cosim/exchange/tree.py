@@ -8,6 +8,7 @@ from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.parameters import evaluated
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.xml import scan
 
 
@@ -154,5 +155,5 @@ def read_tree(path: Path, kept: frozenset[str] | None = None) -> XmlElement:
         if kept is None or tag in kept:
             open_elements.pop()
 
-    scan(path, start, end, error=ScenarioError)
+    scan(path, start, end, error=ScenarioError, most_elements=bounds.KEPT_ELEMENTS)
     return roots[0]

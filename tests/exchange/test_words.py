@@ -54,9 +54,11 @@ parameterType="double" value="900"/></ParameterDeclarations><Waypoint routeStrat
 TIME = """<Condition name="c" delay="{}" conditionEdge="{}"><ByValueCondition><SimulationTimeCondition value="{}"
 rule="greaterThan"/></ByValueCondition></Condition>"""
 SPEED = """<LongitudinalAction><SpeedAction><SpeedActionDynamics dynamicsShape="{}"
-dynamicsDimension="{}" value="{}" followingMode="position"/><SpeedActionTarget>{}</SpeedActionTarget></SpeedAction></LongitudinalAction>"""
+dynamicsDimension="{}" value="{}" followingMode="position"/>
+<SpeedActionTarget>{}</SpeedActionTarget></SpeedAction></LongitudinalAction>"""
 LANES = """<LateralAction><LaneChangeAction targetLaneOffset="0.1"><LaneChangeActionDynamics
-dynamicsShape="sinusoidal" dynamicsDimension="time" value="3" followingMode="position"/><LaneChangeTarget>{}</LaneChangeTarget>
+dynamicsShape="sinusoidal" dynamicsDimension="time" value="3" followingMode="position"/>
+<LaneChangeTarget>{}</LaneChangeTarget>
 </LaneChangeAction></LateralAction>"""
 OFF = """<ControllerAction><OverrideControllerValueAction><Throttle value="0" active="false"/><Brake value="0"
 active="false"/><Clutch value="0" active="false"/><ParkingBrake value="0" active="false"/><SteeringWheel value="0"
