@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 from automotive_cosim.exchange.tree import XmlElement, read_tree
-from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, Row, table
+from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, SchemaRow, table
 
-NAMELESS = Row(CARRIED, {}, {})
+NAMELESS = SchemaRow(CARRIED, {}, {})
 """An element that can have neither attributes nor parts."""
 
 
@@ -58,7 +58,7 @@ class Catalogs:
                 self.complete(part, scope)
 
     @staticmethod
-    def _check(row: Row, element: XmlElement, part: XmlElement) -> None:
+    def _check(row: SchemaRow, element: XmlElement, part: XmlElement) -> None:
         if row.parts.get(part.tag, REFUSED) == REFUSED:
             raise part.refused(f"in <{element.tag}>: {_outside(row, row.parts, part.tag)}")
 
@@ -78,7 +78,7 @@ class Catalogs:
         )
 
 
-def _outside(row: Row, known: Mapping[str, str], name: str) -> str:
+def _outside(row: SchemaRow, known: Mapping[str, str], name: str) -> str:
     if name not in known:
         return "OpenSCENARIO 1.0 to 1.3 has no such name here"
     return f"outside what is imported; {row.differences.get(name, 'remove it')}"

@@ -20,9 +20,9 @@ import sumolib
 from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import unread
-from automotive_cosim.exchange.places import Places
+from automotive_cosim.exchange.places import RoadPlaces
 from automotive_cosim.exchange.roads import read_roads
-from automotive_cosim.exchange.storyboard import Condition, Entity, Story, read_story
+from automotive_cosim.exchange.storyboard import ReadStory, ScriptEntity, Waited, read_story
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
 from automotive_cosim.traffic.script import EGO as THE_EGO
@@ -67,7 +67,7 @@ def import_openscenario(
     if not source.is_file():
         raise ScenarioError(f"there is no road {source}, which {file} needs; give --network a SUMO network")
     with appearing(out, replaces=replaces) as folder:
-        places = Places(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
+        places = RoadPlaces(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
         text = scenario_text(out.name, file, story, places, country)
         (folder / "scenario.toml").write_text(text, encoding="utf-8")
         (folder / ROUTES).write_text("<routes/>\n", encoding="utf-8")
@@ -114,7 +114,7 @@ def road_network(source: Path, folder: Path) -> Any:
 # --- writing -----------------------------------------------------------------------------------------------------
 
 
-def scenario_text(name: str, file: Path, story: Story, places: Places, country: str) -> str:
+def scenario_text(name: str, file: Path, story: ReadStory, places: RoadPlaces, country: str) -> str:
     """The ``scenario.toml`` of what a file says.
 
     Raises:
@@ -172,7 +172,7 @@ def scenario_text(name: str, file: Path, story: Story, places: Places, country: 
     return text
 
 
-def _start(entity: Entity, story: Story, places: Places) -> tuple[Any, float]:
+def _start(entity: ScriptEntity, story: ReadStory, places: RoadPlaces) -> tuple[Any, float]:
     """The lane on which a vehicle is at first, and how far along it its front bumper is."""
     if entity.place is None:
         raise entity.element.refused(f"named {entity.name} has no TeleportAction in Init, so that it has no place")
@@ -184,7 +184,7 @@ def _place_of(lane: Any) -> int:
     return [each.getID() for each in lane.getEdge().getLanes() if each.allows("passenger")].index(lane.getID())
 
 
-def _wanted(story: Story) -> list[dict[str, Any]]:
+def _wanted(story: ReadStory) -> list[dict[str, Any]]:
     """The beginnings and ends of acts that something waits for."""
     actions = [action for entity in story.entities.values() for action in entity.actions]
     waited = {each.get("of") for action in (*actions, *story.signals) for group in action["when"] for each in group}
@@ -192,7 +192,7 @@ def _wanted(story: Story) -> list[dict[str, Any]]:
 
 
 def _scripted(
-    entity: Entity, story: Story, places: Places, signals: list[dict[str, Any]]
+    entity: ScriptEntity, story: ReadStory, places: RoadPlaces, signals: list[dict[str, Any]]
 ) -> Iterator[tuple[str, Mapping[str, Any]]]:
     lane, at_m = _start(entity, story, places)
     way = places.way(entity, lane.getEdge(), [places.spot(goal, story.entities) for goal in entity.goals])
@@ -225,11 +225,11 @@ def _scripted(
                 yield "[[incidents.actions.when]]", _waits(condition, number, story, places)
 
 
-def _called(name: str, story: Story) -> str:
+def _called(name: str, story: ReadStory) -> str:
     return THE_EGO if name == story.ego else name
 
 
-def _waits(condition: Condition, group: int, story: Story, places: Places) -> dict[str, Any]:
+def _waits(condition: Waited, group: int, story: ReadStory, places: RoadPlaces) -> dict[str, Any]:
     told = {key: value for key, value in condition.items() if key not in ("element", "position") and value}
     told |= {
         key: _called(told[key], story)

@@ -11,7 +11,7 @@ from typing import Any
 from shapely import LineString, Point, STRtree
 
 from automotive_cosim.exchange.roads import OpenDriveRoad, read_roads
-from automotive_cosim.exchange.storyboard import Entity
+from automotive_cosim.exchange.storyboard import ScriptEntity
 from automotive_cosim.exchange.tree import XmlElement
 
 NEAR_M = 10.0
@@ -29,7 +29,7 @@ LIKE_LANE_M = 0.2
 
 
 @dataclass(frozen=True, slots=True)
-class Spot:
+class RoadSpot:
     """A position."""
 
     element: XmlElement
@@ -43,7 +43,7 @@ class Spot:
     lane: int = 0
 
 
-class Places:
+class RoadPlaces:
     """A network's lanes for cars, and the roads of the OpenDRIVE file that it is of."""
 
     def __init__(self, net: Any, road: Path | None) -> None:
@@ -57,7 +57,7 @@ class Places:
 
     # --- positions ----------------------------------------------------------------------------------------------
 
-    def spot(self, position: XmlElement, entities: Mapping[str, Entity]) -> Spot:
+    def spot(self, position: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         """Where a position is.
 
         Raises:
@@ -66,27 +66,27 @@ class Places:
         place = position.one(*_SPOTS)
         return _SPOTS[place.tag](self, place, entities)
 
-    def _world(self, place: XmlElement, entities: Mapping[str, Entity]) -> Spot:
+    def _world(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         heading = place.number("h") if "h" in place.attributes else None
-        return Spot(place, place.number("x"), place.number("y"), heading)
+        return RoadSpot(place, place.number("x"), place.number("y"), heading)
 
-    def _on_lane(self, place: XmlElement, entities: Mapping[str, Entity]) -> Spot:
+    def _on_lane(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         road = self._road(place, place.text("roadId"))
         offset_m = place.number("offset", 0.0)
         return self._laid(place, road, place.number("s"), _lane_id(place, place.text("laneId")), offset_m)
 
-    def _on_road(self, place: XmlElement, entities: Mapping[str, Entity]) -> Spot:
+    def _on_road(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         road = self._road(place, place.text("roadId"))
         return _beside(place, road, place.number("s"), place.number("t"))
 
-    def _beside_other(self, place: XmlElement, entities: Mapping[str, Entity]) -> Spot:
+    def _beside_other(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         """``RelativeRoadPosition``."""
         other = self._other(place, entities)
         if other.road is None:
             raise place.refused("counts along the road from a vehicle whose own place is no place on a road")
         return _beside(place, other.road, other.s_m + place.number("ds"), other.t_m + place.number("dt"))
 
-    def _lanes_from_other(self, place: XmlElement, entities: Mapping[str, Entity]) -> Spot:
+    def _lanes_from_other(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         """``RelativeLanePosition``."""
         other = self._other(place, entities)
         if other.road is None or not other.lane:
@@ -99,7 +99,7 @@ class Places:
             lane = lane or int(math.copysign(1, lanes))
         return self._laid(place, other.road, other.s_m + ds_m, lane, place.number("offset", 0.0))
 
-    def _from_other(self, place: XmlElement, entities: Mapping[str, Entity]) -> Spot:
+    def _from_other(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         """``RelativeObjectPosition`` and ``RelativeWorldPosition``."""
         other = self._other(place, entities)
         dx_m, dy_m, turned = place.number("dx"), place.number("dy", 0.0), 0.0
@@ -109,9 +109,9 @@ class Places:
             heading = turned
         x_m = other.x_m + dx_m * math.cos(turned) - dy_m * math.sin(turned)
         y_m = other.y_m + dx_m * math.sin(turned) + dy_m * math.cos(turned)
-        return Spot(place, x_m, y_m, _oriented(place, heading, self.heading(other)))
+        return RoadSpot(place, x_m, y_m, _oriented(place, heading, self.heading(other)))
 
-    def _other(self, place: XmlElement, entities: Mapping[str, Entity]) -> Spot:
+    def _other(self, place: XmlElement, entities: Mapping[str, ScriptEntity]) -> RoadSpot:
         name = place.text("entityRef")
         found = entities.get(name)
         if found is None or found.place is None:
@@ -127,7 +127,7 @@ class Places:
             raise place.refused(f"is on road {name!r}, which {self._file} does not have")
         return self._read[name]
 
-    def _laid(self, place: XmlElement, road: OpenDriveRoad, s_m: float, lane: int, offset_m: float) -> Spot:
+    def _laid(self, place: XmlElement, road: OpenDriveRoad, s_m: float, lane: int, offset_m: float) -> RoadSpot:
         _check_s(place, road, s_m)
         lanes = road.lanes_at(s_m)
         if lane not in lanes:
@@ -136,11 +136,11 @@ class Places:
         x_m, y_m, along = road.pose(s_m, t_m)
         is_along = _is_along(road, lane)
         lane_heading = along if is_along else along + math.pi
-        return Spot(place, x_m, y_m, _oriented(place, lane_heading, lane_heading), road, s_m, t_m, lane)
+        return RoadSpot(place, x_m, y_m, _oriented(place, lane_heading, lane_heading), road, s_m, t_m, lane)
 
     # --- lanes --------------------------------------------------------------------------------------------------
 
-    def lane_at(self, spot: Spot, ahead_m: float = 0.0, *, is_goal: bool = False) -> tuple[Any, float]:
+    def lane_at(self, spot: RoadSpot, ahead_m: float = 0.0, *, is_goal: bool = False) -> tuple[Any, float]:
         """A lane for cars, and how far along it a point ``ahead_m`` ahead of a position is.
 
         Raises:
@@ -159,7 +159,7 @@ class Places:
         share = float(line.project(Point(spot.x_m, spot.y_m))) / max(line.length, 1e-9)
         return lane, share * lane.getLength()
 
-    def heading(self, spot: Spot) -> float:
+    def heading(self, spot: RoadSpot) -> float:
         """Which way a vehicle there heads, counter-clockwise from east.
 
         Raises:
@@ -169,12 +169,14 @@ class Places:
             return spot.heading_rad
         return self._heading(self._nearest(spot, spot.x_m, spot.y_m, None), spot.x_m, spot.y_m)
 
-    def front(self, spot: Spot, front_m: float) -> tuple[float, float]:
+    def front(self, spot: RoadSpot, front_m: float) -> tuple[float, float]:
         """Where the front bumper of a vehicle is whose reference point is there."""
         heading = self.heading(spot)
         return spot.x_m + front_m * math.cos(heading), spot.y_m + front_m * math.sin(heading)
 
-    def _nearest(self, spot: Spot, x_m: float, y_m: float, heading: float | None, *, is_goal: bool = False) -> int:
+    def _nearest(
+        self, spot: RoadSpot, x_m: float, y_m: float, heading: float | None, *, is_goal: bool = False
+    ) -> int:
         around = self._around(x_m, y_m)
         if not around:
             raise spot.element.refused("is on a network without lanes for cars")
@@ -226,7 +228,7 @@ class Places:
 
     # --- ways ---------------------------------------------------------------------------------------------------
 
-    def way(self, entity: Entity, first: Any, goals: Sequence[Spot]) -> list[Any]:
+    def way(self, entity: ScriptEntity, first: Any, goals: Sequence[RoadSpot]) -> list[Any]:
         """The edges from the first over the goals; without any, straight on.
 
         Raises:
@@ -269,13 +271,13 @@ class Places:
 
 
 _SPOTS = {
-    "LanePosition": Places._on_lane,
-    "RelativeLanePosition": Places._lanes_from_other,
-    "RelativeObjectPosition": Places._from_other,
-    "RelativeRoadPosition": Places._beside_other,
-    "RelativeWorldPosition": Places._from_other,
-    "RoadPosition": Places._on_road,
-    "WorldPosition": Places._world,
+    "LanePosition": RoadPlaces._on_lane,
+    "RelativeLanePosition": RoadPlaces._lanes_from_other,
+    "RelativeObjectPosition": RoadPlaces._from_other,
+    "RelativeRoadPosition": RoadPlaces._beside_other,
+    "RelativeWorldPosition": RoadPlaces._from_other,
+    "RoadPosition": RoadPlaces._on_road,
+    "WorldPosition": RoadPlaces._world,
 }
 
 
@@ -300,10 +302,10 @@ def _check_s(place: XmlElement, road: OpenDriveRoad, s_m: float) -> None:
         raise place.refused(f"is at s = {s_m:g} m of road {road.name}, which is {road.length_m:g} m long")
 
 
-def _beside(place: XmlElement, road: OpenDriveRoad, s_m: float, t_m: float) -> Spot:
+def _beside(place: XmlElement, road: OpenDriveRoad, s_m: float, t_m: float) -> RoadSpot:
     _check_s(place, road, s_m)
     x_m, y_m, heading = road.pose(s_m, t_m)
-    return Spot(place, x_m, y_m, _oriented(place, heading, heading), road, s_m, t_m)
+    return RoadSpot(place, x_m, y_m, _oriented(place, heading, heading), road, s_m, t_m)
 
 
 def _oriented(place: XmlElement, usual: float | None, relative_to: float) -> float | None:

@@ -31,14 +31,14 @@ _NAMED = "Story", "Act", "ManeuverGroup", "Maneuver", "Event"
 OFFSET_M = 0.5
 """A vehicle that is to keep so far off the middle of its lane is in the middle of it."""
 
-Condition = dict[str, Any]
+Waited = dict[str, Any]
 """As in ``[[incidents.actions.when]]``; ``position`` stands for x_m and y_m until the road is known."""
-Trigger = list[list[Condition]]
+WaitedGroups = list[list[Waited]]
 """Groups of conditions, of which all of one must hold."""
 
 
 @dataclass(slots=True)
-class Entity:
+class ScriptEntity:
     """A vehicle, as it is read."""
 
     name: str
@@ -54,12 +54,12 @@ class Entity:
 
 
 @dataclass(slots=True)
-class Story:
+class ReadStory:
     """What a file says."""
 
     root: XmlElement
     road: Path | None
-    entities: dict[str, Entity] = field(default_factory=dict)
+    entities: dict[str, ScriptEntity] = field(default_factory=dict)
     ego: str = ""
     start: datetime | None = None
     skies: list[tuple[float, Weather]] = field(default_factory=list)
@@ -71,7 +71,7 @@ class Story:
     """Actions without an effect: they begin when an act begins or stops."""
 
 
-def read_story(file: Path, ego: str) -> Story:
+def read_story(file: Path, ego: str) -> ReadStory:
     """What a file says.
 
     Args:
@@ -86,7 +86,7 @@ def read_story(file: Path, ego: str) -> Story:
         raise root.refused("is not OpenSCENARIO XML")
     Catalogs(root).complete(root, {})
     logic = (root.find("RoadNetwork") or root).find("LogicFile")
-    story = Story(root, None if logic is None else file.parent / logic.text("filepath"), ego=ego)
+    story = ReadStory(root, None if logic is None else file.parent / logic.text("filepath"), ego=ego)
     for entities in root.all("Entities"):
         for entity in entities.all("ScenarioObject"):
             made = _entity(entity)
@@ -102,7 +102,7 @@ def read_story(file: Path, ego: str) -> Story:
     return story
 
 
-def _entity(entity: XmlElement) -> Entity:
+def _entity(entity: XmlElement) -> ScriptEntity:
     vehicle = entity.part("Vehicle")
     vehicle.word("vehicleCategory", *DRIVEN)
     trailer = vehicle.find("Trailer")
@@ -110,10 +110,10 @@ def _entity(entity: XmlElement) -> Entity:
         raise trailer.refused("is outside what is imported; remove it")
     box = vehicle.part("BoundingBox")
     length_m = box.part("Dimensions").number("length")
-    return Entity(entity.text("name"), entity, box.part("Center").number("x") + length_m / 2, length_m)
+    return ScriptEntity(entity.text("name"), entity, box.part("Center").number("x") + length_m / 2, length_m)
 
 
-def _named(story: Story, element: XmlElement) -> Entity:
+def _named(story: ReadStory, element: XmlElement) -> ScriptEntity:
     name = element.text("entityRef")
     if name not in story.entities:
         raise element.refused(f"names no entity {name!r}")
@@ -123,7 +123,7 @@ def _named(story: Story, element: XmlElement) -> Entity:
 # --- the start ---------------------------------------------------------------------------------------------------
 
 
-def _init(actions: XmlElement, story: Story) -> None:
+def _init(actions: XmlElement, story: ReadStory) -> None:
     for part in actions.only("GlobalAction", "Private"):
         if part.tag == "GlobalAction":
             _environment(part.one("EnvironmentAction"), 0.0, story)
@@ -134,11 +134,11 @@ def _init(actions: XmlElement, story: Story) -> None:
                 _AT_THE_START[what.tag](what, entity, story)
 
 
-def _starts_at(action: XmlElement, entity: Entity, story: Story) -> None:
+def _starts_at(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
     entity.place = action.part("Position")
 
 
-def _starts_with(action: XmlElement, entity: Entity, story: Story) -> None:
+def _starts_with(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
     made = _speed(action, story)
     target = action.one("SpeedAction").part("SpeedActionTarget").parts[0]
     over = {key: made[key] for key in ("over_s", "over_m", "rate") if key in made}
@@ -155,7 +155,7 @@ def _starts_with(action: XmlElement, entity: Entity, story: Story) -> None:
         entity.speed_mps = mps
 
 
-def _takes(routing: XmlElement, entity: Entity, story: Story) -> None:
+def _takes(routing: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
     action = routing.one("AssignRouteAction", "AcquirePositionAction")
     if action.tag == "AcquirePositionAction":
         entity.goals = [action.part("Position")]
@@ -166,7 +166,7 @@ def _takes(routing: XmlElement, entity: Entity, story: Story) -> None:
     entity.goals = [waypoint.part("Position") for waypoint in route.all("Waypoint")]
 
 
-def _driven_by(action: XmlElement, entity: Entity, story: Story) -> None:
+def _driven_by(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
     """SUMO's driver drives, so that nobody else may."""
     for part in action.parts if action.tag == "ControllerAction" else (action,):
         action.taken.add(part.tag)
@@ -183,7 +183,7 @@ def _driven_by(action: XmlElement, entity: Entity, story: Story) -> None:
             raise part.refused(f"hands {entity.name} to a controller, which is not imported; SUMO's drivers drive")
 
 
-def _is_seen(action: XmlElement, entity: Entity, story: Story) -> None:
+def _is_seen(action: XmlElement, entity: ScriptEntity, story: ReadStory) -> None:
     seen = [action.is_true(name) for name in ("graphics", "sensors", "traffic")]
     if not all(seen):
         raise action.refused("hides a vehicle, which is not imported; remove it")
@@ -199,7 +199,7 @@ _AT_THE_START = {
 }
 
 
-def _environment(action: XmlElement, at_s: float, story: Story) -> None:
+def _environment(action: XmlElement, at_s: float, story: ReadStory) -> None:
     made = action.one("Environment")
     clock, weather = made.find("TimeOfDay"), made.find("Weather")
     if clock is not None:
@@ -244,7 +244,7 @@ def _sky(weather: XmlElement, before: Weather) -> Weather:
 # --- when --------------------------------------------------------------------------------------------------------
 
 
-def _number(board: XmlElement, story: Story) -> None:
+def _number(board: XmlElement, story: ReadStory) -> None:
     """Gives every event a name of its own, and notes which events each element of the storyboard has."""
     events: list[tuple[XmlElement, list[XmlElement]]] = []
 
@@ -271,11 +271,11 @@ def _number(board: XmlElement, story: Story) -> None:
             story.parts.setdefault(key, []).append((name, act))
 
 
-def _trigger(trigger: XmlElement | None, story: Story) -> Trigger:
+def _trigger(trigger: XmlElement | None, story: ReadStory) -> WaitedGroups:
     """Its conditions; none if there is no trigger. What can never hold is left out."""
-    found: Trigger = []
+    found: WaitedGroups = []
     for group in () if trigger is None else trigger.all("ConditionGroup"):
-        alternatives: Trigger = [[]]
+        alternatives: WaitedGroups = [[]]
         for condition in group.all("Condition"):
             ways = list(_condition(condition, story))
             alternatives = [[*before, *way] for before in alternatives for way in ways]
@@ -283,10 +283,10 @@ def _trigger(trigger: XmlElement | None, story: Story) -> Trigger:
     return found
 
 
-def _condition(condition: XmlElement, story: Story) -> Iterator[list[Condition]]:
+def _condition(condition: XmlElement, story: ReadStory) -> Iterator[list[Waited]]:
     """The ways in which it can hold."""
     edge = condition.word("conditionEdge", "none", "rising", "falling", "risingOrFalling", otherwise="none")
-    shared: Condition = {
+    shared: Waited = {
         "edge": "" if edge == "none" else edge,
         "delay_s": max(0.0, condition.number("delay", 0.0)),
     }
@@ -304,7 +304,7 @@ def _condition(condition: XmlElement, story: Story) -> Iterator[list[Condition]]
         yield from ([one] for one in each)
 
 
-def _by_value(by: XmlElement, shared: Condition, story: Story) -> Iterator[list[Condition]]:
+def _by_value(by: XmlElement, shared: Waited, story: ReadStory) -> Iterator[list[Waited]]:
     what = by.one("SimulationTimeCondition", "ParameterCondition", "StoryboardElementStateCondition")
     if what.tag == "SimulationTimeCondition":
         rule = what.word("rule", *BELOW)
@@ -340,9 +340,9 @@ def _holds(value: str, rule: str, wanted: str) -> bool:
     return difference < 0 if BELOW[rule] else difference > 0 or (rule == "greaterOrEqual" and difference == 0)
 
 
-def _of_entity(what: XmlElement, story: Story) -> Condition:
+def _of_entity(what: XmlElement, story: ReadStory) -> Waited:
     name, number = _OF_ENTITIES[what.tag]
-    made: Condition = {"what": name, "value": what.number(number), "below": False, "element": what}
+    made: Waited = {"what": name, "value": what.number(number), "below": False, "element": what}
     if what.tag == "ReachPositionCondition":
         return made | {"position": what.part("Position"), "below": True}
     if "rule" in what.attributes:
@@ -373,7 +373,7 @@ _OF_ENTITIES = {
 """What they are called here, and the attribute with the number."""
 
 
-def _at_s(trigger: Trigger) -> float | None:
+def _at_s(trigger: WaitedGroups) -> float | None:
     """When it holds, if that is a matter of time alone, and lasts."""
     times: list[float] = []
     for group in trigger:
@@ -386,7 +386,7 @@ def _at_s(trigger: Trigger) -> float | None:
 # --- what then ---------------------------------------------------------------------------------------------------
 
 
-def _act(act: XmlElement, story: Story, until: Trigger) -> None:
+def _act(act: XmlElement, story: ReadStory, until: WaitedGroups) -> None:
     name = f"act {act.text('name')}"
     if any(each["name"] == name for each in story.signals):
         raise act.refused(f"has name = {act.text('name')!r} as another act has; give it one of its own")
@@ -395,7 +395,7 @@ def _act(act: XmlElement, story: Story, until: Trigger) -> None:
         return
     begins_s, ends_s = _at_s(begins), _at_s(stops) if stops else float("inf")
     story.signals.append({"name": name, "at_s": begins_s or 0.0, "when": begins if begins_s is None else []})
-    also: list[Condition] = [] if begins_s is not None else [{"what": "begun", "of": name}]
+    also: list[Waited] = [] if begins_s is not None else [{"what": "begun", "of": name}]
     if ends_s is None:
         story.signals.append({"name": f"end of {name}", "at_s": 0.0, "when": stops})
         also.append({"what": "begun", "of": f"end of {name}", "below": True})
@@ -411,7 +411,7 @@ def _act(act: XmlElement, story: Story, until: Trigger) -> None:
                 _event(event, (begins_s or 0.0, ends_s), also, named, story)
 
 
-def _begins(element: XmlElement, story: Story) -> Trigger | None:
+def _begins(element: XmlElement, story: ReadStory) -> WaitedGroups | None:
     """When an act or event begins: at once without a trigger, never (None) if nothing in it can hold."""
     start = element.find("StartTrigger")
     if start is None or not start.parts:
@@ -420,14 +420,18 @@ def _begins(element: XmlElement, story: Story) -> Trigger | None:
 
 
 def _event(
-    event: XmlElement, lasts: tuple[float, float], also: Sequence[Condition], actors: Sequence[Entity], story: Story
+    event: XmlElement,
+    lasts: tuple[float, float],
+    also: Sequence[Waited],
+    actors: Sequence[ScriptEntity],
+    story: ReadStory,
 ) -> None:
     _once(event)
     begins_s, ends_s = lasts
     trigger = _begins(event, story)
     at_s = None if trigger is None else _at_s(trigger)
     is_over = trigger is None or max(begins_s, at_s or 0.0) >= ends_s
-    when: Trigger = []
+    when: WaitedGroups = []
     if at_s is None and ends_s < float("inf"):
         also = [*also, {"what": "time", "value": ends_s, "below": True}]
     for group in trigger or ():
@@ -471,7 +475,7 @@ def _dynamics(dynamics: XmlElement) -> dict[str, Any]:
     return {"over_s": value} if kind == "time" else {"rate": value}
 
 
-def _speed(action: XmlElement, story: Story) -> dict[str, Any]:
+def _speed(action: XmlElement, story: ReadStory) -> dict[str, Any]:
     speed = action.one("SpeedAction")
     made = _dynamics(speed.part("SpeedActionDynamics"))
     target = speed.part("SpeedActionTarget").one("AbsoluteTargetSpeed", "RelativeTargetSpeed")
@@ -484,7 +488,7 @@ def _speed(action: XmlElement, story: Story) -> dict[str, Any]:
     return made | {"speed_share": 1.0, "faster_kmh": round(value * KMH_PER_MPS, 3)}
 
 
-def _lane(action: XmlElement, story: Story) -> dict[str, Any]:
+def _lane(action: XmlElement, story: ReadStory) -> dict[str, Any]:
     change = action.one("LaneChangeAction")
     offset_m = change.number("targetLaneOffset", 0.0)
     if abs(offset_m) > OFFSET_M:

@@ -17,7 +17,7 @@ _WORDS = {"~": DIFFERENT, "-": REFUSED}
 
 
 @dataclass(slots=True)
-class Row:
+class SchemaRow:
     """An element."""
 
     word: str
@@ -37,9 +37,9 @@ class Row:
 
 
 @cache
-def table() -> Mapping[str, Row]:
+def table() -> Mapping[str, SchemaRow]:
     """The rows by the elements' names."""
-    rows: dict[str, Row] = {}
+    rows: dict[str, SchemaRow] = {}
     row = None
     for line in files(__package__).joinpath("openscenario.txt").read_text(encoding="utf-8").splitlines():
         head, _, rest = line.partition(":")
@@ -48,7 +48,7 @@ def table() -> Mapping[str, Row]:
             row.differences |= dict.fromkeys(head.split(), rest.strip())
         else:
             attributes, _, parts = rest.partition("|")
-            row = Row(_WORDS.get(head[0], CARRIED), _marked(attributes), _marked(parts))
+            row = SchemaRow(_WORDS.get(head[0], CARRIED), _marked(attributes), _marked(parts))
             rows[head.lstrip("~-")] = row
     return rows
 

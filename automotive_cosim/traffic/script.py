@@ -12,7 +12,7 @@ EGO = "ego"
 """What scripts call the ego."""
 
 
-class Script:
+class VehicleScript:
     """What the scripted vehicles of a simulation know of each other."""
 
     def __init__(self, sumo: LibSumo, ego_id: str) -> None:

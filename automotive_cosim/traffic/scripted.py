@@ -11,7 +11,7 @@ from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.formats.incidents import ScriptedVehicle, VehicleAction, VehicleCondition
 from automotive_cosim.traffic.manoeuvres import CUT_OUT_S, NO_LANE_CHANGE
-from automotive_cosim.traffic.script import Script
+from automotive_cosim.traffic.script import VehicleScript
 from automotive_cosim.traffic.stage import CAR_TYPE, IncidentStage
 from automotive_cosim.traffic.staged import StagedIncident
 from automotive_cosim.traffic.sumo import ANY_LANE_CHANGE
@@ -27,7 +27,7 @@ NEAREST_S = 0.5
 class _Watch:
     """A condition over time."""
 
-    def __init__(self, condition: VehicleCondition, stage: IncidentStage, script: Script) -> None:
+    def __init__(self, condition: VehicleCondition, stage: IncidentStage, script: VehicleScript) -> None:
         self._condition, self._stage, self._script = condition, stage, script
         self._was: bool | None = False if condition.what == "time" else None
         self._past: deque[bool] = deque(maxlen=round(condition.delay_s) + 1)
@@ -104,7 +104,7 @@ def _passed_m(begin: tuple[float, float], end: tuple[float, float], place: tuple
 class _Task:
     """An action that waits or goes on."""
 
-    def __init__(self, action: VehicleAction, stage: IncidentStage, script: Script) -> None:
+    def __init__(self, action: VehicleAction, stage: IncidentStage, script: VehicleScript) -> None:
         self.action = action
         self.ends_s = math.inf
         self._watches = [(each.group, _Watch(each, stage, script)) for each in action.when]

@@ -12,7 +12,7 @@ import pytest
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import Catalogs
 from automotive_cosim.exchange.incoming import road_network, scenario_text
-from automotive_cosim.exchange.places import Places
+from automotive_cosim.exchange.places import RoadPlaces
 from automotive_cosim.exchange.storyboard import read_story
 from automotive_cosim.exchange.tree import XmlElement, read_tree
 from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
@@ -196,18 +196,18 @@ CATALOGS = {
 }  # fmt: skip
 
 
-class Sample(NamedTuple):
+class WordsSample(NamedTuple):
     """A file in which everything is that is carried out, and its road."""
 
     file: Path
-    places: Places
+    places: RoadPlaces
 
     def text(self, root=None):
         """The scenario that it becomes, or that a changed tree of it does."""
         if root is not None:
             self.file.write_text(written(root), "utf-8")
         story = read_story(self.file, "ego")
-        places = Places(self.places.net, self.file.parent / "road.xodr")
+        places = RoadPlaces(self.places.net, self.file.parent / "road.xodr")
         return f"{story.road}\n{scenario_text('x', self.file, story, places, 'FR')}"
 
 
@@ -226,7 +226,7 @@ def sample(tmp_path_factory):
     (folder / "road.xodr").write_text(road(section(0)), "utf-8")
     (folder / "all.xosc").write_text(FILE, "utf-8")
     net = road_network(folder / "road.xodr", folder / "Route")
-    return Sample(folder / "all.xosc", Places(net, folder / "road.xodr"))
+    return WordsSample(folder / "all.xosc", RoadPlaces(net, folder / "road.xodr"))
 
 
 def walk(element):
