@@ -8,7 +8,9 @@ The ego is the cockpit's car, which SUMO's driver drives; other vehicles are inc
 
 from __future__ import annotations
 
+import re
 import shutil
+import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from datetime import datetime
@@ -21,15 +23,18 @@ from automotive_cosim.contracts import KMH_PER_MPS
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.catalogs import unread
 from automotive_cosim.exchange.places import RoadPlaces
-from automotive_cosim.exchange.roads import read_roads
+from automotive_cosim.exchange.roads import mirror, read_roads
 from automotive_cosim.exchange.storyboard import ReadStory, ScriptEntity, Waited, read_story
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
+from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.script import EGO as THE_EGO
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
 EGO = "ego"
 TRIP = "imported"
+HEIGHTS = re.compile(rb"\+(geoidgrids|geoid_crs|vunits)=[^\s<\]]*")
+"""What a projection says of heights, which roads here have not; its grids are on few machines."""
 NET, ROUTES = "road.net.xml", "none.rou.xml"
 
 
@@ -68,7 +73,8 @@ def import_openscenario(
         raise ScenarioError(f"there is no road {source}, which {file} needs; give --network a SUMO network")
     with appearing(out, replaces=replaces) as folder:
         places = RoadPlaces(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
-        text = scenario_text(out.name, file, story, places, country)
+        has_place = places.net.hasGeoProj() and not read_network(folder / NET).unplaced
+        text = scenario_text(out.name, file, story, places, country, has_place=has_place)
         (folder / "scenario.toml").write_text(text, encoding="utf-8")
         (folder / ROUTES).write_text("<routes/>\n", encoding="utf-8")
         write_config(folder / "road.sumocfg", NET, ROUTES, Sumo("road.sumocfg", warm_up_s=0.0))
@@ -89,32 +95,42 @@ def road_network(source: Path, folder: Path) -> Any:
     if source.name.endswith((".net.xml", ".xml")):
         shutil.copyfile(source, folder / NET)
         return sumolib.net.readNet(str(folder / NET), withInternal=False)
-    if source.name.endswith(".xodr"):
-        for road in read_roads(source).values():
-            if road.keeps_left:
-                raise road.element.refused(
-                    "has the rule LHT, which netconvert does not read; give --network a SUMO network"
-                )
-        ours = "road.xodr"
-        words: tuple[str, ...] = (
-            f"--opendrive-files={ours}",
-            "--offset.disable-normalization",
-            "--output.original-names",
-        )
-    else:
-        ours = f"{NET}.gz"
-        words = "-s", ours, "--offset.disable-normalization"
-    shutil.copyfile(source, folder / ours)
-    ok, printed = run("netconvert", (*words, "-o", NET), folder)
+    ours = "road.xodr" if source.suffix == ".xodr" else f"{NET}.gz"
+    words = ("-s", ours) if source.suffix != ".xodr" else (f"--opendrive-files={ours}", "--output.original-names")
+    text, keeps_left = source.read_bytes(), False
+    if source.suffix == ".xodr":
+        text, roads = HEIGHTS.sub(b"", text), read_roads(source).values()
+        keeps_left = any(road.keeps_left for road in roads)
+        for road in roads:
+            if road.keeps_left != keeps_left:
+                raise road.element.refused("keeps to another side than others of the file, which is not imported")
+    if keeps_left:  # netconvert reads no rule: it reads the mirror image, which keeps right
+        root = ET.fromstring(text)
+        mirror(root)
+        text = ET.tostring(root)
+    (folder / ours).write_bytes(text)
+    ok, printed = run("netconvert", (*words, "--offset.disable-normalization", "-o", NET), folder)
     if not ok:
         raise ScenarioError(f"netconvert cannot read {source}: {first_error(printed)}")
+    if keeps_left:
+        root = ET.parse(folder / NET).getroot()
+        mirror(root)
+        root.set("lefthand", "true")
+        location = root.find("location")
+        for name in () if location is None else ("convBoundary", "origBoundary"):
+            assert location is not None
+            x, y, x_most, y_most = location.attrib[name].split(",")
+            location.set(name, f"{x},{-float(y_most):.2f},{x_most},{-float(y):.2f}")
+        ET.ElementTree(root).write(folder / NET, encoding="UTF-8", xml_declaration=True)
     return sumolib.net.readNet(str(folder / NET), withInternal=False)
 
 
 # --- writing -----------------------------------------------------------------------------------------------------
 
 
-def scenario_text(name: str, file: Path, story: ReadStory, places: RoadPlaces, country: str) -> str:
+def scenario_text(
+    name: str, file: Path, story: ReadStory, places: RoadPlaces, country: str, *, has_place: bool
+) -> str:
     """The ``scenario.toml`` of what a file says.
 
     Raises:
@@ -137,6 +153,7 @@ def scenario_text(name: str, file: Path, story: ReadStory, places: RoadPlaces, c
                 "about": f"Imported from {file.name}.",
                 "country": country,
                 "time_zone": "UTC",
+                "has_place": None if has_place else False,
                 "start": (story.start or datetime(2026, 6, 16, 10, 0)).replace(microsecond=0),
             },
         ),
