@@ -15,6 +15,7 @@ from automotive_cosim.calibration.candidates import Candidate, Candidates, Ends,
 from automotive_cosim.calibration.capacity import USABLE, Capacity, Movement
 from automotive_cosim.calibration.driving import HOUR_S, CountedTime, DrivenDemand
 from automotive_cosim.calibration.fit import CountedFlows, Floats, fit
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.scenarios import variant
 from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes, quickest
 
@@ -119,7 +120,7 @@ def search(world: SearchWorld, given: DrivenDemand, per_h: float, rounds: int) -
         flows, fitted = _fit(world, found, times, per_h, learned)
         demand, vehicles, routes = _demand(found, flows, world)
         path = world.scratch / "fitted.rou.xml"
-        path.write_text(demand, encoding="utf-8")
+        write_whole(path, demand)
         drive = world.simulate(path)
         yield FitRound(fitted, routes, vehicles, drive, demand, thin)
         times = EdgeTimes(world.free_s, map(_ended(clock.end_s), drive.trips))

@@ -10,7 +10,6 @@ The ego is the cockpit's car: SUMO's driver drives it, from the start of the edg
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
@@ -24,6 +23,8 @@ from automotive_cosim.contracts import KMH_PER_MPS, Weather
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.openscenario import KELVIN
 from automotive_cosim.exchange.tree import XmlElement, read_tree
+from automotive_cosim.formats.files import MOST_UNPACKED_BYTES
+from automotive_cosim.formats.writing import copy, write_whole
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
 from automotive_cosim.traffic.sumo_programs import first_error, run
@@ -274,7 +275,7 @@ def _sky(weather: XmlElement, before: Weather) -> Weather:
 
 def _network(source: Path, folder: Path) -> None:
     if source.name.endswith((".net.xml", ".xml")):
-        shutil.copyfile(source, folder / NET)
+        copy(source, folder / NET, MOST_UNPACKED_BYTES)
         return
     if source.name.endswith(".xodr"):
         ours = "road.xodr"
@@ -286,7 +287,7 @@ def _network(source: Path, folder: Path) -> None:
     else:
         ours = f"{NET}.gz"
         words = "-s", ours, "--offset.disable-normalization"
-    shutil.copyfile(source, folder / ours)
+    copy(source, folder / ours, MOST_UNPACKED_BYTES)
     ok, printed = run("netconvert", (*words, "-o", NET), folder)
     if not ok:
         raise ScenarioError(f"netconvert cannot read {source}: {first_error(printed)}")
@@ -423,8 +424,8 @@ def _write(folder: Path, name: str, file: Path, read: _Read, roads: _Roads, ego:
     for title, values in blocks:
         text += f"\n{title}\n" if title else ""
         text += "".join(f"{key} = {toml_value(value)}\n" for key, value in values.items() if value is not None)
-    (folder / "scenario.toml").write_text(text, encoding="utf-8")
-    (folder / ROUTES).write_text("<routes/>\n", encoding="utf-8")
+    write_whole(folder / "scenario.toml", text)
+    write_whole(folder / ROUTES, "<routes/>\n")
     write_config(folder / "road.sumocfg", NET, ROUTES, Sumo("road.sumocfg", warm_up_s=0.0))
 
 

@@ -9,6 +9,8 @@ Velocity and heading are SUMO's, acceleration and turning rate follow from the s
 
 from __future__ import annotations
 
+import errno
+import tempfile
 from bisect import bisect_right
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -26,6 +28,7 @@ from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.exchange.bodies import GAP_S, REAR_AXLE, WHEEL_M, heading_rad, height_m, place_at
 from automotive_cosim.exchange.openscenario import FULL, KELVIN, OKTAS
 from automotive_cosim.exchange.recording import Recording
+from automotive_cosim.formats.writing import copy
 from automotive_cosim.run.road import Second
 
 NEEDS = f"OSI traces need the extra osi: {install_hint('osi')}"
@@ -77,12 +80,12 @@ def write_osi(recording: Recording, target: Path, road: Path | None = None) -> N
         messages = _Messages(recording, "" if road is None else road.name)
     except ImportError as error:
         raise SetupError(NEEDS) from error
-    with SingleTraceWriter() as trace:
-        if not trace.open(target):
-            raise OSError(f"cannot open {target}")
-        for message in messages:
-            if not trace.write_message(message):
-                raise OSError(f"cannot write {target}")
+    with tempfile.TemporaryDirectory(prefix="automotive-cosim-osi-") as scratch:
+        made = Path(scratch) / target.name  # whose ending tells the library the kind of its messages
+        with SingleTraceWriter() as trace:
+            if not trace.open(made) or not all(map(trace.write_message, messages)):
+                raise OSError(errno.EIO, "its library cannot write it", str(target))
+        copy(made, target, made.stat().st_size)
 
 
 @dataclass(frozen=True, slots=True)

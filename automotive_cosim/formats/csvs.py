@@ -8,7 +8,7 @@ from collections.abc import Iterable
 from io import StringIO
 from pathlib import Path
 
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import make_folder, write_whole
 
 
 def csv_text(columns: Iterable[object], rows: Iterable[Iterable[object]]) -> str:
@@ -26,5 +26,5 @@ def write_packed_csv(path: Path, columns: Iterable[object], rows: Iterable[Itera
     Raises:
         OSError: it cannot be written.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
+    make_folder(path.parent)
     write_whole(path, gzip.compress(csv_text(columns, rows).encode(), mtime=0))

@@ -1,4 +1,4 @@
-"""Files that users give, texts written by hand and data that may be packed; and files that are written whole."""
+"""Files that users give: texts written by hand, and data that may be packed."""
 
 from __future__ import annotations
 
@@ -12,13 +12,10 @@ import lzma
 import os
 import stat
 import zlib
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import IO, Any
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.plain import plain
 
 MOST_BYTES = 2**20
 """Nobody writes more by hand, and a wrong path may be a device that never ends."""
@@ -223,27 +220,3 @@ def is_utf8(path: Path) -> bool:
     except UnicodeDecodeError:
         return False
     return True
-
-
-@contextmanager
-def drafted(path: Path) -> Iterator[Path]:
-    """A draft beside a file, which takes its place at the end, so that the file is there completely or not at all.
-
-    Raises:
-        OSError: it cannot be written; the error names the file, and not its draft.
-    """
-    draft = path.with_name(f".{path.name}.part")
-    try:
-        yield draft
-        draft.replace(path)
-    except OSError as error:
-        draft.unlink(missing_ok=True)
-        if error.errno is None:
-            raise
-        raise OSError(error.errno, error.strerror, str(path)) from error
-
-
-def write_whole(path: Path, content: str | bytes) -> None:
-    """Writes a file, a text as plain text, as ``drafted`` does."""
-    with drafted(path) as draft:
-        draft.write_bytes(content if isinstance(content, bytes) else plain(content).encode())

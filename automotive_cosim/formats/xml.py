@@ -11,10 +11,12 @@ from collections.abc import Callable, Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import IO
+from xml.etree import ElementTree
 from xml.parsers import expat
 
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats.files import is_utf8, opened
+from automotive_cosim.formats.writing import drafted, write_whole
 
 SHARED_ENCODINGS = frozenset(("utf-8", "us-ascii", "ascii", "iso-8859-1", "utf-16"))
 """Encodings that every parser knows."""
@@ -78,7 +80,7 @@ def scan(
         with ExitStack() as open_files:
             file = open_files.enter_context(opened(path))
             open_files.enter_context(_without_collection())
-            parser.ParseFile(file if copy is None else _Tee(file, open_files.enter_context(copy.open("wb"))))
+            parser.ParseFile(file if copy is None else _Tee(file, open_files.enter_context(drafted(copy))))
     except FileNotFoundError as broken:
         raise error(f"{path} is missing") from broken
     except (expat.ExpatError, OSError, ValueError, LookupError) as broken:
@@ -114,3 +116,12 @@ class _Tee:
         data = self._source.read(size)
         self._copy.write(data)
         return data
+
+
+def write_xml(path: Path, root: ElementTree.Element) -> None:
+    """Writes a document whole or not at all.
+
+    Raises:
+        OSError: it cannot be written.
+    """
+    write_whole(path, ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True))

@@ -20,6 +20,7 @@ from typing import Any, NamedTuple
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.formats.files import is_utf8, open_file, opened
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
@@ -253,7 +254,7 @@ OLD_VERSIONS = ("1", "1.0")
 
 def _as_new(source: Path, target: Path) -> Path:
     """Writes a file unpacked, and with the present version."""
-    with opened(source) as old, target.open("wb") as new:
+    with opened(source) as old, drafted(target) as new:
         head = old.read(4096)
         new.write(re.sub(rb"""(<osm\b[^>]*?version=["'])1(\.0)?(?=["'])""", rb"\g<1>0.6", head, count=1))
         shutil.copyfileobj(old, new)

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Generic
 
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run import worker
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
 from automotive_cosim.run.jobs import failed

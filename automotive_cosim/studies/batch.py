@@ -9,6 +9,7 @@ from pathlib import Path
 
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.layout import LIVE
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.run.batch import Progress, run_jobs
 from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.processes import Processes
@@ -54,7 +55,8 @@ def run_study(
     plan.check()
     first, *more = _stages(plan)
     with opened(folder, plan.as_json(), DriveRow, parts=(LIVE,)) as store:
-        (folder / LIVE / WATCHED).touch()
+        if not (watched := folder / LIVE / WATCHED).exists():  # it stays what the pages have locked
+            write_whole(watched, b"")
 
         def run(seeds: tuple[int, ...]) -> Progress[DriveRow]:
             jobs = [job for job in plan.jobs() if job.seed in seeds]

@@ -17,7 +17,7 @@ from typing import Annotated, Any
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.csvs import csv_text
-from automotive_cosim.formats.files import drafted, write_whole
+from automotive_cosim.formats.writing import drafted, write_whole
 from automotive_cosim.run.row import InColumns, columns
 from automotive_cosim.studies.plan import StudyPlan
 from automotive_cosim.studies.policies import chosen, parse_policy
@@ -202,8 +202,8 @@ def _write_parquet(path: Path, rows: Sequence[object]) -> Path:
     # The declared types, not the narrowest that fit these values, so that files of several studies match.
     dtypes = {name: DTYPES.get(_type(row[name] for row in made), "object") for name in made[0]}
     frame = pd.DataFrame({name: pd.Series([row[name] for row in made], dtype=dtypes[name]) for name in dtypes})
-    with drafted(path) as draft:
-        frame.to_parquet(draft, index=False)
+    with drafted(path) as file:
+        frame.to_parquet(file, index=False)
     return path
 
 

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import fmean
 
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.report.templates import render
 from automotive_cosim.studies.data import choosers
 from automotive_cosim.studies.results import Study, all_decisions, standard_error

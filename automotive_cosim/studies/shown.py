@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.charts import Chart
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.tables import Table
@@ -46,7 +46,6 @@ def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, err
         UserError: they cannot be written.
     """
     try:
-        write_files(folder, shown.tables, shown.plots.values())
         text = render(
             "studies/network.html",
             title=shown.title,
@@ -60,7 +59,9 @@ def write_shown(folder: Path, shown: ShownStudy, plan: Json, manifest: Json, err
             plan=plan,
             starts=manifest["starts"],
         )
-        write_whole(folder / "report.html", text)
+        with drafted(folder / "report.html") as file:
+            write_files(folder, shown.tables, shown.plots.values())
+            file.write(text.encode())
     except OSError as error:
         raise cannot_write(folder, error) from error
     return folder / "report.html"

@@ -11,7 +11,6 @@ import faulthandler
 import fcntl
 import gc
 import os
-import shutil
 import signal
 import socket
 import stat
@@ -24,8 +23,10 @@ from typing import Any
 
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, ScenarioError, TrafficError
+from automotive_cosim.formats.files import MOST_UNPACKED_BYTES
 from automotive_cosim.formats.incidents import Incident
 from automotive_cosim.formats.scenario import Scenario
+from automotive_cosim.formats.writing import copy, growing
 from automotive_cosim.traffic.accounts import QUEUE_PERIOD_S, Account, Settled, TrafficSummary
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.chance import PROOF_S, Fresh, Generators, Trial, fingerprint, renew
@@ -345,10 +346,9 @@ def copy_outputs(folder: Path) -> None:
         except OSError:  # the listing's own
             continue
         if name.name in OUTPUTS and name.parent.parent == folder.parent:
-            shutil.copyfile(name, folder / name.name)
-            own = os.open(folder / name.name, os.O_WRONLY | os.O_APPEND)
-            os.dup2(own, descriptor, inheritable=False)
-            os.close(own)
+            copy(name, folder / name.name, MOST_UNPACKED_BYTES)
+            with growing(folder / name.name) as own:
+                os.dup2(own.fileno(), descriptor, inheritable=False)
 
 
 def main() -> None:

@@ -12,7 +12,7 @@ from pathlib import Path
 from urllib.parse import quote
 
 from automotive_cosim.formats.files import MOST_VALUES
-from automotive_cosim.run.road_recorder import is_being_written
+from automotive_cosim.formats.writing import is_being_written
 from automotive_cosim.serve.server import MOST_BYTES
 from tests.laws import over
 
