@@ -23,7 +23,7 @@ from automotive_cosim.contracts import KMH_PER_MPS, Weather
 from automotive_cosim.errors import ScenarioError
 from automotive_cosim.exchange.openscenario import KELVIN
 from automotive_cosim.exchange.tree import XmlElement, read_tree
-from automotive_cosim.formats.files import MOST_UNPACKED_BYTES
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import copy, write_whole
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
@@ -275,7 +275,7 @@ def _sky(weather: XmlElement, before: Weather) -> Weather:
 
 def _network(source: Path, folder: Path) -> None:
     if source.name.endswith((".net.xml", ".xml")):
-        copy(source, folder / NET, MOST_UNPACKED_BYTES)
+        copy(source, folder / NET, bounds.UNPACKED_BYTES)
         return
     if source.name.endswith(".xodr"):
         ours = "road.xodr"
@@ -287,7 +287,7 @@ def _network(source: Path, folder: Path) -> None:
     else:
         ours = f"{NET}.gz"
         words = "-s", ours, "--offset.disable-normalization"
-    copy(source, folder / ours, MOST_UNPACKED_BYTES)
+    copy(source, folder / ours, bounds.UNPACKED_BYTES)
     ok, printed = run("netconvert", (*words, "-o", NET), folder)
     if not ok:
         raise ScenarioError(f"netconvert cannot read {source}: {first_error(printed)}")

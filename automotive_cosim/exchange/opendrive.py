@@ -17,9 +17,9 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats.files import MOST_UNPACKED_BYTES
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import copy
-from automotive_cosim.formats.xml import write_xml
+from automotive_cosim.formats.xml import read_tree, write_xml
 from automotive_cosim.traffic.network import drives_on_left
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
@@ -50,11 +50,11 @@ def write_opendrive(net: Path, target: Path) -> None:
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-opendrive-") as name:
         scratch = Path(name)
         ours = "road.net.xml.gz" if net.name.endswith(".gz") else "road.net.xml"
-        copy(net, scratch / ours, MOST_UNPACKED_BYTES)
+        copy(net, scratch / ours, bounds.UNPACKED_BYTES)
         ok, printed = run("netconvert", ("-s", ours, "--opendrive-output=road.xodr"), scratch)
         if not ok:
             raise ScenarioError(f"netconvert cannot write {net} as OpenDRIVE: {first_error(printed)}")
-        root = ET.parse(scratch / "road.xodr").getroot()
+        root = read_tree(scratch / "road.xodr", error=ScenarioError)
     mend(root, left_hand=drives_on_left(net))
     ET.indent(root)
     write_xml(target, root)

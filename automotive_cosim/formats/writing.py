@@ -21,7 +21,8 @@ from pathlib import Path, PurePosixPath
 from typing import IO
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import CHUNK_BYTES, open_file
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.files import open_file
 from automotive_cosim.formats.plain import plain
 
 LOOK_S = 0.05
@@ -58,10 +59,6 @@ def beneath(folder: Path, name: str) -> Path:
     return folder
 
 
-def _led_away(path: Path) -> UserError:
-    return UserError(f"{path} is a link, and nothing here goes through one; remove it, or name another folder")
-
-
 @contextmanager
 def drafted(path: Path) -> Iterator[IO[bytes]]:
     """A draft of a file, which takes its place at the end, so that the file is there completely or not at all.
@@ -75,51 +72,32 @@ def drafted(path: Path) -> Iterator[IO[bytes]]:
         UserError: another program is drafting it.
         OSError: it cannot be written; the error names the file.
     """
+    draft = f".{secrets.token_hex(8)}.part"
     try:
-        with (
-            _opened(path) as home,
-            locked(path.with_name(f".{path.name}.lock"), path),
-            _draft(home, path.name) as file,
-        ):
-            yield file
+        home = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+        try:
+            with locked(path.with_name(f".{path.name}.lock"), path), _unnamed(home, draft) as file:
+                yield file
+                file.flush()
+                with suppress(FileExistsError):  # on a file system on which it has its name already
+                    os.link(f"/proc/self/fd/{file.fileno()}", draft, dst_dir_fd=home)
+                os.replace(draft, path.name, src_dir_fd=home, dst_dir_fd=home)
+        finally:
+            with suppress(OSError):
+                os.unlink(draft, dir_fd=home)
+            os.close(home)
     except OSError as error:
         if error.errno is None:
             raise
         raise OSError(error.errno, error.strerror, str(path)) from error
 
 
-@contextmanager
-def _opened(path: Path) -> Iterator[int]:
-    """The folder of a file."""
-    home = os.open(path.parent, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+def _unnamed(home: int, name: str) -> IO[bytes]:
+    """A new file in an open folder, without a name if its file system has such files."""
     try:
-        yield home
-    finally:
-        os.close(home)
-
-
-@contextmanager
-def _draft(home: int, name: str) -> Iterator[IO[bytes]]:
-    draft = f".{secrets.token_hex(8)}.part"
-    try:
-        file = os.fdopen(os.open(".", os.O_TMPFILE | os.O_RDWR | os.O_CLOEXEC, 0o666, dir_fd=home), "w+b")
-        is_named = False
-    except OSError:  # not every file system has files without a name
-        file = os.fdopen(os.open(draft, _NEW | os.O_EXCL, 0o666, dir_fd=home), "w+b")
-        is_named = True
-    try:
-        with file:
-            yield file
-            file.flush()
-            if not is_named:
-                os.link(f"/proc/self/fd/{file.fileno()}", draft, dst_dir_fd=home)
-                is_named = True
-        os.replace(draft, name, src_dir_fd=home, dst_dir_fd=home)
-    except BaseException:
-        if is_named:
-            with suppress(OSError):
-                os.unlink(draft, dir_fd=home)
-        raise
+        return os.fdopen(os.open(".", os.O_TMPFILE | os.O_RDWR | os.O_CLOEXEC, 0o666, dir_fd=home), "w+b")
+    except OSError:
+        return os.fdopen(os.open(name, _NEW | os.O_EXCL, 0o666, dir_fd=home), "w+b")
 
 
 def write_whole(path: Path, content: str | bytes) -> None:
@@ -140,20 +118,12 @@ def locked(path: Path, what: object) -> Iterator[None]:
         UserError: another program holds it, or it is a link.
         OSError: it cannot be made.
     """
-    file = _regular(path)
-    try:
-        _lock(file, what)
-        while not _is_at(path, file):  # its last holder has removed it since
-            file.close()
-            file = _regular(path)
-            _lock(file, what)
+    with _alone(path, what):
         try:
             yield
         finally:
             with suppress(OSError):
                 path.unlink()
-    finally:
-        file.close()
 
 
 def growing(path: Path, *, anew: bool = False) -> FileIO:
@@ -171,13 +141,12 @@ def growing(path: Path, *, anew: bool = False) -> FileIO:
     """
     if anew and not is_being_written(path):
         remove(path)
-    file = _regular(path)
-    try:
-        _lock(file, path)
-        _mend(file)
-    except BaseException:
-        file.close()
-        raise
+    file = _alone(path, path)
+    size = file.seek(0, os.SEEK_END)
+    begin = max(0, size - bounds.LINE_BYTES)
+    whole = begin + os.pread(file.fileno(), size - begin, begin).rfind(b"\n") + 1
+    if whole < size:
+        file.truncate(whole)
     return file
 
 
@@ -243,7 +212,7 @@ def copy(source: Path, target: Path, most_bytes: int) -> int:
     """
     size = 0
     with open_file(source) as given, drafted(target) as file:
-        while piece := given.read(CHUNK_BYTES):
+        while piece := given.read(bounds.CHUNK_BYTES):
             size += len(piece)
             if size > most_bytes:
                 raise UserError(f"{source} is too large to be copied: more than {most_bytes / 1e6:.0f} MB are left")
@@ -265,20 +234,21 @@ def appearing(out: Path, *, replaces: bool = False) -> Iterator[Path]:
     """
     # Named before it is made, so that a signal between the two leaves nothing.
     scratch = out.absolute().parent / f".{out.name}-{secrets.token_hex(8)}"
+    building, replaced = scratch / "new", scratch / "replaced"
     try:
         scratch.mkdir(mode=0o700)
-        building = scratch / "new"
         building.mkdir()
         yield building
         if replaces and out.exists():
-            _put_in_place(building, out, scratch / "replaced")
-        else:
-            try:
-                building.rename(out)
-            except OSError as error:
-                if error.errno not in (errno.EEXIST, errno.ENOTEMPTY, errno.ENOTDIR):
-                    raise
+            out.rename(replaced)
+        try:
+            building.rename(out)
+        except BaseException as error:
+            if replaced.exists():
+                replaced.rename(out)
+            if getattr(error, "errno", 0) in (errno.EEXIST, errno.ENOTEMPTY, errno.ENOTDIR):
                 raise UserError(f"{out} exists; give --out another folder, or delete that one") from error
+            raise
     finally:
         try:
             shutil.rmtree(scratch, ignore_errors=True)
@@ -297,60 +267,35 @@ def check_writable(folder: Path) -> None:
     probe.rmdir()
 
 
-# --- inside ------------------------------------------------------------------------------------------------------
+def _led_away(path: Path) -> UserError:
+    return UserError(f"{path} is a link, and nothing here goes through one; remove it, or name another folder")
 
 
-def _put_in_place(building: Path, out: Path, replaced: Path) -> None:
-    out.rename(replaced)
-    try:
-        building.rename(out)
-    except BaseException:
-        replaced.rename(out)
-        raise
-
-
-def _regular(path: Path) -> FileIO:
-    """A file that is no link and nothing but a file, open at its end; it is made if it is missing."""
-    if path.is_symlink():
-        raise _led_away(path)
-    file = FileIO(os.open(path, _NEW | os.O_APPEND, 0o666), "ab")
-    if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
-        file.close()
-        raise OSError(f"{path} is not a regular file")
-    return file
-
-
-def _lock(file: FileIO, what: object) -> None:
-    for is_last in (False, True):
+def _alone(path: Path, what: object) -> FileIO:
+    """A file that is no link and nothing but a file, made if it is missing, open at its end and locked."""
+    begun_s = time.monotonic()
+    while True:
+        if path.is_symlink():
+            raise _led_away(path)
+        file = FileIO(os.open(path, _NEW | os.O_APPEND, 0o666), "ab")
+        is_free = True
         try:
             fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:  # perhaps a page is checking at this instant whether it is locked
-            if is_last:
-                raise UserError(
-                    f"another program is writing {what}; wait until it has ended, or name another"
-                ) from error
-            time.sleep(LOOK_S)
-        except OSError:  # some file systems have no locks
-            return
-        else:
-            return
-
-
-def _is_at(path: Path, file: FileIO) -> bool:
-    try:
-        return os.path.samestat(path.lstat(), os.fstat(file.fileno()))
-    except FileNotFoundError:
-        return False
-
-
-def _mend(file: FileIO) -> None:
-    """Removes a last line that is cut short."""
-    size = end = file.seek(0, os.SEEK_END)
-    while end:
-        begin = max(0, end - CHUNK_BYTES)
-        if found := os.pread(file.fileno(), end - begin, begin).rfind(b"\n") + 1:
-            end = begin + found
-            break
-        end = begin
-    if end < size:
-        file.truncate(end)
+        except BlockingIOError:
+            is_free = False
+        except OSError:
+            pass  # some file systems have no locks
+        about = os.fstat(file.fileno())
+        if not stat.S_ISREG(about.st_mode):
+            file.close()
+            raise OSError(f"{path} is not a regular file")
+        if (
+            is_free and path.exists() and os.path.samestat(path.lstat(), about)
+        ):  # its last holder may have removed it
+            return file
+        file.close()
+        if (
+            not is_free and time.monotonic() > begun_s + LOOK_S
+        ):  # a page may check at this instant whether it is locked
+            raise UserError(f"another program is writing {what}; wait until it has ended, or name another")
+        time.sleep(LOOK_S)

@@ -12,7 +12,7 @@ from xml.sax.saxutils import quoteattr
 
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats import files
+from automotive_cosim.formats import bounds, files
 from automotive_cosim.formats.scenario import Scenario
 from automotive_cosim.formats.writing import appearing, copy, make_folder, write_whole
 from automotive_cosim.traffic.options import Configuration
@@ -140,7 +140,7 @@ def write_variant(
                 text = re.sub(start, rf"\g<1>{start_hour:02}:00:00", text)
             write_whole(draft / toml.name, text)
             if (about := home / "README.md").is_file():  # whose map it is
-                copy(_inside(about, home), draft / about.name, files.MOST_BYTES)
+                copy(_inside(about, home), draft / about.name, bounds.TEXT_BYTES)
         write_whole(draft / record[0], json.dumps(record[1], indent=1, ensure_ascii=False))
 
 

@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats import writing
 from automotive_cosim.formats.writing import (
     add_line,
     appearing,
@@ -247,7 +246,7 @@ def test_of_two_writers_one_is_refused(tmp_path, kind):
 
 def test_a_log_is_mended_and_keeps_whole_lines(tmp_path):
     path = tmp_path / "log"
-    for length in (0, 1, writing.CHUNK_BYTES - 1, writing.CHUNK_BYTES, 3 * writing.CHUNK_BYTES):
+    for length in (0, 1, 2**16 - 1, 2**16, 3 * 2**16):
         path.write_bytes(b"whole\n" + b"x" * length)
         with growing(path) as file:
             add_line(file, "next", lasting=True)

@@ -8,7 +8,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from automotive_cosim.contracts import Json
-from automotive_cosim.formats.files import MOST_BYTES
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.writing import beneath, copy, drafted, make_folder, remove, write_whole
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.row import as_json
@@ -52,7 +52,11 @@ def write_dossier(folder: Path, agent: str = "") -> tuple[Path, Path | None]:
             write_whole(data / "trials.jsonl", "".join(f"{line}\n" for line in lines))
             if subject.findings is not None:
                 for plan in sorted((folder / PLANS).glob("*.toml")):
-                    copy(beneath(folder, f"{PLANS}/{plan.name}"), make_folder(data, PLANS) / plan.name, MOST_BYTES)
+                    copy(
+                        beneath(folder, f"{PLANS}/{plan.name}"),
+                        make_folder(data, PLANS) / plan.name,
+                        bounds.TEXT_BYTES,
+                    )
             titles = {section.name: section.title for section in made.sections}
             page.write(render("safety/dossier/dossier.html", made=made, titles=titles).encode())
             return target / PAGE, _pdf(data, target / PDF)
