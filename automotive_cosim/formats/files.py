@@ -111,6 +111,8 @@ def json_lines(file: IO[bytes], most_values: int | None = None, *, growing: bool
         if not growing or line.endswith(b"\n"):
             yield parse_json(line, left)
             left -= _values(line)
+        elif line[:1] not in (b"{", b"["):
+            raise ValueError("it holds no lines of JSON")
 
 
 def parse_json(text: str | bytes, most_values: int | None = None) -> Any:
@@ -190,7 +192,7 @@ def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
 
     Args:
         path: the file.
-        growing: whether it is an archive that somebody may still write: cut short, it ends there.
+        growing: whether an archive that is cut short ends there, since somebody still writes it.
 
     Raises:
         OSError: it cannot be opened or is not a regular file. Reading raises it too, where an archive is damaged or
@@ -203,8 +205,6 @@ def opened(path: Path, *, growing: bool = False) -> IO[bytes]:
         unpack = next((unpack for magic, unpack in _PACKED.items() if head.startswith(magic)), None)
         if unpack is not None:
             return io.BufferedReader(_Unpacked(unpack(file), path, file, growing), bounds.CHUNK_BYTES)
-        if growing and head:
-            raise OSError("it is no archive")
     except BaseException:
         file.close()
         raise

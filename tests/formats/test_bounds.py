@@ -23,6 +23,7 @@ from automotive_cosim.formats.bounds import READERS
 from automotive_cosim.formats.csvs import read_packed_csv, write_packed_csv
 from automotive_cosim.formats.limited import LimitedProcesses
 from automotive_cosim.formats.toml import read_toml
+from automotive_cosim.formats.writing import write_whole
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import extract
 from automotive_cosim.publish import archive
@@ -35,7 +36,7 @@ PACKAGE = Path(automotive_cosim.__file__).parent
 
 DEAR = bounds.Cost(free_bytes=2**21, times=0, free_s=5, s_per_mb=0)
 """Less than anything takes that reads a file of ten thousand elements."""
-OSM_JSON = '{"elements":[],"more":[' + "0," * 2_000_000 + "0]}"
+OSM_JSON = '{"elements":[],"more":[' + "0," * 12_000_000 + "0]}"
 
 
 def workbook(path: Path, cells: str, padding: int = 0) -> None:
@@ -77,11 +78,11 @@ def book_of(rows: int, columns: int, text: str = "x", padding: int = 0) -> Calla
 
 
 def text_of(content: str) -> Callable[[Path], None]:
-    return lambda path: files.write_whole(path, content) and None
+    return lambda path: write_whole(path, content) and None
 
 
 def packed(content: str) -> Callable[[Path], None]:
-    return lambda path: files.write_whole(path, gzip.compress(content.encode())) and None
+    return lambda path: write_whole(path, gzip.compress(content.encode())) and None
 
 
 def picture(path: Path) -> None:
