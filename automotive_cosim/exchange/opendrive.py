@@ -2,8 +2,9 @@
 
 netconvert 1.28 states version 1.4, but writes an ``offset`` that came with 1.5. It gives curves inexact lengths. It
 crosses some junctions, most of them by turning back, with a jump of the heading, so that lanes do not meet. In
-left-hand networks it puts the lanes of junctions on the left, but numbers them as on the right. Coordinates are
-those of the network, as in every record.
+left-hand networks it puts the lanes of junctions on the left, but numbers them as on the right. Its ids of signals,
+``c0_3``, are no numbers, which some readers expect: signals are numbered here, and have SUMO's ids as names.
+Coordinates are those of the network, as in every record.
 """
 
 from __future__ import annotations
@@ -26,6 +27,8 @@ SAME_HEADING_RAD = 1e-3
 """Roads whose headings differ by less meet without a kink."""
 TURNS_BACK_ABOVE_RAD = 2.5
 """So large a turn is one back, to the side on which it ends."""
+SHORT_M = 1e-6
+"""By so much a curve is stated shorter than it is: readers that look for a place beyond its end find none."""
 POINT_M, ROOM_M = 0.01, 1.0
 """A shorter way through a junction is a point; the road before it ends this much earlier."""
 
@@ -76,6 +79,12 @@ def mend(root: ET.Element, *, left_hand: bool) -> None:
         _join(way, roads)
     for road in roads.values():
         _measure(road)
+    numbers = {signal.attrib["id"]: str(number) for number, signal in enumerate(root.iter("signal"))}
+    for signal in root.iter("signal"):
+        signal.set("name", signal.attrib["id"])
+        signal.set("id", numbers[signal.attrib["id"]])
+    for control in root.iter("control"):
+        control.set("signalId", numbers[control.attrib["signalId"]])
     if left_hand:
         _keep_left(root, roads)
 
@@ -179,6 +188,8 @@ def _turn(to: float, of: float) -> float:
 
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(64)
+PIECES = 32
+"""In which a curve is measured: one that turns back sharply needs them."""
 
 
 def _measure(road: ET.Element) -> None:
@@ -190,10 +201,10 @@ def _measure(road: ET.Element) -> None:
         curve = geometry.find("paramPoly3")
         geometry.set("s", f"{at_m:.8f}")
         if curve is not None and curve.get("pRange") == "normalized":
-            at = (_NODES + 1) / 2
+            at = (np.arange(PIECES)[:, None] + (_NODES + 1) / 2) / PIECES
             (_, b, c, d), (_, e, f, g) = _coefficients(curve, "U"), _coefficients(curve, "V")
             speeds = np.hypot(b + at * (2 * c + at * 3 * d), e + at * (2 * f + at * 3 * g))
-            geometry.set("length", f"{float(speeds @ _WEIGHTS) / 2:.8f}")
+            geometry.set("length", f"{float((speeds @ _WEIGHTS).sum()) / 2 / PIECES - SHORT_M:.8f}")
         at_m += float(geometry.attrib["length"])
     road.set("length", f"{at_m:.8f}")
 
