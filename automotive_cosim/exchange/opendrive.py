@@ -72,6 +72,7 @@ def mend(root: ET.Element, *, left_hand: bool) -> None:
     header.attrib.pop("date", None)
     header.set("revMajor", VERSION[0])
     header.set("revMinor", VERSION[2:])
+    _take_offset_in(header)
     roads = {road.attrib["id"]: road for road in root.iter("road")}
     ways = [road for road in roads.values() if road.attrib["junction"] != "-1"]
     _make_room(ways, roads)
@@ -87,6 +88,24 @@ def mend(root: ET.Element, *, left_hand: bool) -> None:
         control.set("signalId", numbers[control.attrib["signalId"]])
     if left_hand:
         _keep_left(root, roads)
+
+
+def _take_offset_in(header: ET.Element) -> None:
+    """Lets the projection begin where the network does: some readers add an ``offset``, others subtract it."""
+    offset, reference = header.find("offset"), header.find("geoReference")
+    if offset is None or reference is None:
+        return
+    terms = dict(term.lstrip("+").partition("=")[::2] for term in (reference.text or "").split())
+    if terms.get("proj") == "utm":  # which has no origin of its own
+        north_m = "0" if terms.pop("south", None) is None else "10000000"
+        origin = {"lat_0": "0", "lon_0": f"{6 * int(terms.pop('zone')) - 183}", "k": "0.9996"}
+        terms |= {"proj": "tmerc", **origin, "x_0": "500000", "y_0": north_m}
+    if "proj" not in terms or terms.get("units", "m") != "m" or "to_meter" in terms:
+        return
+    for axis in "xy":
+        terms[f"{axis}_0"] = f"{float(terms.get(f'{axis}_0', '0')) - float(offset.attrib[axis]):.2f}"
+    reference.text = " ".join(f"+{name}={value}" if value else f"+{name}" for name, value in terms.items())
+    header.remove(offset)
 
 
 # --- curves ------------------------------------------------------------------------------------------------------

@@ -11,6 +11,7 @@ from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
+import pyproj
 import pytest
 
 from automotive_cosim.agents import make_agent
@@ -197,6 +198,11 @@ def test_lanes_lie_where_they_are_in_sumo_and_meet_in_junctions(drawn):
             assert math.dist(before[int(link.attrib["from"])][1], here[0]) < 0.02
             lane = next(each for each in way.iter("lane") if each.attrib["id"] == link.attrib["to"])
             assert math.dist(after[int(lane.find("link/successor").attrib["id"])][0], here[1]) < 0.02
+    location, header = sumo.find("location").attrib, root.find("header")
+    easting_m, northing_m = (-float(each) for each in location["netOffset"].split(","))
+    assert header.find("offset") is None
+    on_earth = pyproj.Proj(location["projParameter"])(easting_m + 500, northing_m + 300, inverse=True)
+    assert pyproj.Proj(header.findtext("geoReference"))(*on_earth) == pytest.approx((500, 300), abs=1e-3)
     keeps_left = drives_on_left(net)
     assert {road.get("rule") for road, _ in roads.values()} == {"LHT" if keeps_left else None}
     assert all((lane > 0) == keeps_left for _, each in roads.values() for lane in each)
