@@ -3,8 +3,8 @@
     python -m benchmarks.readers [--environments readers] [--only scenic,mcap] [--newest] TRIAL ...
 
 An environment is made where there is none, two gigabytes and more for all. This script runs there again, without
-this package, and prints what was read as JSON. A metre of a lane of SUMO's is read if a lane that leads the same way
-passes within half a metre; a place is a vehicle's front bumper at a second.
+this package, and prints what was read as JSON. A metre of a lane is read if a lane that leads the same way passes
+within half a metre; a place is a vehicle's front bumper at a second.
 """
 
 from __future__ import annotations
