@@ -3,8 +3,8 @@
     python -m benchmarks.readers [--environments readers] [--only scenic,mcap] [--newest] TRIAL ...
 
 An environment is made where there is none, two gigabytes and more for all. This script runs there again, without
-this package, and prints what was read as JSON. A metre of a lane is read if a lane that leads the same way passes
-within half a metre; a place is a vehicle's front bumper at a second.
+this package, and prints what was read as JSON. A metre of a lane is read if a lane passes within half a metre; a
+place is a vehicle's front bumper at a second.
 """
 
 from __future__ import annotations
@@ -157,23 +157,24 @@ def lanes_compared(net: Path, road: Path, read: Any) -> str:
         where = pyproj.Proj(ET.parse(road).getroot().findtext("header/geoReference"))
         read["lanes"] = [[where(*point) for point in lane] for lane in read["earth"]]
     pieces = [piece for lane in read["lanes"] for piece in pairwise(lane) if piece[0] != piece[1]]
-    tree, found, looked, off_m = STRtree([LineString(piece) for piece in pieces]), 0, 0, [0.0]
+    tree, looked, away = STRtree([LineString(piece) for piece in pieces]), 0, 0
+    off_m: list[float] = []
     for lane in true_lanes(net):
         line = LineString(lane)
         for at_m in np.arange(EACH_M / 2, line.length, EACH_M):
             here, ahead = line.interpolate(at_m), line.interpolate(at_m + 0.1)
             looked += 1
-            near = [
-                LineString(pieces[each]).distance(here)
-                for each in tree.query(here, predicate="dwithin", distance=NEAR_M)
-                if (pieces[each][1][0] - pieces[each][0][0]) * (ahead.x - here.x)
-                + (pieces[each][1][1] - pieces[each][0][1]) * (ahead.y - here.y)
-                > 0
-            ]
-            found += bool(near)
-            off_m += [min(near)] if near else []
-    lanes, most_m = len(read["lanes"]), np.quantile(off_m, 0.95)
-    return f"{lanes} lanes; {found / looked:.1%} of SUMO's metres, 95 % of them within {most_m:.3f} m"
+            near = [pieces[each] for each in tree.query(here, predicate="dwithin", distance=NEAR_M)]
+            if not near:
+                continue
+            off_m.append(min(LineString(piece).distance(here) for piece in near))
+            away += all(
+                (end[0] - begin[0]) * (ahead.x - here.x) + (end[1] - begin[1]) * (ahead.y - here.y) <= 0
+                for begin, end in near
+            )
+    lanes, most_m = len(read["lanes"]), np.quantile(off_m or [math.inf], 0.95)
+    back = f", {away / len(off_m):.0%} of them leading back" if away else ""
+    return f"{lanes} lanes; {len(off_m) / looked:.1%} of SUMO's metres, 95 % of them within {most_m:.3f} m{back}"
 
 
 def places_compared(recording: Any, read: Any) -> str:

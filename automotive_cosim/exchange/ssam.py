@@ -27,7 +27,7 @@ UNKNOWN_LINK = 0
 FORMAT, DIMENSIONS, TIMESTEP, VEHICLE = "<BBf", "<BBf4i", "<Bf", "<B2iB8f"
 """The four kinds of records, numbered from 0: layouts of ``struct``, each with its number first."""
 
-Line = tuple[float, ...]
+Placed = tuple[float, ...]
 """Front and rear bumper (x, y each), length, width, speed and acceleration."""
 
 
@@ -51,7 +51,7 @@ def write_trajectories(recording: Recording, target: Path) -> None:
     write_whole(target, head + bytes(body))
 
 
-def _steps(recording: Recording) -> Iterator[tuple[float, dict[str, Line]]]:
+def _steps(recording: Recording) -> Iterator[tuple[float, dict[str, Placed]]]:
     """Time and lines of each step; where the record has a gap, there are none."""
     seconds, begin_s = recording.road.seconds, recording.begin_s
     for now, then in pairwise(seconds):
@@ -69,7 +69,7 @@ def _steps(recording: Recording) -> Iterator[tuple[float, dict[str, Line]]]:
     yield last.at_s - begin_s, {each.vehicle_id: _between(each, each, 0.0, 1.0) for each in last.vehicles}
 
 
-def _between(now: SeenVehicle, then: SeenVehicle, share: float, span_s: float) -> Line:
+def _between(now: SeenVehicle, then: SeenVehicle, share: float, span_s: float) -> Placed:
     """A vehicle at a share of the way from one second to the next."""
     begins, ends = heading_rad(now), heading_rad(then)
     away, leaves, arrives = (3 - 2 * share) * share**2, share * (1 - share) ** 2, share**2 * (share - 1)
