@@ -28,7 +28,7 @@ OTHERS = "beside them"
 CEILINGS = {
     "agents": (6363, 65, 0),
     "benchmarks": (2068, 16, 0),
-    "cli": (4330, 14, 229),
+    "cli": (4326, 14, 229),
     "cockpit": (19325, 185, 0),
     "contracts": (1404, 60, 0),
     "cosim": (494, 3, 0),
@@ -36,13 +36,8 @@ CEILINGS = {
     "drives": (7279, 81, 0),
     "envs": (1301, 9, 0),
     "episode": (1733, 19, 0),
-<<<<<<< HEAD
-    "exchange": (2085, 5, 0),
-    "formats": (2190, 36, 0),
-=======
-    "exchange": (1925, 5, 0),
+    "exchange": (2080, 5, 0),
     "formats": (2194, 36, 0),
->>>>>>> main
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
@@ -61,11 +56,7 @@ CEILINGS = {
     "studies": (12796, 114, 92),
     "tasking": (4166, 120, 0),
     "tasks": (29394, 1, 0),
-<<<<<<< HEAD
-    "tests": (58460, 119, 0),
-=======
-    "tests": (58378, 119, 0),
->>>>>>> main
+    "tests": (58454, 119, 0),
     "traffic": (10775, 74, 0),
     "beside them": (298, 18, 0),
 }
