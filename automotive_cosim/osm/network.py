@@ -232,7 +232,8 @@ def write_osm(
     ``FIRST_NUMBER``."""
     osmium = import_module("osmium")
     mutable = osmium.osm.mutable
-    with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True) as writer:
+    threads = osmium.io.ThreadPool(1)  # of its own: a process that reads a map must not be forked from shared ones
+    with osmium.SimpleWriter(osmium.io.File(str(target), "osm"), overwrite=True, thread_pool=threads) as writer:
         for node_id, node in extract.nodes.items():
             writer.add_node(mutable.Node(id=node_id, location=node.position, tags=dict(node.tags)))
         for node_id, position in barred.ends.items():
