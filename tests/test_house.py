@@ -37,7 +37,7 @@ CEILINGS = {
     "envs": (1301, 9, 0),
     "episode": (1733, 19, 0),
     "exchange": (1925, 5, 0),
-    "formats": (2192, 36, 0),
+    "formats": (2194, 36, 0),
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
