@@ -27,8 +27,8 @@ OTHERS = "beside them"
 
 CEILINGS = {
     "agents": (6363, 65, 0),
-    "benchmarks": (1819, 16, 0),
-    "cli": (4326, 14, 228),
+    "benchmarks": (2068, 16, 0),
+    "cli": (4332, 14, 229),
     "cockpit": (19325, 185, 0),
     "contracts": (1404, 60, 0),
     "cosim": (494, 3, 0),
@@ -36,13 +36,13 @@ CEILINGS = {
     "drives": (7279, 81, 0),
     "envs": (1301, 9, 0),
     "episode": (1733, 19, 0),
-    "exchange": (1933, 5, 0),
+    "exchange": (2094, 5, 0),
     "formats": (2551, 36, 0),
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
     "models": (2081, 24, 0),
-    "osm": (6036, 43, 0),
+    "osm": (6287, 43, 0),
     "proof": (2959, 15, 0),
     "publish": (1493, 8, 0),
     "replay": (189, 1, 0),
@@ -56,8 +56,8 @@ CEILINGS = {
     "studies": (12802, 114, 92),
     "tasking": (4166, 120, 0),
     "tasks": (29394, 1, 0),
-    "tests": (58782, 119, 0),
-    "traffic": (10796, 74, 0),
+    "tests": (59110, 119, 0),
+    "traffic": (10798, 74, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""

@@ -307,7 +307,7 @@ class Plan(EvaluationSettings):
 
 
 def _place(job: TrialJob) -> tuple[str, str, str]:
-    return digest(job.simulation), digest(job.instance), digest(job.id)
+    return digest(job.simulation), digest(repr(job.instance)), digest(job.id)
 
 
 def languages_in_words(codes: Iterable[str]) -> str:

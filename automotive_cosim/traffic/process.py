@@ -11,6 +11,7 @@ import faulthandler
 import fcntl
 import gc
 import os
+import shutil
 import signal
 import socket
 import stat
@@ -23,9 +24,9 @@ from typing import Any
 
 from automotive_cosim.contracts import Answer, RoadNetwork, RoadRequest, RoadShapes, RouteOption
 from automotive_cosim.errors import CosimError, TrafficError
-from automotive_cosim.formats import bounds
+from automotive_cosim.formats.files import open_file
 from automotive_cosim.formats.scenario import Scenario
-from automotive_cosim.formats.writing import copy, growing
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.channel import LOADING_LIMIT_S, ClosedError, MessageChannel
 from automotive_cosim.traffic.confinement import confine
@@ -241,8 +242,9 @@ def copy_outputs(folder: Path) -> None:
         except OSError:  # the listing's own
             continue
         if name.name in OUTPUTS and name.parent.parent == folder.parent:
-            copy(name, folder / name.name, bounds.UNPACKED_BYTES)
-            with growing(folder / name.name) as own:
+            with open_file(name) as given, drafted(folder / name.name) as own:
+                shutil.copyfileobj(given, own)
+                own.flush()
                 os.dup2(own.fileno(), descriptor, inheritable=False)
 
 
