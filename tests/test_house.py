@@ -50,15 +50,15 @@ CEILINGS = {
     "report": (5602, 28, 0),
     "run": (7842, 82, 0),
     "safety": (3246, 27, 0),
-    "scenarios": (2634, 20, 0),
+    "scenarios": (2637, 20, 0),
     "schemas": (83, 0, 0),
     "serve": (2640, 22, 0),
     "service": (428, 6, 0),
     "studies": (7781, 69, 0),
     "tasking": (4166, 120, 0),
     "tasks": (29394, 1, 0),
-    "tests": (57896, 116, 0),
-    "traffic": (11606, 83, 0),
+    "tests": (58026, 115, 0),
+    "traffic": (11728, 84, 0),
     "beside them": (299, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
