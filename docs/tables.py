@@ -22,6 +22,7 @@ from automotive_cosim.drives.families import FAMILIES
 from automotive_cosim.drives.settings import DriveSettings
 from automotive_cosim.drives.wakes import WAKES
 from automotive_cosim.episode.conditions import TABLE
+from automotive_cosim.formats.bounds import READERS
 from automotive_cosim.formats.docs import field_docs, member_docs
 from automotive_cosim.interface import spaces
 from automotive_cosim.interface.policy import HOUSE
@@ -165,6 +166,9 @@ MADE: Mapping[str, Callable[[], str]] = {
         ("rule", "words", "source"), [(f"`{each.id}`", each.words, each.source) for each in HOUSE]
     ),
     "scenario": lambda: _fields("scenario"),
+    "readers": lambda: _table(
+        ("file", "read by", "bound"), [(each.what, f"`{each.where}`", each.bound) for each in READERS]
+    ),
     "settings": lambda: _table(
         ("factor of drives", "value"),
         [(f"`{name}`", about) for name, about in field_docs(DriveSettings).items()],

@@ -17,6 +17,7 @@ from pathlib import Path
 import numpy as np
 
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats.xml import read_tree
 from automotive_cosim.traffic.network import drives_on_left
 from automotive_cosim.traffic.sumo_programs import first_error, run
 
@@ -51,7 +52,7 @@ def write_opendrive(net: Path, target: Path) -> None:
         ok, printed = run("netconvert", ("-s", ours, "--opendrive-output=road.xodr"), scratch)
         if not ok:
             raise ScenarioError(f"netconvert cannot write {net} as OpenDRIVE: {first_error(printed)}")
-        root = ET.parse(scratch / "road.xodr").getroot()
+        root = read_tree(scratch / "road.xodr", error=ScenarioError)
     mend(root, left_hand=drives_on_left(net))
     ET.indent(root)
     ET.ElementTree(root).write(target, encoding="UTF-8", xml_declaration=True)

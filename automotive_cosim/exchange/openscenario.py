@@ -20,9 +20,10 @@ from math import pi
 from pathlib import Path
 
 from automotive_cosim.contracts import SeenVehicle, Weather
-from automotive_cosim.errors import UserError
+from automotive_cosim.errors import ScenarioError, UserError
 from automotive_cosim.exchange.bodies import FRONT_AXLE, GAP_S, REAR_AXLE, WHEEL_M, heading_rad, height_m, place_at
 from automotive_cosim.exchange.recording import Recording
+from automotive_cosim.formats.xml import read_tree
 
 VERSIONS = "1.2", "1.3"
 """Of the standard that can be written."""
@@ -293,7 +294,7 @@ def _environment(action: ET.Element, name: str, sky: Weather | None, local_time:
 def _signals_of(road: Path) -> Mapping[str, Mapping[int, str]]:
     """The signals of an OpenDRIVE file by netconvert: light -> place of the link's letter -> id."""
     found: dict[str, dict[int, str]] = {}
-    for signal in ET.parse(road).getroot().iter("signal"):
+    for signal in read_tree(road, error=ScenarioError).iter("signal"):
         light, _, place = signal.attrib["id"].rpartition("_")
         if light and place.isdecimal():
             found.setdefault(light, {})[int(place)] = signal.attrib["id"]

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from automotive_cosim.errors import ScenarioError
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.xml import scan
 
 
@@ -98,5 +99,5 @@ def read_tree(path: Path) -> XmlElement:
     def end(tag: str) -> None:
         open_elements.pop()
 
-    scan(path, start, end, error=ScenarioError)
+    scan(path, start, end, error=ScenarioError, most_elements=bounds.KEPT_ELEMENTS)
     return roots[0]

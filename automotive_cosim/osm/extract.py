@@ -6,6 +6,7 @@ ways (paths, railways) are removed, because each path that meets a road would sp
 
 from __future__ import annotations
 
+import os
 import re
 import shutil
 import tempfile
@@ -19,7 +20,9 @@ from typing import Any, NamedTuple
 
 from automotive_cosim.contracts import GroundKind
 from automotive_cosim.errors import ImportMapError, SetupError
+from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_utf8, open_file, opened
+from automotive_cosim.formats.limited import read_limited
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
@@ -169,6 +172,14 @@ def read(source: Path) -> Extract:
         ImportMapError: the file is missing, empty, truncated, not OSM data, or without roads.
         SetupError: the osmium package is not installed.
     """
+    if not is_json(_head(source)):
+        _osmium()
+    return read_limited(_read, source, bounds.MAP, ImportMapError)
+
+
+def _read(source: Path) -> Extract:
+    """Runs in a process with limits: how much an extract unpacks to, only its readers know."""
+    os.environ["OSMIUM_POOL_THREADS"] = "2"  # each of as many as there are cores would reserve memory
     ways, relations, nodes, cameras, areas = (_read_json if is_json(_head(source)) else _read_osm)(source)
     ways.sort(key=lambda way: way.way_id)
     complete = [piece for way in ways for piece in _known_pieces(way, nodes)]
@@ -222,11 +233,11 @@ def _watching(
 LIMITS_ENFORCED = frozenset(("maxspeed", "average_speed"))
 """Values of ``enforcement`` that are about speed (OSM wiki, "Relation:enforcement")."""
 
-_Read = tuple[list[OsmWay], tuple[Relation, ...], dict[int, Node], dict[int, Node], tuple[MappedArea, ...]]
+_Parts = tuple[list[OsmWay], tuple[Relation, ...], dict[int, Node], dict[int, Node], tuple[MappedArea, ...]]
 """Ways open to cars, relations, the nodes of both, speed cameras, and the ground."""
 
 
-def _read_osm(source: Path) -> _Read:
+def _read_osm(source: Path) -> _Parts:
     kind = _format(source, _head(source))
     deleted, version = _checked(source) if kind != "pbf" else (set[tuple[str, int]](), "")
     osmium = _osmium()
@@ -264,7 +275,7 @@ _UNSORTED = re.compile(r"out of order|twice")
 """What libosmium says of a file whose elements are not sorted, or are there twice."""
 
 
-def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch: Path) -> _Read:
+def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch: Path) -> _Parts:
     """Reads a file in which elements are in any order, more than once (the newest version counts), or deleted."""
     osmium = _osmium()
     merged = osmium.MergeInputReader()
@@ -285,7 +296,7 @@ def _read_sorted(source: Path, kind: str, deleted: Set[tuple[str, int]], scratch
     return _read_file(osmium.io.File(str(scratch / "sorted.osm.pbf"), "pbf"))
 
 
-def _read_file(file: Any) -> _Read:
+def _read_file(file: Any) -> _Parts:
     carried: dict[int, Node] = {}
     ways, relations = _read_ways(file, carried)
     nodes = carried | _read_nodes(file, _wanted(ways, relations))
@@ -300,7 +311,7 @@ def _wanted(ways: Iterable[OsmWay], relations: Iterable[Relation]) -> set[int]:
     return {ref for way in ways for ref in way.nodes} | {ref for kind, ref, _ in members if kind == "n"}
 
 
-def _read_json(source: Path) -> _Read:
+def _read_json(source: Path) -> _Parts:
     read = OverpassJson(source)
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
     relations = tuple(filter(_is_kept, (Relation(*relation) for relation in read.relations())))

@@ -36,6 +36,9 @@ FARTHEST_M = 100.0
 SIGNALS_WITHIN_M = 40.0
 """Signals this near to a junction may be its own: they decide, and a patch of its type would take them away."""
 
+BAND_DEG = 0.0005
+"""Bands of latitude in which signals are looked up, wider than that distance."""
+
 PRIORITY = {STOP: 0, GIVE_WAY: -1}
 """Of an approach with a sign, below every class of roads; who stops has it over who only yields."""
 
@@ -209,13 +212,16 @@ def _place(kind: str, ref: int, tags: Mapping[str, str], joints: Joints, signs: 
 
 def _rule(joints: Joints, signs: MappedSigns, every: set[int]) -> None:
     """Says which junctions get a type, and at which the approaches get priorities."""
-    signals = [node.position for ref, node in joints.nodes.items() if joints.has_signal(ref)]
+    signals: dict[int, list[Position]] = {}
+    for ref in filter(joints.has_signal, joints.nodes):
+        place = joints.nodes[ref].position
+        signals.setdefault(round(place.lat_deg / BAND_DEG), []).append(place)
 
     def is_free(ref: int) -> bool:
         here = joints.nodes[ref].position
-        return all(
-            abs(here[1] - lat) > 0.001 or away_m(here, (lon, lat)) > SIGNALS_WITHIN_M for lon, lat in signals
-        )
+        band = round(here.lat_deg / BAND_DEG)
+        near = (place for each in (band - 1, band, band + 1) for place in signals.get(each, ()))
+        return all(away_m(here, place) > SIGNALS_WITHIN_M for place in near)
 
     by_junction: dict[int, set[Approach]] = {}
     for approach in signs.approaches:

@@ -21,8 +21,9 @@ from typing import Any
 
 from automotive_cosim.contracts import FeedbackCode, Json
 from automotive_cosim.errors import UserError
+from automotive_cosim.formats.files import file_sha256
 from automotive_cosim.publish import archive
-from automotive_cosim.publish.contents import FORMAT, NAME, Contents, counts, file_sha256
+from automotive_cosim.publish.contents import FORMAT, NAME, Contents, counts
 from automotive_cosim.run.coverage import coverage
 from automotive_cosim.run.moments import judged_file
 from automotive_cosim.run.row import as_json

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Generic
 
 from automotive_cosim.errors import BudgetSpentError, InfrastructureError, TriggerNotReachedError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.files import read_json, write_whole
 from automotive_cosim.run import worker
 from automotive_cosim.run.executor import CannotWrite, Executor, J, LostError, Opener, R, Worker
 from automotive_cosim.run.jobs import failed
@@ -406,7 +406,7 @@ def spent_before(store: Store[R]) -> Spent:
     tokens = sum(getattr(row, "tokens_in", 0) + getattr(row, "tokens_out", 0) for row in rows)
     usd = sum(getattr(row, "cost_usd", 0.0) for row in rows)
     path = store.folder / SPENT
-    noted = from_json(Spent, json.loads(path.read_text("utf-8"))) if path.is_file() else Spent()
+    noted = from_json(Spent, read_json(path)) if path.is_file() else Spent()
     return Spent(max(tokens, noted.tokens), max(usd, noted.usd))
 
 

@@ -28,7 +28,7 @@ from urllib.parse import parse_qs, unquote, urlsplit
 from automotive_cosim import __version__
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.formats.files import parse_json
+from automotive_cosim.formats.files import parse_json, read_bytes
 from automotive_cosim.safety.page import PAGE
 from automotive_cosim.serve import catalogue
 from automotive_cosim.serve.content import Content
@@ -109,6 +109,7 @@ class Site:
         self._game = game
         self._study = study
         self._content = Content(RecordFolders(folders))
+        self.first_page = self._content.first_page
         static = Path(str(files("automotive_cosim.serve") / "static"))
         self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
         run, episode = r"(?P<run>[0-9a-f]{12})", r"(?:/episodes/(?P<episode>[\w.+-]+))?"
@@ -145,11 +146,11 @@ class Site:
                 (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
                 (rf"/api/evaluations/{run}/search\.html", lambda path, _: self._findings(path["run"])),
-                (rf"/api/studies/{run}", lambda path, _: _json(content.decisions(path["run"]))),
+                (rf"/api/studies/{run}", lambda path, _: _json(content.study(path["run"], ""))),
                 (rf"/api/studies/{run}/live", lambda path, _: _json(content.watched_study(path["run"]))),
                 (
-                    rf"/api/studies/{run}/decisions/(?P<decision>[\w.+-]+)",
-                    lambda path, _: _json(content.decision_map(path["run"], path["decision"])),
+                    rf"/api/studies/{run}/(?P<part>\w+)/(?P<item>[\w.+-]+)",
+                    lambda path, _: _json(content.study(path["run"], path["part"], path["item"])),
                 ),
                 (r"/api/tasks", lambda _, __: _json(catalogue.tasks())),
                 (r"/api/tasks/(?P<name>[\w-]+)", lambda path, _: _json(catalogue.task(path["name"]))),
@@ -288,13 +289,13 @@ class Site:
         """The page of a search."""
         records = self._content.records
         page = records.file(records.entry(name), PAGE)
-        return WebAnswer(page.read_bytes(), "text/html", is_alone=True)
+        return WebAnswer(read_bytes(page), "text/html", is_alone=True)
 
     def _picture(self, path: Mapping[str, str], query: Mapping[str, str]) -> WebAnswer:
         records = self._content.records
         entry = records.entry(path["run"])
         picture = records.picture(entry, records.trial(entry, path["episode"]), int(path["step"]))
-        return WebAnswer(picture.read_bytes(), "image/jpeg", 60)
+        return WebAnswer(read_bytes(picture), "image/jpeg", 60)
 
 
 class WebServer(ThreadingHTTPServer):
@@ -339,7 +340,7 @@ class WebServer(ThreadingHTTPServer):
     @property
     def address(self) -> str:
         """The address to open in a browser, including the token."""
-        return self._address(self.token, "")
+        return self._address(self.token, self.site.first_page())
 
     @property
     def people_address(self) -> str:

@@ -19,6 +19,8 @@ from automotive_cosim import scenarios
 from automotive_cosim.contracts import EgoEnd
 from automotive_cosim.errors import NoRoomError
 from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.studies.calls.flow import flow
+from automotive_cosim.studies.calls.ledger import keep_ledger, run_on
 from automotive_cosim.studies.congestion.outputs import read_flows
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
@@ -72,9 +74,9 @@ def _ours(scenario: scenarios.Scenario, drive_s: float, folder: Path, flow_s: fl
     outputs = folder / f"flow{flow_s}"
     outputs.mkdir(parents=True)
     with closing(Forked(scenario, SEED, allow_unprojected=True, outputs=outputs, flow_s=flow_s)) as warm:
-        warm.keep_ledger()
+        warm.call(keep_ledger)
         with closing(warm.copy()) as copy:
-            copy.begin(drive_s, INTERVAL_S)
+            copy.begin(flow, drive_s, INTERVAL_S)
             copy.ended()
         assert copy.outputs is not None
         return copy.outputs
@@ -144,10 +146,10 @@ def delays(config: Path, departures: int = DEPARTURES) -> Iterator[tuple[float, 
     longer than at the limits, the time that it is told, and the time that it takes."""
     scenario = open_scenario(config)
     with closing(Forked(scenario, SEED, allow_unprojected=True)) as warm:
-        warm.keep_ledger()
+        warm.call(keep_ledger)
         for number in range(departures):
             if number:
-                warm.run_on(DEPARTS_EVERY_S)
+                warm.call(run_on, DEPARTS_EVERY_S)
             for trip in scenario.ego.trips:
                 with suppress(NoRoomError), closing(warm.depart(EgoPlan(trip, "steady", SEED))) as drive:
                     first = drive.state

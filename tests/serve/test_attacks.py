@@ -11,7 +11,7 @@ from collections.abc import Callable
 from pathlib import Path
 from urllib.parse import quote
 
-from automotive_cosim.formats.files import MOST_VALUES
+from automotive_cosim.formats.bounds import VALUES
 from automotive_cosim.run.road_recorder import is_being_written
 from automotive_cosim.serve.server import MOST_BYTES
 from tests.laws import over
@@ -76,7 +76,7 @@ def test_links_in_an_evaluation_do_not_lead_out(serving: Serving, tmp_path: Path
 def test_json_that_grows_when_it_is_read_is_refused_and_hides_nothing(serving: Serving, tmp_path: Path) -> None:
     write_record(tmp_path / "good", goal=HOSTILE)
     for name, text in (
-        ("many", "[" + "[]," * (MOST_VALUES // 2 + 1) + "0]"),
+        ("many", "[" + "[]," * (VALUES // 2 + 1) + "0]"),
         ("deep", "[" * 200_000 + "]" * 200_000),
         ("digits", '{"goal": ' + "9" * 10_000 + "}"),
         ("list", "[1]"),
