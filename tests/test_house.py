@@ -36,8 +36,8 @@ CEILINGS = {
     "drives": (7279, 81, 0),
     "envs": (1301, 9, 0),
     "episode": (1733, 19, 0),
-    "exchange": (2080, 5, 0),
-    "formats": (2194, 36, 0),
+    "exchange": (3123, 12, 0),
+    "formats": (2275, 37, 0),
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
@@ -56,8 +56,8 @@ CEILINGS = {
     "studies": (12808, 114, 92),
     "tasking": (4166, 120, 0),
     "tasks": (29394, 1, 0),
-    "tests": (58834, 118, 0),
-    "traffic": (10885, 75, 0),
+    "tests": (59149, 119, 0),
+    "traffic": (11164, 76, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
