@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from automotive_cosim.calibration.sheets import read_sheet
+from automotive_cosim.calibration.sumo_counts import read_xml_counts
 from PIL import Image
 
 import automotive_cosim
-from automotive_cosim.calibration.sheets import read_sheet
-from automotive_cosim.calibration.sumo_counts import read_xml_counts
 from automotive_cosim.episode.own_prompt import MOST_CHARACTERS, resolved
 from automotive_cosim.errors import UserError
 from automotive_cosim.exchange.tree import read_tree
