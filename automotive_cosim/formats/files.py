@@ -113,6 +113,8 @@ def json_lines(file: IO[bytes], most_values: int | None = None, *, growing: bool
         if not growing or line.endswith(b"\n"):
             yield parse_json(line, left)
             left -= _values(line)
+        elif line[:1] not in (b"{", b"["):
+            raise ValueError("it holds no lines of JSON")
 
 
 def parse_json(text: str | bytes, most_values: int | None = None) -> Any:
@@ -239,7 +241,7 @@ class _Unpacked(io.RawIOBase):
 
     def readinto(self, buffer: bytearray | memoryview) -> int:  # type: ignore[override]
         try:
-            data = self._content.read(len(buffer))
+            data = self._content.read1(len(buffer))  # what is there: `read` loses it where the archive ends
         except (EOFError, zlib.error, lzma.LZMAError) as error:
             if self._growing and isinstance(error, EOFError):
                 return 0
