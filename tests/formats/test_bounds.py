@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from automotive_cosim.calibration.sheets import read_sheet
-from automotive_cosim.calibration.sumo_counts import read_xml_counts
 from PIL import Image
 
 import automotive_cosim
