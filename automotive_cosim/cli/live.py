@@ -15,6 +15,7 @@ from rich.table import Table
 from rich.text import Text
 
 from automotive_cosim.cli.console import Console
+from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, ActionType
 from automotive_cosim.contracts.plain import clock, counted, megabytes_in_words
@@ -25,7 +26,6 @@ from automotive_cosim.geo.text import amount_of_speed
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
 from automotive_cosim.run.observer import Shot
 from automotive_cosim.run.words import (
-    action_in_words,
     is_over,
     limit_in_words,
     limit_kmh,

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image, ImageOps
 
+from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.cockpit.map import RoadMap
 from automotive_cosim.cockpit.theme import NIGHT
@@ -19,7 +20,6 @@ from automotive_cosim.episode.episode import Episode
 from automotive_cosim.formats.files import drafted
 from automotive_cosim.run.episode import EpisodeObserver, EpisodeResult
 from automotive_cosim.run.observer import Shot
-from automotive_cosim.run.words import action_in_words
 
 BEFORE_FRAMES, BEFORE_EVERY_S = 8, 2.0
 AFTER_EVERY_S = 1.0

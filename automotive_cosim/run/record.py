@@ -19,6 +19,7 @@ import numpy as np
 import numpy.typing as npt
 from PIL import Image
 
+from automotive_cosim.cockpit.actions import action_in_words
 from automotive_cosim.cockpit.cockpit import Cockpit
 from automotive_cosim.contracts import KMH_PER_MPS, Json
 from automotive_cosim.cosim.moment import Moment
@@ -38,7 +39,6 @@ from automotive_cosim.run.observer import Shot, TrialObserver
 from automotive_cosim.run.row import as_json
 from automotive_cosim.run.trial_row import TrialRow
 from automotive_cosim.run.versions import STAMPED, installed
-from automotive_cosim.run.words import action_in_words
 
 PICTURE_QUALITY = 85
 LARGE = frozenset({*STATES, "weather", "gps", "connectivity", "events"})

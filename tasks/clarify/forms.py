@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.tasking.checks import Check
 from automotive_cosim.tasking.dialogue import Topic

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
-from automotive_cosim.cockpit.apps.trip.state import TripMeter
+from automotive_cosim.cockpit.apps.calendar import Appointment
+from automotive_cosim.cockpit.apps.trip import TripMeter
 from automotive_cosim.cockpit.signals import ADAS, ENERGY, MEDIA, MIRROR
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Counted, Entered, Filed, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil

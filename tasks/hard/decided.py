@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.signals import CABIN, HMI, HVAC, MEDIA
 from automotive_cosim.tasking.checks import AllOf, Check, Entered, SignalIs
 from automotive_cosim.tasking.dialogue import Says

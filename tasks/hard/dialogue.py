@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.changes import CarChange
 from automotive_cosim.cockpit.places import PlaceKind
 from automotive_cosim.cockpit.signals import CABIN, HMI, HVAC, MEDIA, VOICE

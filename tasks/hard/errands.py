@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.signals import ENERGY, MEDIA
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Entered, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.apps.phone.state import EARLIER, Thread
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.photos import Photo, Shows

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.parking.state import PRICES
+from automotive_cosim.cockpit.apps.parking import PRICES
 from automotive_cosim.cockpit.signals import BODY, CABIN, ENERGY, LINK, VOICE
 from automotive_cosim.tasking.checks import AllOf, AppDataIs, Counted, Entered, SignalIs
 from automotive_cosim.tasking.moves import Open, Slide, Tap, TapUntil

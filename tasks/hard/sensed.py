@@ -8,7 +8,7 @@ from typing import Any
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat
 from automotive_cosim.cockpit.apps.phone.arrivals import Arrival
 from automotive_cosim.cockpit.apps.phone.state import EARLIER, Contact, Thread
-from automotive_cosim.cockpit.apps.trip.state import TripMeter
+from automotive_cosim.cockpit.apps.trip import TripMeter
 from automotive_cosim.cockpit.signals import ADAS, BODY, DRIVE, ENERGY, LIGHTS, MEDIA, OUTSIDE, SEAT, TYRE
 from automotive_cosim.contracts import AlertKind, Weather
 from automotive_cosim.tasking.checks import AlertGiven, AllOf, AppDataIs, Check, Counted, SignalIs

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.aboard import company
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.apps.phone.state import Contact
 from automotive_cosim.cockpit.signals import CABIN, HVAC, MEDIA, SEAT
 from automotive_cosim.contracts import Weather

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from automotive_cosim.cockpit.aboard import company
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.signals import BODY, CABIN, HMI, HVAC, LINK, MEDIA, MIRROR, SEAT, VOICE
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.contracts import Weather

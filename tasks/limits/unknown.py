@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from automotive_cosim.cockpit.apps.calendar.state import Appointment
+from automotive_cosim.cockpit.apps.calendar import Appointment
 from automotive_cosim.cockpit.apps.phone.state import EARLIER, Contact, Thread
 from automotive_cosim.cockpit.belongings import Belongings
 from automotive_cosim.cockpit.lacking import Lacking

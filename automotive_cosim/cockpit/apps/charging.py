@@ -2,20 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
-from automotive_cosim.cockpit.apps.charging.state import ChargingSchedule
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.map.screens import destination
 from automotive_cosim.cockpit.apps.map.way import nearest
 from automotive_cosim.cockpit.commands import Put
+from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, offered
 from automotive_cosim.cockpit.layout import REST, column, panes, row
 from automotive_cosim.cockpit.parts import content, distance, heading, rows, slider, switch, time_setter, title
 from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
 from automotive_cosim.cockpit.signals import ENERGY
-from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
+from automotive_cosim.cockpit.timer import AT_SEVEN, Timer
 from automotive_cosim.cockpit.widgets import Bar, Card, Label, Tile, Widget
+from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import say
+
+
+@dataclass(frozen=True, slots=True)
+class ChargingSchedule(AppData):
+    """The time by which the battery is charged."""
+
+    timer: Timer = AT_SEVEN
+
+    def commands(self) -> dict[str, Any]:
+        """The time; empty without."""
+        return {"charging.schedule": self.timer.shown if self.timer.on else ""}
 
 
 def charging(state: State) -> tuple[Widget, ...]:
@@ -107,3 +122,31 @@ def charging(state: State) -> tuple[Widget, ...]:
             height=64,
         ),
     )
+
+
+@offered
+def schedule_charging(
+    state: State, on: Annotated[bool, "Whether the schedule is on."], time: Annotated[str, CLOCK] = ""
+) -> CallMade:
+    """Have the battery charged by a time of day, or charge at once."""
+    timer = state.of(ChargingSchedule).timer
+    minute = minute_of(time) if time else timer.minute
+    return (
+        minute if isinstance(minute, Feedback) else Put(ChargingSchedule(replace(timer, on=on, minute=minute)), "")
+    )
+
+
+FUNCTIONS = (schedule_charging,)
+
+
+APP = App(
+    name="charging",
+    title=say("Charging"),
+    icon=Icon.CHARGING,
+    order=11,
+    where=Where.STORE,
+    about=say("Charge limit, times and stations nearby"),
+    functions=FUNCTIONS,
+    pages={"charging": AppPage(charging)},
+    starts=lambda state, rng: (ChargingSchedule(),),
+)

@@ -2,17 +2,92 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.apps.trip.commands import ResetTrip
-from automotive_cosim.cockpit.apps.trip.state import TripMeters, odometer
+from dataclasses import dataclass, replace
+from typing import Annotated, Any, Literal
+
+from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.functions import CallMade, offered
 from automotive_cosim.cockpit.layout import REST, column, row
 from automotive_cosim.cockpit.messages import Back, Show
 from automotive_cosim.cockpit.parts import content, distance, fact, minutes, speed, speed_unit, title
 from automotive_cosim.cockpit.signals import ENERGY, HMI
-from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import AppData, Command, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.vehicle import BATTERY_KWH
 from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Widget
+from automotive_cosim.contracts import Feedback, FeedbackCode, Surroundings
 from automotive_cosim.contracts.text import Quantity, say
+
+Reading = tuple[float, float, float]
+"""Driven metres, simulation time in seconds and battery level in percent."""
+
+
+def odometer(state: State) -> Reading:
+    """The present reading."""
+    driven_m = 0.0 if state.outside is None else state.outside.driving.distance_m
+    return driven_m, state.time_s, state.signals[ENERGY.LEVEL]
+
+
+@dataclass(frozen=True, slots=True)
+class TripMeter:
+    """What a trip meter has counted up to a reading of the odometer, from which it counts on."""
+
+    driven_m: float = 0.0
+    took_s: float = 0.0
+    used_kwh: float = 0.0
+    since: Reading = (0.0, 0.0, 0.0)
+    """Driven metres, time and battery (``odometer``) from which it counts on: at departure or the reset."""
+    resets: int = 0
+
+    def at(self, reading: Reading, battery_kwh: float) -> tuple[float, float, float]:
+        """Metres, seconds and kWh that it shows at a reading of the odometer."""
+        (metres, seconds, level), (from_m, from_s, from_level) = reading, self.since
+        used_kwh = max(0.0, from_level - level) / 100 * battery_kwh
+        return self.driven_m + max(0.0, metres - from_m), self.took_s + seconds - from_s, self.used_kwh + used_kwh
+
+
+FROM_HERE = TripMeter()
+"""A trip meter that has counted nothing yet."""
+
+
+@dataclass(frozen=True, slots=True)
+class TripMeters(AppData):
+    """Trip A counts from its reset, trip B keeps counting when A is reset."""
+
+    resets: int = 0
+    since: Reading = (0.0, 0.0, 0.0)
+    """From which trip A counts."""
+    b: TripMeter = FROM_HERE
+
+    def commands(self) -> dict[str, Any]:
+        """How often each was reset."""
+        return {"trip.resets": self.resets, "trip.resets_b": self.b.resets}
+
+    def passed(self, state: State, before: Surroundings | None, dt_s: float) -> None:
+        """At departure, both count on from here."""
+        if before is None:
+            here = odometer(state)
+            state.keep(replace(self, since=here, b=replace(self.b, since=here)))
+
+
+@dataclass(frozen=True, slots=True)
+class ResetTrip(Command):
+    """Count distance and time from here."""
+
+    meter: Literal["a", "b"] = "a"
+
+    def aims(self, state: State) -> frozenset[str]:
+        return frozenset({"trip.resets_b" if self.meter == "b" else "trip.resets"})
+
+    def perform(self, state: State) -> Feedback:
+        """The meter at zero."""
+        trip, here = state.of(TripMeters), odometer(state)
+        if self.meter == "a":
+            state.keep(replace(trip, resets=trip.resets + 1, since=here))
+            return Feedback(FeedbackCode.OK, say("the trip computer is reset"))
+        state.keep(replace(trip, b=TripMeter(since=here, resets=trip.b.resets + 1)))
+        return Feedback(FeedbackCode.OK, say("trip B is reset"))
 
 
 def trip(state: State) -> tuple[Widget, ...]:
@@ -102,3 +177,25 @@ def trip_b(state: State) -> tuple[Widget, ...]:
             ),
         ),
     )
+
+
+@offered
+def reset_trip(state: State, meter: Annotated[Literal["a", "b"], "Which trip meter."]) -> CallMade:
+    """Reset a trip meter: count distance and time from here."""
+    return ResetTrip(meter)
+
+
+FUNCTIONS = (reset_trip,)
+
+
+APP = App(
+    name="trip",
+    title=say("Trip"),
+    icon=Icon.TRIP,
+    order=15,
+    where=Where.STORE,
+    about=say("Distance, time and consumption"),
+    functions=FUNCTIONS,
+    pages={"trip": AppPage(trip, Room.ONE), "trip_b": AppPage(trip_b, Room.ONE)},
+    starts=lambda state, rng: (TripMeters(),),
+)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from automotive_cosim.cockpit.app import Where
-from automotive_cosim.cockpit.apps.store.state import Installed
+from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.apps.store import Installed
 from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.parts import content, rows
 from automotive_cosim.cockpit.registry import apps, apps_in
+from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
-from automotive_cosim.cockpit.theme import Type
+from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Widget
 from automotive_cosim.contracts.text import say
 
@@ -43,3 +44,13 @@ def launcher(state: State) -> tuple[Widget, ...]:
             gap=16,
         ),
     )
+
+
+APP = App(
+    name="apps",
+    title=say("Apps"),
+    icon=Icon.APPS,
+    order=9,
+    where=Where.DOCK,
+    pages={"apps": AppPage(launcher, Room.ONE)},
+)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.climate.screens import glass_words
 from automotive_cosim.cockpit.apps.safety.commands import WarnDriver
 from automotive_cosim.cockpit.apps.vehicle.commands import Wash
@@ -352,3 +353,15 @@ def _act(rect: Rect, act: Act, state: State) -> Tile:
     on = state.signals[act.signal] == act.on
     message: Message = Set(act.signal, act.off if on else act.on)
     return Tile(rect=rect, key=f"outside.act.{act.key}", text=act.text, icon=act.icon, checked=on, on_tap=message)
+
+
+APP = App(
+    name="outside",
+    title=say("Outside"),
+    icon=Icon.OUTSIDE,
+    order=6,
+    where=Where.DOCK,
+    pages={"outside": AppPage(outside)},
+    aliases={"weather": "", "phenomenon": ""},
+    picked={"outside": "rain"},
+)

@@ -2,19 +2,59 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
-from automotive_cosim.cockpit.apps.memo.commands import Record
-from automotive_cosim.cockpit.apps.memo.state import Memos
-from automotive_cosim.cockpit.commands import Remove
+from automotive_cosim.cockpit.app import App, AppPage, Where
+from automotive_cosim.cockpit.commands import Put, Remove
+from automotive_cosim.cockpit.functions import CallMade, named, offered, unknown
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes
 from automotive_cosim.cockpit.messages import Back, Show
 from automotive_cosim.cockpit.parts import content, gone, heading, minutes, note, picked_at, rows, title
-from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import AppData, Command, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Glyph, Label, Look, Row, Widget
+from automotive_cosim.contracts import Feedback, FeedbackCode
 from automotive_cosim.contracts.text import say
+
+
+@dataclass(frozen=True, slots=True)
+class Memos(AppData):
+    """The memos, and the one that is being recorded."""
+
+    kept: tuple[str, ...] = ()
+    recording_since_s: float | None = None
+
+    def commands(self) -> dict[str, Any]:
+        """The memos, and whether one is being recorded."""
+        return {"apps.memos": list(self.kept), "apps.recording": self.recording_since_s is not None}
+
+
+@dataclass(frozen=True, slots=True)
+class Record(Command):
+    """Begin or end a spoken memo."""
+
+    def aims(self, state: State) -> frozenset[str]:
+        """The memos, and that one is being recorded."""
+        return frozenset({"apps.memos", "apps.recording"})
+
+    def perform(self, state: State) -> Feedback:
+        """The begin, or the memo."""
+        memos = state.of(Memos)
+        if memos.recording_since_s is None:
+            state.keep(replace(memos, recording_since_s=state.time_s))
+            return Feedback(FeedbackCode.OK, say("the memo is being recorded"))
+        seconds = int(state.time_s - memos.recording_since_s)
+        memo = say(
+            "Memo {number}, {time}, {length}",
+            number=len(memos.kept) + 1,
+            time=state.clock,
+            length=f"{seconds // 60}:{seconds % 60:02d}",
+        )
+        state.keep(Memos((*memos.kept, memo)))
+        return Feedback(FeedbackCode.OK, say("{memo} is kept", memo=memo))
 
 
 def memo(state: State) -> tuple[Widget, ...]:
@@ -102,3 +142,37 @@ def memo_note(state: State) -> tuple[Widget, ...]:
             ),
         ),
     )
+
+
+@offered
+def record_memo(state: State) -> CallMade:
+    """Begin to record a spoken memo, or end the one that is being recorded."""
+    return Record()
+
+
+@offered
+def delete_memo(state: State, memo: Annotated[str, "The memo, as the screen memo tells it."]) -> CallMade:
+    """Delete a memo."""
+    memos = state.of(Memos)
+    found = named(memo, memos.kept)
+    if found is None:
+        return unknown("memo", memo, memos.kept)
+    at = memos.kept.index(found)
+    return Put(replace(memos, kept=(*memos.kept[:at], *memos.kept[at + 1 :])), "")
+
+
+FUNCTIONS = (record_memo, delete_memo)
+
+
+APP = App(
+    name="memo",
+    title=say("Memos"),
+    icon=Icon.MEMO,
+    order=14,
+    where=Where.STORE,
+    about=say("Spoken notes"),
+    functions=FUNCTIONS,
+    pages={"memo": AppPage(memo), "note": AppPage(memo_note, Room.ONE)},
+    aliases={"memos": ""},
+    starts=lambda state, rng: (Memos(),),
+)

@@ -2,18 +2,78 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from typing import Annotated, Any
 
-from automotive_cosim.cockpit.apps.calendar.state import Agenda, Appointment
+import numpy as np
+
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.commands import Put, Remove
+from automotive_cosim.cockpit.functions import CLOCK, CallMade, minute_of, named, offered, unknown
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column
 from automotive_cosim.cockpit.messages import Back, Show
 from automotive_cosim.cockpit.parts import content, gone, note, picked_at, rows, title
-from automotive_cosim.cockpit.state import State
+from automotive_cosim.cockpit.places import Gazetteer, PlaceKind
+from automotive_cosim.cockpit.size import Room
+from automotive_cosim.cockpit.state import AppData, State
 from automotive_cosim.cockpit.theme import Icon, Type
 from automotive_cosim.cockpit.widgets import Button, Card, Label, Row, Widget
+from automotive_cosim.contracts import Feedback
 from automotive_cosim.contracts.text import joined, say
+
+APPOINTMENTS = 4
+_OCCASIONS = (
+    (say("Check-up"), PlaceKind.HOSPITAL),
+    (say("Team meeting"), PlaceKind.WORK),
+    (say("Meal with Nora"), PlaceKind.RESTAURANT),
+    (say("Parents' evening"), PlaceKind.SCHOOL),
+    (say("Training"), PlaceKind.GYM),
+    (say("Groceries"), PlaceKind.SHOP),
+    (say("Meet the visitors"), PlaceKind.STATION),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Appointment:
+    """An entry of the calendar."""
+
+    at: str
+    title: str
+    place: str
+
+    @property
+    def name(self) -> str:
+        """Tells it from others, regardless of its time."""
+        return say("{first}, {second}", first=self.title, second=self.place)
+
+
+@dataclass(frozen=True, slots=True)
+class Agenda(AppData):
+    """The appointments, by time."""
+
+    entries: tuple[Appointment, ...]
+
+    def commands(self) -> dict[str, Any]:
+        return {
+            "calendar.entries": [
+                {"at": entry.at, "title": entry.title, "place": entry.place} for entry in self.entries
+            ]
+        }
+
+
+def agenda(rng: np.random.Generator, atlas: Gazetteer) -> Agenda:
+    """Draws the day's appointments at places of the network."""
+    hours = np.sort(rng.choice(np.arange(8, 21), APPOINTMENTS, replace=False))
+    entries = []
+    for hour, at in zip(hours, rng.permutation(len(_OCCASIONS))[:APPOINTMENTS], strict=True):
+        title, kind = _OCCASIONS[int(at)]
+        there = atlas.of(kind)
+        if there:
+            place = there[int(rng.integers(len(there)))].name
+            entries.append(Appointment(f"{hour:02d}:{30 * int(rng.integers(2)):02d}", title, place))
+    return Agenda(tuple(entries))
+
 
 NO_PLACE = say("No place is given")
 MOVES_MIN = (
@@ -119,3 +179,53 @@ def appointment(state: State) -> tuple[Widget, ...]:
             ),
         ),
     )
+
+
+AppointmentName = Annotated[str, "Its title, or title and place with a comma between, if several have the title."]
+
+
+@offered
+def move_appointment(state: State, appointment: AppointmentName, time: Annotated[str, CLOCK]) -> CallMade:
+    """Move an appointment of today to another time."""
+    at, minute = _index(state, appointment), minute_of(time)
+    if isinstance(at, Feedback):
+        return at
+    if isinstance(minute, Feedback):
+        return minute
+    entries = state.of(Agenda).entries
+    moved = replace(entries[at], at=f"{minute // 60:02d}:{minute % 60:02d}")
+    return Put(Agenda((*entries[:at], moved, *entries[at + 1 :])), "")
+
+
+@offered
+def remove_appointment(state: State, appointment: AppointmentName) -> CallMade:
+    """Remove an appointment of today."""
+    at, entries = _index(state, appointment), state.of(Agenda).entries
+    return at if isinstance(at, Feedback) else Put(Agenda((*entries[:at], *entries[at + 1 :])), "")
+
+
+def _index(state: State, name: str) -> int | Feedback:
+    entries = state.of(Agenda).entries
+    for names in ([entry.name for entry in entries], [entry.title for entry in entries]):
+        found = named(name, names)
+        if found is not None:
+            return names.index(found)
+    return unknown("appointment", name, (entry.name for entry in entries))
+
+
+FUNCTIONS = (move_appointment, remove_appointment)
+
+
+APP = App(
+    name="calendar",
+    title=say("Calendar"),
+    icon=Icon.CALENDAR,
+    order=16,
+    where=Where.STORE,
+    about=say("Today's appointments and how to get there"),
+    functions=FUNCTIONS,
+    pages={"calendar": AppPage(calendar, Room.ONE), "appointment": AppPage(appointment, Room.ONE)},
+    preinstalled=False,
+    starts=lambda state, rng: (agenda(rng, state.of(Gazetteer)),),
+    turn=5,
+)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from automotive_cosim.cockpit.aboard import Kind, Occupant, Seat, seated
+from automotive_cosim.cockpit.app import App, AppPage
 from automotive_cosim.cockpit.forecast import MINUTES, cabin_c
 from automotive_cosim.cockpit.geometry import Rect
 from automotive_cosim.cockpit.layout import REST, column, panes, row
@@ -148,3 +149,12 @@ def _for_them(rect: Rect, state: State) -> Widget:
             ),
         ),
     )
+
+
+APP = App(
+    name="cabin",
+    title=say("Cabin"),
+    icon=Icon.CONTACTS,
+    order=17,
+    pages={"cabin": AppPage(cabin)},
+)

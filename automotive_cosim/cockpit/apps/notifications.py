@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.messages import Dismiss, Show
 from automotive_cosim.cockpit.notices import LOW_BATTERY_PCT, LOW_KPA, NOTICED, TYRES
 from automotive_cosim.cockpit.parts import content, note, rows, title
 from automotive_cosim.cockpit.signals import ENERGY, GLASS
+from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import Icon
 from automotive_cosim.cockpit.widgets import Button, Card, Row, Widget
@@ -87,3 +89,13 @@ def notifications(state: State) -> tuple[Widget, ...]:
             ),
         ),
     )
+
+
+APP = App(
+    name="notifications",
+    title=say("Notices"),
+    icon=Icon.BELL,
+    order=19,
+    where=Where.STATUS,
+    pages={"notifications": AppPage(notifications, Room.ONE)},
+)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from automotive_cosim.cockpit.app import App, AppPage, Where
 from automotive_cosim.cockpit.apps.map import lookout
 from automotive_cosim.cockpit.apps.map.scene import ego
 from automotive_cosim.cockpit.apps.map.screens import map_view, next_turn, sign_view, street
 from automotive_cosim.cockpit.apps.media.commands import Skip
-from automotive_cosim.cockpit.apps.outside.screens import PHENOMENA
+from automotive_cosim.cockpit.apps.outside import PHENOMENA
 from automotive_cosim.cockpit.apps.phone.state import Directory, Phone
 from automotive_cosim.cockpit.apps.safety.state import KINDS, Alerts
 from automotive_cosim.cockpit.apps.settings.state import Connections
@@ -19,12 +20,13 @@ from automotive_cosim.cockpit.messages import Show
 from automotive_cosim.cockpit.notices import NOTICED, lit, lit_in_words
 from automotive_cosim.cockpit.parts import content, distance, heading, speed, speed_unit, temperature
 from automotive_cosim.cockpit.signals import CABIN, ENERGY, GLASS, HVAC, MEDIA, MOTION
+from automotive_cosim.cockpit.size import Room
 from automotive_cosim.cockpit.state import State
 from automotive_cosim.cockpit.theme import GAP, Icon, Type
 from automotive_cosim.cockpit.vehicle import WINDOWS
 from automotive_cosim.cockpit.widgets import Bar, Button, Card, Cover, Glyph, Label, Look, Telltales, Widget
 from automotive_cosim.contracts import AlertKind
-from automotive_cosim.contracts.text import counted, say
+from automotive_cosim.contracts.text import counted, say, say_in
 
 METRES_PER_PIXEL = 1.6
 """Scale of the small map."""
@@ -369,3 +371,14 @@ def media_card(rect: Rect, state: State) -> Widget:
             ),
         ),
     )
+
+
+APP = App(
+    name="home",
+    title=say("Home"),
+    short=say_in("dock", "Home"),
+    icon=Icon.HOME,
+    order=1,
+    where=Where.DOCK,
+    pages={"home": AppPage(home, Room.WHOLE)},
+)
