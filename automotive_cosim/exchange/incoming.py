@@ -117,7 +117,7 @@ def _read(root: XmlElement, file: Path) -> _Read:
                 "is outside the subset that is imported; write its values where they are used"
             )
     logic = (root.find("RoadNetwork") or root).find("LogicFile")
-    read = _Read(None if logic is None else file.parent / logic.text("filepath"), {})
+    read = _Read(None if logic is None else _beside(file, logic), {})
     for entity in (root.find("Entities") or root).only("ScenarioObject") if root.find("Entities") else ():
         vehicle = entity.one("Vehicle")
         read.vehicles[entity.text("name")] = _Vehicle(entity.text("name"), _front_m(vehicle))
@@ -267,6 +267,19 @@ def _sky(weather: XmlElement, before: Weather) -> Weather:
         is_fog = seen_m < 1000 and not sky.precipitation
         sky = replace(sky, visibility=seen_m, weather_code=45 if is_fog else sky.weather_code)
     return sky
+
+
+def _beside(file: Path, logic: XmlElement) -> Path:
+    """The road that a file names, which may not be elsewhere on this machine."""
+    named = logic.text("filepath")
+    try:
+        road = (file.parent / named).resolve()
+        is_beside = road.is_relative_to(file.parent.resolve())
+    except (OSError, ValueError):
+        is_beside = False
+    if not is_beside:
+        raise logic.refused(f"names {named[:80]!r}, which is not beside it; copy it there, or give --network")
+    return file.parent / named
 
 
 # --- the road ----------------------------------------------------------------------------------------------------
