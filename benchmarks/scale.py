@@ -31,9 +31,10 @@ from typing import Any
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.row import steady
 from automotive_cosim.run.store import read_rows
-from automotive_cosim.studies.batch import drives, run_study
-from automotive_cosim.studies.plan import StudyPlan
-from automotive_cosim.studies.rows import DriveRow
+from automotive_cosim.studies.calls.ledger import run_on
+from automotive_cosim.studies.reroute.batch import drives, run_study
+from automotive_cosim.studies.reroute.plan import StudyPlan
+from automotive_cosim.studies.reroute.rows import DriveRow
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked, RemoteTraffic
@@ -128,7 +129,7 @@ class Clock:
 
         def noted(simulation: Forked, plan: EgoPlan) -> RemoteTraffic:
             if not self.warm_s:
-                self.vehicles = simulation.run_on(1.0).running
+                self.vehicles = simulation.call(run_on, 1.0).running
                 self.warm_s = spent_s()
             return depart(simulation, plan)
 

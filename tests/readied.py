@@ -17,7 +17,7 @@ from typing import Any
 import automotive_cosim.drives.families
 import automotive_cosim.proof.prover
 import automotive_cosim.publish.verify
-import automotive_cosim.studies.batch  # noqa: F401, like the others for the workers
+import automotive_cosim.studies.reroute.batch  # noqa: F401, like the others for the workers
 from automotive_cosim.agents import process
 from automotive_cosim.agents.wire import Wire
 from automotive_cosim.run import fork_server, processes, worker

@@ -103,15 +103,17 @@ READERS = (
     BoundedReader("a recorded road", "run.road", f"{_PACKED}; {ROAD_VALUES:,} values, {_mb(LINE_BYTES)} a line"),
     BoundedReader("SUMO's XML (networks, routes, additionals)", "formats.xml", _XML),
     BoundedReader("OpenSCENARIO and OpenDRIVE, also packed", "exchange.tree", _TREE),
-    BoundedReader("counts in SUMO's XML", "calibration.sumo_counts", _TREE),
+    BoundedReader("counts in SUMO's XML", "studies.calibration.sumo_counts", _TREE),
     BoundedReader("OSM as XML, packed XML, PBF or Overpass JSON", "osm.extract", _process(MAP)),
     BoundedReader(
         "a workbook (.xlsx, .xls, .ods) of counts",
-        "calibration.sheets",
+        "studies.calibration.sheets",
         f"declared to unpack to {_mb(FREELY_UNPACKED_BYTES)} or {BOOK_TIMES} times its size; {CELLS:,} cells with "
         f"{_mb(CELL_BYTES)} of text; {_process(WORKBOOK)}",
     ),
-    BoundedReader("a table of counts as text", "calibration.sheets", f"{_mb(TABLE_BYTES)}, {CELLS:,} cells"),
+    BoundedReader(
+        "a table of counts as text", "studies.calibration.sheets", f"{_mb(TABLE_BYTES)}, {CELLS:,} cells"
+    ),
     BoundedReader("a table that a study packed", "formats.csvs", f"{_PACKED}; {CELLS:,} cells"),
     BoundedReader("a picture of a trial", "report.playback", f"{PIXELS:,} pixels"),
     BoundedReader("a bundle", "publish.archive", f"not compressed, at most its own size; {_process(BUNDLE)}"),

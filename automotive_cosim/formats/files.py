@@ -113,6 +113,8 @@ def json_lines(file: IO[bytes], most_values: int | None = None, *, growing: bool
         if not growing or line.endswith(b"\n"):
             yield parse_json(line, left)
             left -= _values(line)
+        elif line[:1] not in (b"{", b"["):
+            raise ValueError("it holds no lines of JSON")
 
 
 def parse_json(text: str | bytes, most_values: int | None = None) -> Any:

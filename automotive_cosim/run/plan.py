@@ -179,9 +179,11 @@ class Plan(EvaluationSettings):
         return tuple(dict.fromkeys(sorted(lacks)))
 
     def jobs(self) -> tuple[TrialJob, ...]:
-        """Every trial, grouped by warm simulation, in an order from which an agent learns nothing.
+        """Every trial, grouped by warm simulation, then by instance, whose contestants stand next to each other:
+        wherever a run stops, they can be compared on all that is complete.
 
-        Simulations and the trials within each are ordered by hash: first halves do not come before second ones.
+        Simulations, instances and contestants are ordered by hash, from which an agent learns nothing: first halves
+        do not come before second ones.
 
         Raises:
             UserError: there are more than can ever be run.
@@ -190,7 +192,7 @@ class Plan(EvaluationSettings):
             raise UserError(f"the plan has {most:,} runs; give fewer seeds or repeats, at most {MOST_RUNS:,}")
         every: tuple[TrialJob, ...] = (*self._episodes(), *self._drives(), *self._single())
         jobs = {job.id: job for job in every if self.split == BOTH or self.split == job.split}
-        return tuple(sorted(jobs.values(), key=lambda job: (digest(job.simulation), digest(job.id))))
+        return tuple(sorted(jobs.values(), key=_place))
 
     def most_runs(self) -> int:
         """How many runs it has at most, those of ``trials`` left out, without unfolding it."""
@@ -309,6 +311,10 @@ class Plan(EvaluationSettings):
                     spare_traffic=self.spare_traffic if scenario is None or scenario in task.runs_in else (),
                 )
                 yield EpisodeJob(setup, repeat, self.limits)
+
+
+def _place(job: TrialJob) -> tuple[str, str, str]:
+    return digest(job.simulation), digest(job.instance), digest(job.id)
 
 
 def languages_in_words(codes: Iterable[str]) -> str:

@@ -119,6 +119,7 @@ class Site:
         self._game = game
         self._study = study
         self._content = Content(RecordFolders(folders))
+        self.first_page = self._content.first_page
         static = Path(str(files("automotive_cosim.serve") / "static"))
         self._static = {path.name: path.read_bytes() for path in static.iterdir() if path.is_file()}
         run, episode = r"(?P<run>[0-9a-f]{12})", r"(?:/episodes/(?P<episode>[\w.+-]+))?"
@@ -155,11 +156,11 @@ class Site:
                 (rf"/api/runs/{run}{episode}/pictures/(?P<step>\d{{1,6}})", self._picture),
                 (rf"/api/evaluations/{run}", lambda path, _: _json(content.evaluation(path["run"]))),
                 (rf"/api/evaluations/{run}/search\.html", lambda path, _: self._findings(path["run"])),
-                (rf"/api/studies/{run}", lambda path, _: _json(content.decisions(path["run"]))),
+                (rf"/api/studies/{run}", lambda path, _: _json(content.study(path["run"], ""))),
                 (rf"/api/studies/{run}/live", lambda path, _: _json(content.watched_study(path["run"]))),
                 (
-                    rf"/api/studies/{run}/decisions/(?P<decision>[\w.+-]+)",
-                    lambda path, _: _json(content.decision_map(path["run"], path["decision"])),
+                    rf"/api/studies/{run}/(?P<part>\w+)/(?P<item>[\w.+-]+)",
+                    lambda path, _: _json(content.study(path["run"], path["part"], path["item"])),
                 ),
                 (r"/api/tasks", lambda _, __: _json(catalogue.tasks())),
                 (r"/api/tasks/(?P<name>[\w-]+)", lambda path, _: _json(catalogue.task(path["name"]))),
@@ -390,7 +391,7 @@ class WebServer(ThreadingHTTPServer):
     @property
     def address(self) -> str:
         """The address to open in a browser, including the token."""
-        return self._address(self.token, "")
+        return self._address(self.token, self.site.first_page())
 
     @property
     def people_address(self) -> str:
@@ -445,7 +446,7 @@ class _RequestHandler(BaseHTTPRequestHandler):
     def setup(self) -> None:
         """Reads heads up to their longest."""
         super().setup()
-        self.rfile = _Heads(self.rfile)  # type: ignore[assignment]
+        self.rfile = _Heads(self.rfile)  # type: ignore[assignment, arg-type]
 
     def handle_one_request(self) -> None:
         """Begins with another head."""

@@ -19,9 +19,9 @@ from automotive_cosim.run.store import read_manifest
 from automotive_cosim.studies.congestion.results import CongestionStudy, delay_h, read_congestion
 from automotive_cosim.studies.congestion.words import name_of
 from automotive_cosim.studies.intervals import seed_mean
-from automotive_cosim.studies.results import Study, read_study
+from automotive_cosim.studies.reroute.results import Study, read_study
+from automotive_cosim.studies.reroute.tables import NONE, groups, told, told_mean
 from automotive_cosim.studies.settings import CongestionSettings
-from automotive_cosim.studies.tables import NONE, groups, told, told_mean
 
 AnyStudy = Study | CongestionStudy
 

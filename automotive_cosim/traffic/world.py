@@ -19,7 +19,6 @@ from automotive_cosim.traffic.congestion import MEMORY_S, SAMPLE_PERIOD_S, WINDO
 from automotive_cosim.traffic.detours import Detours
 from automotive_cosim.traffic.drive import EgoDrive
 from automotive_cosim.traffic.ego import FOR_GOOD_S, Driver
-from automotive_cosim.traffic.flow import Advice, Advisor
 from automotive_cosim.traffic.ground import placed, read_mapped
 from automotive_cosim.traffic.incidents import Incidents
 from automotive_cosim.traffic.instant import Instant, KnownInstant
@@ -273,10 +272,6 @@ class World:
     def slowed(self) -> dict[str, float]:
         """Edges with another limit than the scenario has there now, and that limit as a share of it."""
         return self._incidents.slowed
-
-    def advisor(self, advice: Advice, seed: int) -> Advisor:
-        """Begins to advise other cars, with a search of its own."""
-        return Advisor(self._sumo, Router(self._sumo, self.network, self.congestion, SEARCHING_TYPE), advice, seed)
 
     def close(self) -> None:
         """Ends the simulation."""

@@ -12,7 +12,6 @@ import typer
 from annotated_types import Ge, Le
 from typer.testing import CliRunner
 
-from automotive_cosim.calibration.settings import CalibrationOptions
 from automotive_cosim.cli.batches import ExecutorSettings
 from automotive_cosim.cli.derived import filled, settings_in, takes
 from automotive_cosim.cli.main import app
@@ -38,8 +37,9 @@ from automotive_cosim.run.settings import (
     SingleSettings,
 )
 from automotive_cosim.safety.settings import SearchOrder, SearchSettings
-from automotive_cosim.scenarios.settings import EquilibriumSettings, OptimumSettings
 from automotive_cosim.serve.settings import ServeSettings
+from automotive_cosim.studies.calibration.settings import CalibrationOptions
+from automotive_cosim.studies.equilibrium.settings import EquilibriumSettings, OptimumSettings
 from automotive_cosim.studies.settings import CongestionSettings, DaysSettings, RerouteSettings
 from tests.laws import over
 

@@ -23,7 +23,6 @@ from hypothesis.vendor.pretty import RepresentationPrinter
 from automotive_cosim import scenarios
 from automotive_cosim.agents.answer import read as read_answer
 from automotive_cosim.agents.memory import Memory, Strategy
-from automotive_cosim.calibration.counts import read_counts
 from automotive_cosim.cockpit.actions import parse
 from automotive_cosim.contracts import ActionType
 from automotive_cosim.errors import ActionError, UserError
@@ -38,6 +37,7 @@ from automotive_cosim.run.road import read_record
 from automotive_cosim.run.script import read_script
 from automotive_cosim.run.store import read_evaluation, read_rows, read_trace, write_trace
 from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.studies.calibration.counts import read_counts
 
 GRID = scenarios.load("grid").folder
 QUICK = settings(
@@ -350,7 +350,7 @@ from pathlib import Path
 from zoneinfo import ZoneInfo
 from automotive_cosim.errors import UserError
 from automotive_cosim.osm import extract
-from automotive_cosim.calibration.counts import read_counts
+from automotive_cosim.studies.calibration.counts import read_counts
 from automotive_cosim.run.store import read_trace
 from automotive_cosim.scenarios import open_scenario
 resource.setrlimit(resource.RLIMIT_DATA, ({memory}, {memory}))

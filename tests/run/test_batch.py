@@ -346,6 +346,16 @@ def test_kinds_that_were_not_timed_go_first_to_a_warm_simulation_and_last_to_a_c
     assert not queue
 
 
+def test_wherever_a_run_stops_the_contestants_of_all_but_one_instance_are_complete():
+    wanted = plan("always-alert", "no-op", "oracle", scenarios=["grid"], seeds=[0, 1], repeats=3).jobs()
+    queue, done, warm = JobQueue(wanted), Counter(), None
+    while job := queue.take(warm, Counter(), {each.kind for each in wanted}):
+        warm = job.simulation
+        done[job.instance] += 1
+        assert sum(judged < 3 for judged in done.values()) <= 1
+    assert len(done) * 3 == len(wanted)
+
+
 class Poor:
     """An executor whose workers never become ready, or are lost before they do."""
 

@@ -16,7 +16,7 @@ from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.row import JobRow, as_json, columns, from_json, from_line, steady
 from automotive_cosim.run.store import opened, read_rows
-from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, Decision, DriveRow, News
+from automotive_cosim.studies.reroute.rows import NOBODY, NOTHING, Branch, Decision, DriveRow, News
 from automotive_cosim.tasking.task import Basis
 from automotive_cosim.tasking.verdict import PARTS, Part, Verdict
 

@@ -16,6 +16,8 @@ from pathlib import Path
 
 from automotive_cosim import scenarios
 from automotive_cosim.scenarios import open_scenario
+from automotive_cosim.studies.calls.flow import flow
+from automotive_cosim.studies.calls.ledger import keep_ledger
 from automotive_cosim.studies.congestion.outputs import read_flows
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.options import Configuration, edge_data, read_configuration
@@ -64,9 +66,9 @@ def _ours(scenario: scenarios.Scenario, drive_s: float, folder: Path, flow_s: fl
     outputs = folder / f"flow{flow_s}"
     outputs.mkdir(parents=True)
     with closing(Forked(scenario, SEED, allow_unprojected=True, outputs=outputs, flow_s=flow_s)) as warm:
-        warm.keep_ledger()
+        warm.call(keep_ledger)
         with closing(warm.copy()) as copy:
-            copy.begin(drive_s, INTERVAL_S)
+            copy.begin(flow, drive_s, INTERVAL_S)
             copy.ended()
         assert copy.outputs is not None
         return copy.outputs

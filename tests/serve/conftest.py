@@ -14,16 +14,15 @@ from typing import Any
 import pytest
 from PIL import Image
 
-from automotive_cosim.formats.layout import LIVE
+from automotive_cosim.formats.layout import LIVE, WATCHED
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
 from automotive_cosim.run.kept import shown
 from automotive_cosim.run.row import as_json
 from automotive_cosim.serve.play import Game
 from automotive_cosim.serve.server import WebServer
 from automotive_cosim.serve.study import PeopleStudy
-from automotive_cosim.studies.live import WATCHED
-from automotive_cosim.studies.plan import StudyPlan
-from automotive_cosim.studies.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
+from automotive_cosim.studies.reroute.plan import StudyPlan
+from automotive_cosim.studies.reroute.rows import NOTHING, Branch, Decision, DriveRow, News, OthersTotals
 from automotive_cosim.tasking.task import Dimension, Module
 
 HOSTILE = "<img src=x onerror=\"document.title='broken in'\">"

@@ -14,10 +14,10 @@ from typer.testing import CliRunner
 from automotive_cosim.cli.batches import ProgressView
 from automotive_cosim.cli.console import Console
 from automotive_cosim.cli.results import report
-from automotive_cosim.cli.study import app
 from automotive_cosim.errors import CosimError, UserError
 from automotive_cosim.formats.incidents import EgoIncident
 from automotive_cosim.run.batch import Progress
+from automotive_cosim.studies.commands import app
 from automotive_cosim.studies.congestion.drive import run_congestion
 from automotive_cosim.studies.congestion.outputs import cells, read_edges, read_flows
 from automotive_cosim.studies.congestion.page import answer, warnings

@@ -9,8 +9,7 @@ from pathlib import Path
 import pytest
 
 from automotive_cosim.errors import CosimError
-from automotive_cosim.scenarios.gap import DrivenTrip, EdgeTimes
-from automotive_cosim.studies.days import (
+from automotive_cosim.studies.days.days import (
     WEEK,
     DaysJob,
     DaysPlan,
@@ -21,7 +20,8 @@ from automotive_cosim.studies.days import (
     make_days,
     run_chain,
 )
-from automotive_cosim.studies.days_page import answer, charts, tables, warnings
+from automotive_cosim.studies.days.page import answer, charts, tables, warnings
+from automotive_cosim.studies.equilibrium.gap import DrivenTrip, EdgeTimes
 
 Draw = Callable[..., Path]
 PLAN = DaysPlan("grid", shares=(0.0, 1.0), seeds=(0, 1))

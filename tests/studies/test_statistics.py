@@ -13,21 +13,30 @@ import pytest
 
 from automotive_cosim.contracts import EgoEnd, Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.studies import compare, policies
-from automotive_cosim.studies.compare import Future
-from automotive_cosim.studies.drive import left_out
-from automotive_cosim.studies.everyone import gini, spread
+from automotive_cosim.studies.calls.accounts import Account, Settled, TrafficSummary
+from automotive_cosim.studies.gridlock import gridlock
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
-from automotive_cosim.studies.page import answer
-from automotive_cosim.studies.plan import StudyPlan, make_study
-from automotive_cosim.studies.points import Diverted, Drawn, Point, compared, shows_signs
-from automotive_cosim.studies.policies import best, chosen, parse_policy
-from automotive_cosim.studies.results import Noise, Study, choices, noise
-from automotive_cosim.studies.rows import NOBODY, NOTHING, Branch, Decision, DriveRow, News, OthersTotals, Replicate
-from automotive_cosim.studies.tables import outcomes, parts
-from automotive_cosim.studies.traffic import gridlock
-from automotive_cosim.studies.warnings import warnings
-from automotive_cosim.traffic.accounts import Account, Settled, TrafficSummary
+from automotive_cosim.studies.reroute import compare, policies
+from automotive_cosim.studies.reroute.compare import Future
+from automotive_cosim.studies.reroute.drive import left_out
+from automotive_cosim.studies.reroute.everyone import gini, spread
+from automotive_cosim.studies.reroute.page import answer
+from automotive_cosim.studies.reroute.plan import StudyPlan, make_study
+from automotive_cosim.studies.reroute.points import Diverted, Drawn, Point, compared, shows_signs
+from automotive_cosim.studies.reroute.policies import best, chosen, parse_policy
+from automotive_cosim.studies.reroute.results import Noise, Study, choices, noise
+from automotive_cosim.studies.reroute.rows import (
+    NOBODY,
+    NOTHING,
+    Branch,
+    Decision,
+    DriveRow,
+    News,
+    OthersTotals,
+    Replicate,
+)
+from automotive_cosim.studies.reroute.tables import outcomes, parts
+from automotive_cosim.studies.reroute.warnings import warnings
 from automotive_cosim.traffic.base import EgoPlan
 from tests.scripted.traffic import Scripted, Stretch
 

@@ -17,10 +17,9 @@ import pytest
 from typer.testing import CliRunner
 
 from automotive_cosim.cli.results import report
-from automotive_cosim.cli.study import app
 from automotive_cosim.contracts import Json
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.layout import LIVE, ROAD, STEPS
+from automotive_cosim.formats.layout import LIVE, ROAD, STEPS, WATCHED
 from automotive_cosim.report.files import write_files
 from automotive_cosim.run.batch import Progress
 from automotive_cosim.run.processes import Processes
@@ -28,23 +27,25 @@ from automotive_cosim.run.road import read_record
 from automotive_cosim.run.road_recorder import mark_as_written
 from automotive_cosim.run.row import steady as steady_part
 from automotive_cosim.run.store import read_rows
-from automotive_cosim.studies import batch, intervals
-from automotive_cosim.studies.batch import run_study
-from automotive_cosim.studies.data import futures
-from automotive_cosim.studies.demand import read_demand
-from automotive_cosim.studies.drive import NO_ROOM
-from automotive_cosim.studies.effects import effects
-from automotive_cosim.studies.live import WATCHED, LiveDrive
-from automotive_cosim.studies.page import write_study
-from automotive_cosim.studies.plan import StudyPlan
-from automotive_cosim.studies.points import NOT_CLEARED
-from automotive_cosim.studies.results import load_study, read_study
-from automotive_cosim.studies.rows import NOTHING, DriveRow
-from automotive_cosim.studies.tables import policies as policy_table
-from automotive_cosim.studies.tables import tables
-from automotive_cosim.studies.tracks import TRACKS
-from automotive_cosim.studies.warnings import steps_told
-from automotive_cosim.traffic.chance import Fresh
+from automotive_cosim.studies import intervals
+from automotive_cosim.studies.calls.chance import Fresh
+from automotive_cosim.studies.commands import app
+from automotive_cosim.studies.reroute import batch
+from automotive_cosim.studies.reroute.batch import run_study
+from automotive_cosim.studies.reroute.data import futures
+from automotive_cosim.studies.reroute.demand import read_demand
+from automotive_cosim.studies.reroute.drive import NO_ROOM
+from automotive_cosim.studies.reroute.effects import effects
+from automotive_cosim.studies.reroute.live import LiveDrive
+from automotive_cosim.studies.reroute.page import write_study
+from automotive_cosim.studies.reroute.plan import StudyPlan
+from automotive_cosim.studies.reroute.points import NOT_CLEARED
+from automotive_cosim.studies.reroute.results import load_study, read_study
+from automotive_cosim.studies.reroute.rows import NOTHING, DriveRow
+from automotive_cosim.studies.reroute.tables import policies as policy_table
+from automotive_cosim.studies.reroute.tables import tables
+from automotive_cosim.studies.reroute.tracks import TRACKS
+from automotive_cosim.studies.reroute.warnings import steps_told
 
 from .conftest import EDGES, MORE_TRIPS, Draw
 

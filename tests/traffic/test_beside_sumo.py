@@ -15,15 +15,12 @@ import pytest
 
 from automotive_cosim.contracts import DrivingState
 from automotive_cosim.errors import ScenarioError
-from automotive_cosim.formats.incidents import Breakdown, Closure, EmergencyVehicle, Roadworks
+from automotive_cosim.formats.incidents import Closure, EmergencyVehicle, Roadworks
 from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.traffic import sumo_programs
 from automotive_cosim.traffic.base import EgoPlan
-from automotive_cosim.traffic.divert import divert
 from automotive_cosim.traffic.drive import EgoDrive
-from automotive_cosim.traffic.flow import SignalControl, control
-from automotive_cosim.traffic.ledger import Ledger, own_choice
-from automotive_cosim.traffic.sumo import EGO, load_library
+from automotive_cosim.traffic.sumo import EGO
 from automotive_cosim.traffic.world import World
 from tests.traffic.in_process import InProcess
 
@@ -268,17 +265,18 @@ def test_drawn_trips_begin_and_end_where_cars_may_drive(how: str, is_closed: boo
                 depart(world, on_it)
 
 
-def test_a_rail_crossing_is_no_signal_to_control(tmp_path: Path) -> None:
-    rails = '<edge id="r1" from="north" to="c" allow="rail"/><edge id="r2" from="c" to="south" allow="rail"/>'
-    flow = '<flow id="t" type="train" end="9999" period="90"><route edges="r1 r2"/></flow>'
-    train = f'<vType id="train" vClass="rail"/>{flow}'
-    scenario = Road(LINE + rails, train + CARS, nodes={"c": 'type="rail_crossing"'}).opened(tmp_path)
+RAILS = '<edge id="r1" from="north" to="c" allow="rail"/><edge id="r2" from="c" to="south" allow="rail"/>'
+TRAINS = (
+    '<vType id="train" vClass="rail"/>'
+    '<flow id="t" type="train" end="9999" period="90"><route edges="r1 r2"/></flow>'
+)
+
+
+def test_a_rail_crossing_is_no_signal(tmp_path: Path) -> None:
+    scenario = Road(LINE + RAILS, TRAINS + CARS, nodes={"c": 'type="rail_crossing"'}).opened(tmp_path)
     with running(scenario) as (_, world, libsumo):
         assert libsumo.trafficlight.getIDList() == ("c",)
         assert not any(way.has_signal for ways in world.network.crossings.values() for way in ways.values())
-        before = libsumo.trafficlight.getProgram("c")
-        assert control(load_library(), SignalControl(control="static")) == 0
-        assert libsumo.trafficlight.getProgram("c") == before
 
 
 # --- what is asked of SUMO --------------------------------------------------------------------------------
@@ -308,31 +306,6 @@ def test_a_detour_is_the_quickest_way_at_the_speeds_driven(tmp_path: Path) -> No
         for _ in range(60):
             world.step()
         assert ways(libsumo) - {"e2"} == {"s1"}
-
-
-def test_the_choice_of_sumos_device_sees_the_traffic_though_nobody_has_one(tmp_path: Path) -> None:
-    scenario = Road(FIRST + LAST + QUICK + SLOW, CRAWLERS).opened(tmp_path, warm_up_s=300.0)
-    with running(scenario) as (_, world, libsumo):
-        world.prepare_copies()
-        depart(world, scenario)
-        assert libsumo.vehicle.getRoute(EGO)[1] == "q1"
-        libsumo.vehicle.rerouteTraveltime(EGO, False)
-        assert libsumo.vehicle.getRoute(EGO)[1] == "q1", "of SUMO"
-        assert own_choice(load_library())[1] == "s1"
-
-
-def test_cars_that_are_told_to_take_another_way_keep_it(tmp_path: Path) -> None:
-    """SUMO's device turns back at its next period who was given a slower way."""
-    road = Road(FIRST.replace("25", "10") + LAST + QUICK + SLOW, CARS.replace("e2", "q1 q2"))
-    with running(road.opened(tmp_path, rerouting=1.0)) as (_, world, libsumo):
-        other = max(libsumo.vehicle.getIDList(), key=libsumo.vehicle.getDeparture)
-        libsumo.vehicle.setRoute(other, ("e1", "s1", "s2", "e3"))
-        took, could = divert(load_library(), ("e1", "q1", "q2", "e3"), ("e1", "s1", "s2", "e3"), 1.0, 0)
-        assert len(took) == could > 1
-        for _ in range(75):
-            world.step()
-        assert libsumo.vehicle.getRoute(other)[1] == "q1", "of SUMO"
-        assert {libsumo.vehicle.getRoute(each)[1] for each in took if each in libsumo.vehicle.getIDList()} == {"s1"}
 
 
 @pytest.mark.parametrize("blue_light", [False, True])
@@ -409,34 +382,3 @@ def test_no_sign_is_put_up_where_sumo_keeps_another_limit_for_cars(tmp_path: Pat
 
 
 # --- what studies count -----------------------------------------------------------------------------------
-
-
-def test_a_queue_is_as_long_as_those_who_wait(tmp_path: Path) -> None:
-    """SUMO's queue output counts from the end of the lane: over the free road before a breakdown too."""
-    scenario = Road().opened(tmp_path, warm_up_s=100.0)
-    with running(scenario) as (_, world, libsumo):
-        world.stage(Breakdown(edge="e2", position_m=100.0))
-        for _ in range(120):
-            world.step()
-        found = Ledger(load_library(), 1.0).queues_m()
-        waiting = [each for each in libsumo.vehicle.getIDList() if libsumo.vehicle.getWaitingTime(each) > 0]
-        assert len(waiting) > 2
-        assert found == {"e2_0": 7.5 * len(waiting)}
-
-
-def test_who_collides_has_not_arrived(tmp_path: Path) -> None:
-    """SUMO lists both among those that have arrived."""
-    with running(Road().opened(tmp_path)) as (_, world, libsumo):
-        ledger = Ledger(load_library(), 1.0)
-        front, rear, *_ = sorted(libsumo.vehicle.getIDList(), key=libsumo.vehicle.getDistance, reverse=True)[1:]
-        libsumo.vehicle.setSpeed(front, 0)
-        libsumo.vehicle.setSpeedMode(rear, 0)
-        libsumo.vehicle.setSpeed(rear, 25)
-        arrived: set[str] = set()
-        for _ in range(80):
-            world.step()
-            ledger.note()
-            arrived |= set(libsumo.simulation.getArrivedIDList())
-        assert {front, rear} <= arrived, "of SUMO"
-        assert not {front, rear} & ledger.arrivals_s.keys()
-        assert ledger.summary().collided == 2

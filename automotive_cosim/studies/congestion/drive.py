@@ -17,6 +17,8 @@ from automotive_cosim.run.executor import Executor, Runner
 from automotive_cosim.run.processes import Processes
 from automotive_cosim.run.stage import doing, warming_up
 from automotive_cosim.run.store import opened
+from automotive_cosim.studies.calls.flow import FlowSummary, flow, take
+from automotive_cosim.studies.calls.ledger import keep_ledger
 from automotive_cosim.studies.congestion.outputs import (
     EDGES,
     EdgeFlow,
@@ -33,9 +35,8 @@ from automotive_cosim.studies.congestion.plan import (
     measure_in,
 )
 from automotive_cosim.studies.congestion.rows import CongestionRow, Emitted, FlowCell, FlowState, MeasureOutcome
-from automotive_cosim.studies.traffic import gridlock
-from automotive_cosim.traffic.flow import FlowSummary
-from automotive_cosim.traffic.fork import Forked, RemoteFlow
+from automotive_cosim.studies.gridlock import gridlock
+from automotive_cosim.traffic.fork import Forked, RemoteCopy
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import read_configuration
 
@@ -48,7 +49,7 @@ def run_congestion(
     retries: int = 1,
     tell: Callable[[Progress[CongestionRow]], None] = lambda progress: None,
 ) -> Progress[CongestionRow]:
-    """Runs the remaining seeds of a study; arguments and errors are those of ``studies.batch.run_study``."""
+    """Runs the remaining seeds of a study; arguments and errors are those of ``reroute.batch.run_study``."""
     plan.check()
     with opened(folder, plan.as_json(), CongestionRow, parts=(EDGES,)) as store:
         return run_jobs(plan.jobs(), store, seeds, failed, executor=executor, retries=retries, tell=tell)
@@ -91,17 +92,17 @@ def _driven(job: CongestionJob, folder: Path) -> CongestionRow:
             scenario, job.seed, warming_up, allow_unprojected=True, outputs=Path(scratch), flow_s=INTERVAL_S
         )
         stack.enter_context(closing(warm))
-        warm.keep_ledger(consumptions=plan.emissions)
-        running: list[RemoteFlow] = []
+        warm.call(keep_ledger, consumptions=plan.emissions)
+        running: list[RemoteCopy] = []
         for name in names:
             copy = stack.enter_context(closing(warm.copy()))
             if name:
-                copy.apply(measure_in(name, "--measure"), job.seed)
-            copy.begin(plan.duration_s, INTERVAL_S)
+                copy.call(take, measure_in(name, "--measure"), job.seed)
+            copy.begin(flow, plan.duration_s, INTERVAL_S)
             running.append(copy)
         tell = _teller()
         for name, copy in zip(names, running, strict=True):
-            summaries = copy.ended(tell)
+            summaries: tuple[FlowSummary, ...] = copy.ended(tell)
             copy.close()
             assert copy.outputs is not None
             flows = list(read_flows(copy.outputs, begin_s, [each.slowed for each in summaries[1:]]))

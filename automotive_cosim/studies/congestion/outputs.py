@@ -9,9 +9,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from automotive_cosim.formats.csvs import read_packed_csv, write_packed_csv
+from automotive_cosim.studies.calls.accounts import QUEUE_PERIOD_S
 from automotive_cosim.studies.congestion.plan import EPOCH_S, INTERVAL_S
 from automotive_cosim.studies.congestion.rows import EdgeRow, FlowCell, FlowSums
-from automotive_cosim.traffic.accounts import QUEUE_PERIOD_S
 from automotive_cosim.traffic.network import Network
 from automotive_cosim.traffic.options import EDGE_FLOWS
 

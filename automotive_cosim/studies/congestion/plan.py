@@ -12,9 +12,9 @@ from automotive_cosim.formats.incidents import AnyIncident, EgoIncident, RushHou
 from automotive_cosim.run.executor import LoneJob
 from automotive_cosim.scenarios import Scenario, Trip, open_scenario
 from automotive_cosim.scenarios.wording import KINDS, read_line
-from automotive_cosim.studies.plan import check_edges, checked_plan, driven_at, plan_of
+from automotive_cosim.studies.calls.flow import Advice, SignalControl
+from automotive_cosim.studies.reroute.plan import check_edges, checked_plan, driven_at, plan_of
 from automotive_cosim.studies.settings import CongestionSettings
-from automotive_cosim.traffic.flow import Advice, SignalControl
 
 INTERVAL_S, EPOCH_S = 60.0, 300.0
 """Length of the intervals of the flow on every edge, and of those over which travel times vary (five minutes, as in
