@@ -6,6 +6,7 @@ import re
 import shutil
 from collections.abc import Callable
 from contextlib import closing
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -24,6 +25,8 @@ from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
+from automotive_cosim.traffic.stability import measure
+from automotive_cosim.traffic.sumo_programs import run
 from automotive_cosim.traffic.ways import way_through
 from tests.scenarios.beside_sumo import INTERVAL_S, OTHERS, beside, made
 
@@ -103,6 +106,26 @@ def test_without_an_ego_every_vehicle_drives_as_in_sumo(
     assert dict(ours.trips.items() - sumos.trips.items()) == {}
     assert len(ours.trips) > 50
     assert ours == sumos
+
+
+@pytest.mark.slow
+def test_the_check_of_an_hour_is_of_what_sumo_does_by_the_file(tmp_path: Path, sumo: None) -> None:
+    config = made(tmp_path)
+    stated = '<time-to-teleport value="20"/><step-length'
+    config.write_text(config.read_text().replace("<step-length", stated))
+    scenario = open_scenario(config)
+    scenario = replace(scenario, sumo=replace(scenario.sumo, warm_up_s=60.0))
+    found = measure(scenario, observe_s=300.0, step_length_s=0.5)
+    summary = ["--seed", "0", "--end", "360", "--summary-output", "s.xml", "--summary-output.period", "1"]
+    assert run("sumo", ["-c", str(config), *summary], tmp_path)[0]
+    steps = re.findall(
+        '<step time="([^"]*)".* arrived="([^"]*)".* teleports="([^"]*)"', (tmp_path / "s.xml").read_text()
+    )
+    (_, *before), (_, *after) = next(step for step in steps if float(step[0]) == 60), steps[-1]
+    arrived, teleports = (int(last) - int(first) for first, last in zip(before, after, strict=True))
+    assert (found.arrived, found.teleports, found.longest_wait_s) == (arrived, teleports, 20)
+    assert teleports
+    assert f"{teleports} vehicles stood for over 20 s" in found.problems[1]
 
 
 def test_what_works_in_parallel_and_other_settings_that_are_not_kept_are_told(
