@@ -65,14 +65,15 @@ def writes(call):
     )
     if name in TO_FILES:
         at = TO_FILES[name]
-        is_read = name == "ZipFile" and len(given) < 2
-        return not is_read and len(given) > at and getattr(given[at], "id", "") not in FILES
+        is_other = of == "super()" or (name == "ZipFile" and len(given) < 2)
+        return not is_other and len(given) > at and getattr(given[at], "id", "") not in FILES
     if name in ("TemporaryDirectory", "mkdtemp"):
         return "dir" in options
     if name == "open" and of != "os":
         return of != "archive" and bool(re.fullmatch(r"'[^']*[wax+][^']*'", mode))
     if name == "open":
-        return any(flag in mode for flag in ("WRONLY", "RDWR", "CREAT", "APPEND", "TRUNC"))
+        writing = any(flag in mode for flag in ("WRONLY", "RDWR", "CREAT", "APPEND", "TRUNC"))
+        return writing and ast.unparse(given[0]) != "os.devnull"
     if name == "replace" and of != "os":
         return bool(of) and len(given) == 1 and not options
     if name == "touch":
