@@ -126,11 +126,11 @@ def _leaderboard() -> str:
     if left_out:
         raise RuntimeError(f"docs/leaderboard/bundles: {'; '.join(left_out)}")
     parts: list[str] = []
-    for table, conditions, _ in made:
-        shown = [place for place, head in enumerate(table.columns) if head in SHOWN]
-        rows = [[row[place] for place in shown] for row in table.rows]
+    for places, conditions, _ in made:
+        shown = [place for place, head in enumerate(places.columns) if head in SHOWN]
+        rows = [[row[place] for place in shown] for row in places.rows]
         parts.append(f"{conditions.tasks}, {conditions.scenarios}, seed {conditions.seeds}, {conditions.limits}:")
-        parts.append(_table([table.columns[place] for place in shown], rows))
+        parts.append(_table([places.columns[place] for place in shown], rows))
     return "\n\n".join(parts)
 
 

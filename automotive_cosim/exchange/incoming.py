@@ -9,7 +9,6 @@ The ego is the cockpit's car, which SUMO's driver drives; other vehicles are inc
 from __future__ import annotations
 
 import re
-import shutil
 import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
@@ -25,6 +24,8 @@ from automotive_cosim.exchange.catalogs import unread
 from automotive_cosim.exchange.places import RoadPlaces
 from automotive_cosim.exchange.roads import mirror, read_roads
 from automotive_cosim.exchange.storyboard import ReadStory, ScriptEntity, Waited, read_story
+from automotive_cosim.formats import bounds
+from automotive_cosim.formats.writing import copy, write_whole
 from automotive_cosim.osm.folder import WEATHER, appearing, toml_value, write_config
 from automotive_cosim.scenarios import Sumo, load
 from automotive_cosim.traffic.network import read_network
@@ -75,8 +76,8 @@ def import_openscenario(
         places = RoadPlaces(road_network(source, folder), source if source.suffix == ".xodr" else story.road)
         has_place = places.net.hasGeoProj() and not read_network(folder / NET).unplaced
         text = scenario_text(out.name, file, story, places, country, has_place=has_place)
-        (folder / "scenario.toml").write_text(text, encoding="utf-8")
-        (folder / ROUTES).write_text("<routes/>\n", encoding="utf-8")
+        write_whole(folder / "scenario.toml", text)
+        write_whole(folder / ROUTES, "<routes/>\n")
         write_config(folder / "road.sumocfg", NET, ROUTES, Sumo("road.sumocfg", warm_up_s=0.0))
         load(folder)
     return out
@@ -93,22 +94,12 @@ def road_network(source: Path, folder: Path) -> Any:
         SetupError: netconvert is not installed.
     """
     if source.name.endswith((".net.xml", ".xml")):
-        shutil.copyfile(source, folder / NET)
+        copy(source, folder / NET, bounds.UNPACKED_BYTES)
         return sumolib.net.readNet(str(folder / NET), withInternal=False)
     ours = "road.xodr" if source.suffix == ".xodr" else f"{NET}.gz"
     words = ("-s", ours) if source.suffix != ".xodr" else (f"--opendrive-files={ours}", "--output.original-names")
-    text, keeps_left = source.read_bytes(), False
-    if source.suffix == ".xodr":
-        text, roads = HEIGHTS.sub(b"", text), read_roads(source).values()
-        keeps_left = any(road.keeps_left for road in roads)
-        for road in roads:
-            if road.keeps_left != keeps_left:
-                raise road.element.refused("keeps to another side than others of the file, which is not imported")
-    if keeps_left:  # netconvert reads no rule: it reads the mirror image, which keeps right
-        root = ET.fromstring(text)
-        mirror(root)
-        text = ET.tostring(root)
-    (folder / ours).write_bytes(text)
+    copy(source, folder / ours, bounds.UNPACKED_BYTES)
+    keeps_left = source.suffix == ".xodr" and _for_netconvert(source, folder / ours)
     ok, printed = run("netconvert", (*words, "--offset.disable-normalization", "-o", NET), folder)
     if not ok:
         raise ScenarioError(f"netconvert cannot read {source}: {first_error(printed)}")
@@ -116,13 +107,31 @@ def road_network(source: Path, folder: Path) -> Any:
         root = ET.parse(folder / NET).getroot()
         mirror(root)
         root.set("lefthand", "true")
-        location = root.find("location")
-        for name in () if location is None else ("convBoundary", "origBoundary"):
-            assert location is not None
-            x, y, x_most, y_most = location.attrib[name].split(",")
-            location.set(name, f"{x},{-float(y_most):.2f},{x_most},{-float(y):.2f}")
+        for location in root.iter("location"):
+            for name in ("convBoundary", "origBoundary"):
+                x, y, x_most, y_most = location.attrib[name].split(",")
+                location.set(name, f"{x},{-float(y_most):.2f},{x_most},{-float(y):.2f}")
         ET.ElementTree(root).write(folder / NET, encoding="UTF-8", xml_declaration=True)
     return sumolib.net.readNet(str(folder / NET), withInternal=False)
+
+
+def _for_netconvert(source: Path, ours: Path) -> bool:
+    """Makes a file of roads one that netconvert reads rightly; returns whether they keep left.
+
+    It reads no rule: roads that keep left become their mirror image, which keeps right.
+    """
+    roads = read_roads(source).values()
+    keeps_left = any(road.keeps_left for road in roads)
+    for road in roads:
+        if road.keeps_left != keeps_left:
+            raise road.element.refused("keeps to another side than others of the file, which is not imported")
+    text = HEIGHTS.sub(b"", ours.read_bytes())
+    if keeps_left:
+        root = ET.fromstring(text)
+        mirror(root)
+        text = ET.tostring(root)
+    ours.write_bytes(text)
+    return keeps_left
 
 
 # --- writing -----------------------------------------------------------------------------------------------------

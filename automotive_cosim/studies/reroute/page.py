@@ -8,7 +8,7 @@ from statistics import fmean
 
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.errors import UserError
-from automotive_cosim.formats.files import write_whole
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.report.files import write_files
 from automotive_cosim.report.templates import render
 from automotive_cosim.run.store import cannot_write
@@ -19,7 +19,7 @@ from automotive_cosim.studies.reroute.data import write_data
 from automotive_cosim.studies.reroute.decisions import write_decisions
 from automotive_cosim.studies.reroute.demand import demand_table, read_demand
 from automotive_cosim.studies.reroute.effects import effects
-from automotive_cosim.studies.reroute.results import Study, read_study
+from automotive_cosim.studies.reroute.results import Study
 from automotive_cosim.studies.reroute.rows import PolicyChoice
 from automotive_cosim.studies.reroute.tables import STAYING, groups, tables, time_saved_s
 from automotive_cosim.studies.reroute.warnings import warnings
@@ -32,7 +32,7 @@ def write_study(folder: Path) -> Path:
         UserError: the folder is not a study's, has no decision that counts, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
-    study = read_study(folder)
+    study = Study.read(folder)
     if not study.rows:
         raise UserError(f"{folder} has no drives yet; rerun its `study` command to resume")
     made = [
@@ -41,25 +41,25 @@ def write_study(folder: Path) -> Path:
     ]
     plots = charts(study) if study.choices else {}
     try:
-        write_files(folder, made, plots.values())
-        write_data(study)
-        write_decisions(study)
-        page = folder / "report.html"
-        text = render(
-            "studies/reroute/study.html",
-            study=study,
-            answer=answer(study),
-            count=len(study.decisions),
-            tables=made,
-            plots=plots,
-            warnings=warnings(study),
-            plan=study.plan.as_json(),
-            seeds=len({row.seed for row in study.rows}),
-            demand=study.plan.demand(),
-            cost_s=cost_s(study),
-            starts=study.manifest["starts"],
-        )
-        write_whole(page, text)
+        with drafted(page := folder / "report.html") as file:
+            write_files(folder, made, plots.values())
+            write_data(study)
+            write_decisions(study)
+            text = render(
+                "studies/reroute/study.html",
+                study=study,
+                answer=answer(study),
+                count=len(study.decisions),
+                tables=made,
+                plots=plots,
+                warnings=warnings(study),
+                plan=study.plan.as_json(),
+                seeds=len({row.seed for row in study.rows}),
+                demand=study.plan.demand(),
+                cost_s=cost_s(study),
+                starts=study.manifest["starts"],
+            )
+            file.write(text.encode())
     except OSError as error:
         raise cannot_write(folder, error) from error
     return page
