@@ -13,6 +13,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterator, Mapping
 from dataclasses import asdict
 from datetime import datetime
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -34,6 +35,8 @@ from automotive_cosim.traffic.sumo_programs import first_error, run
 
 EGO = "ego"
 TRIP = "imported"
+GAP_M, REACTION_S, BRAKES_MPS2 = 2.5, 1.0, 4.5
+"""What SUMO's passenger car keeps and brakes with: its defaults."""
 HEIGHTS = re.compile(rb"\+(geoidgrids|geoid_crs|vunits)=[^\s<\]]*")
 """What a projection says of heights, which roads here have not; its grids are on few machines."""
 NET, ROUTES = "road.net.xml", "none.rou.xml"
@@ -181,6 +184,7 @@ def scenario_text(
             },
         ),
     ]
+    _check_room(story, places)
     skies = sorted(story.skies, key=lambda each: each[0])
     if not skies or skies[0][0] > 0:
         skies.insert(0, (0.0, WEATHER))
@@ -205,6 +209,24 @@ def _start(entity: ScriptEntity, story: ReadStory, places: RoadPlaces) -> tuple[
     return places.lane_at(places.spot(entity.place, story.entities), entity.front_m)
 
 
+def _check_room(story: ReadStory, places: RoadPlaces) -> None:
+    """Checks that SUMO lets all in at their first speeds: a follower must be able to brake behind its leader."""
+    by_lane: dict[str, list[tuple[float, float, ScriptEntity]]] = {}
+    for entity in story.entities.values():
+        lane, at_m = _start(entity, story, places)
+        mps = min(entity.speed_mps, lane.getSpeed()) if entity.name == story.ego else entity.speed_mps
+        by_lane.setdefault(lane.getID(), []).append((at_m, mps, entity))
+    for each in by_lane.values():
+        each.sort(key=lambda place: place[0])
+        for (at_m, mps, follower), (ahead_m, ahead_mps, leader) in pairwise(each):
+            gap_m = ahead_m - leader.length_m - at_m
+            if gap_m < GAP_M + mps * REACTION_S + max(0.0, mps**2 - ahead_mps**2) / (2 * BRAKES_MPS2):
+                raise follower.element.refused(
+                    f"named {follower.name} begins {gap_m:.0f} m behind {leader.name} with {mps:.1f} m/s, too near "
+                    "for SUMO to let it in; give it more room"
+                )
+
+
 def _place_of(lane: Any) -> int:
     """A lane's place among those for cars of its edge."""
     return [each.getID() for each in lane.getEdge().getLanes() if each.allows("passenger")].index(lane.getID())
@@ -227,7 +249,7 @@ def _scripted(
         {
             "kind": "vehicle",
             "trip": TRIP,
-            "name": entity.name,
+            "name": _called(entity.name, story),
             "route": [each.getID() for each in way],
             "position_m": round(at_m, 2),
             "lane": _place_of(lane),
@@ -252,7 +274,10 @@ def _scripted(
 
 
 def _called(name: str, story: ReadStory) -> str:
-    return THE_EGO if name == story.ego else name
+    """What the scenario calls a vehicle: another than the ego may have its name in the file."""
+    if name == story.ego:
+        return THE_EGO
+    return f"{name} of the file" if name == THE_EGO else name
 
 
 def _waits(condition: Waited, group: int, story: ReadStory, places: RoadPlaces) -> dict[str, Any]:

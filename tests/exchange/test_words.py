@@ -339,6 +339,8 @@ def laid(folder, place, rule="RHT"):
     (folder / "laid.xosc").write_text(LAID.format(car=VEHICLE.format("v"), place=place, ahead=ahead), "utf-8")
     made = load(import_openscenario(folder / "laid.xosc", folder / "made", country="FR", replaces=True))
     (other,) = made.incidents
+    back = {edge.removeprefix("-") if edge.startswith("-") else f"-{edge}" for edge in other.route}
+    assert not back & set(other.route), "it turns round at the end of the road"
     net = sumolib.net.readNet(str(folder / "made" / "road.net.xml"))
     lane = [each for each in net.getEdge(other.route[0]).getLanes() if each.allows("passenger")][other.lane]
     x_m, y_m = sumolib.geomhelper.positionAtShapeOffset(lane.getShape(), other.position_m)
