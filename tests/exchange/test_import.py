@@ -160,7 +160,6 @@ def test_a_vehicle_waits_for_what_the_file_says(file, tmp_path, simulations: Sim
             if moved_s is None and ahead_m > 55:
                 moved_s = at_s
             beside_m.append((other.y_m + 0.0384 * other.x_m) - (ego.y_m + 0.0384 * ego.x_m))
-            print(at_s, round(ahead_m, 1), round(beside_m[-1], 2), other.speed_mps, ego.speed_mps)
             if moved_s is not None and at_s == moved_s + 9:
                 break
     finally:
