@@ -35,7 +35,7 @@ from automotive_cosim.traffic.sumo_programs import first_error, run
 
 EGO = "ego"
 TRIP = "imported"
-GAP_M, REACTION_S, BRAKES_MPS2 = 2.5, 1.0, 4.5
+REACTION_S, BRAKES_MPS2 = 1.0, 4.5
 """What SUMO's passenger car keeps and brakes with: its defaults."""
 HEIGHTS = re.compile(rb"\+(geoidgrids|geoid_crs|vunits)=[^\s<\]]*")
 """What a projection says of heights, which roads here have not; its grids are on few machines."""
@@ -220,7 +220,7 @@ def _check_room(story: ReadStory, places: RoadPlaces) -> None:
         each.sort(key=lambda place: place[0])
         for (at_m, mps, follower), (ahead_m, ahead_mps, leader) in pairwise(each):
             gap_m = ahead_m - leader.length_m - at_m
-            if gap_m < GAP_M + mps * REACTION_S + max(0.0, mps**2 - ahead_mps**2) / (2 * BRAKES_MPS2):
+            if gap_m < mps * REACTION_S + max(0.0, mps**2 - ahead_mps**2) / (2 * BRAKES_MPS2):
                 raise follower.element.refused(
                     f"named {follower.name} begins {gap_m:.0f} m behind {leader.name} with {mps:.1f} m/s, too near "
                     "for SUMO to let it in; give it more room"
