@@ -35,9 +35,8 @@ MIRRORED: Mapping[str, tuple[str, ...]] = {
     "signal": ("t", "hOffset"),
     "signalReference": ("t",),
     "object": ("t", "hdg"),
-    "junction": ("y",),
 }
-"""The attributes of roads and of networks that change their signs in a mirror which lies along the x axis."""
+"""The attributes of OpenDRIVE that change their signs in a mirror which lies along the x axis."""
 TURNS = str.maketrans("lLrR", "rRlL")
 SAMPLES = 2000
 """Of a cubic whose length along the curve is sought."""
@@ -148,8 +147,9 @@ def read_roads(path: Path) -> Mapping[str, OpenDriveRoad]:
 
 def mirror(root: ET.Element) -> None:
     """Mirrors the roads of OpenDRIVE, or a network of SUMO's, along the x axis: left becomes right."""
+    mirrored = MIRRORED if root.tag == "OpenDRIVE" else {"junction": ("y",)}
     for element in root.iter():
-        for name in MIRRORED.get(element.tag, ()):
+        for name in mirrored.get(element.tag, ()):
             element.set(name, _turned(element.get(name, "0")))
         for name in ("shape", "customShape"):
             if points := element.get(name):

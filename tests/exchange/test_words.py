@@ -17,7 +17,9 @@ from automotive_cosim.exchange.places import RoadPlaces
 from automotive_cosim.exchange.storyboard import read_story
 from automotive_cosim.exchange.tree import XmlElement, read_tree
 from automotive_cosim.exchange.words import CARRIED, DIFFERENT, REFUSED, table
-from automotive_cosim.scenarios import load
+from automotive_cosim.scenarios import load, open_scenario
+from automotive_cosim.traffic.base import EgoPlan
+from automotive_cosim.traffic.fork import Simulations
 from automotive_cosim.traffic.network import drives_on_left
 
 LANE = '<lane id="{}" type="driving" level="false"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>'
@@ -373,6 +375,20 @@ def test_a_place_on_a_road_of_several_lane_sections_is_where_the_file_has_it(tmp
 def test_a_place_that_is_not_carried_out_is_refused(tmp_path, place, told):
     with pytest.raises(ScenarioError, match=told):
         laid(tmp_path, place)
+
+
+@pytest.mark.sumo
+def test_a_road_that_keeps_left_is_driven(tmp_path, simulations: Simulations):
+    laid(tmp_path, '<LanePosition roadId="1" laneId="1" s="700"/>', "LHT")
+    scenario = open_scenario(tmp_path / "made")
+    traffic = simulations.warm(scenario).depart(EgoPlan(scenario.ego.trips[0], "average"))
+    try:
+        traffic.advance(3.0)
+        (ego,) = (each for each in traffic.look().vehicles if each.vehicle_id == "ego")
+    finally:
+        traffic.close()
+    assert ego.x_m > 600 + FRONT_M
+    assert ego.y_m == pytest.approx(1.75, abs=0.2)
 
 
 def test_what_an_act_does_ends_with_its_stop(sample):
