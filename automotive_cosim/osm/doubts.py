@@ -51,8 +51,8 @@ def doubts(extract: Extract, roads: Mapping[int, MappedRoad], built: Built, coun
         shut = {way.way_id for way in extract.closed}
         what = "closed to cars" if set(ways) <= shut else "open to cars" if not shut & set(ways) else "read by way"
         yield f"access that is doubtful, {what}: {tag}: {in_words('way', ways)}"
-    for what, relations in sorted(extract.told.items()):
-        yield f"{what}: {in_words('relation', relations)}"
+    for (what, kind), numbers in sorted(extract.told.items()):
+        yield f"{what}: {in_words(kind, numbers)}"
     for tag, ways in _by_tag((way, doubt) for way in extract.ways for doubt in oneway.doubts(way.tags)):
         yield f"direction that is doubtful: {tag}: {in_words('way', ways)}"
     yield from _of_barriers(extract, built.cut)
