@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import re
-import shutil
 import tempfile
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Set
@@ -274,7 +273,7 @@ def _read_osm(source: Path) -> _Parts:
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-map-") as scratch:
         try:
             file = source
-            if version in OLD_VERSIONS:
+            if kind != "pbf" and version in OLD_VERSIONS:
                 file, kind = _as_new(source, Path(scratch) / "new.osm"), "osm"
             if deleted:
                 return _read_sorted(file, kind, deleted, Path(scratch))
@@ -288,16 +287,23 @@ def _read_osm(source: Path) -> _Parts:
             raise ImportMapError(_explain(source, str(error))) from error
 
 
-OLD_VERSIONS = ("1", "1.0")
-"""What tools write (OSMnx before 1.3) that mean the present version of the format, 0.6."""
+OLD_VERSIONS = ("1", "1.0", "")
+"""What tools write (OSMnx before 1.3) or leave out that mean the present version of the format, 0.6."""
+
+_ROOT = re.compile(rb"<(osm|osmChange)\b")
+_VERSION = re.compile(rb"""\sversion=["'][^"']*["']""")
 
 
 def _as_new(source: Path, target: Path) -> Path:
-    """Writes a file unpacked, and with the present version."""
-    with opened(source) as old, target.open("wb") as new:
-        head = old.read(4096)
-        new.write(re.sub(rb"""(<osm\b[^>]*?version=["'])1(\.0)?(?=["'])""", rb"\g<1>0.6", head, count=1))
-        shutil.copyfileobj(old, new)
+    """Writes a file unpacked, with the present version, without what Overpass adds (``out geom``, ``center``)."""
+    with opened(source) as old:
+        text = old.read()
+    start = _ROOT.search(text)
+    at, end = (start.end(), text.index(b">", start.end())) if start else (0, 0)
+    root = b' version="0.6"' + _VERSION.sub(b"", text[at:end])
+    body = re.sub(rb"<(bounds|center)\b[^>]*>(\s*</(bounds|center)>)?", b"", text[end:])
+    body = re.sub(rb"<member\b([^>]*[^/>])>.*?</member>", rb"<member\1/>", body, flags=re.DOTALL)
+    target.write_bytes(text[:at] + root + body)
     return target
 
 
@@ -345,7 +351,7 @@ def _wanted(ways: Iterable[OsmWay], relations: Iterable[Relation]) -> set[int]:
 def _read_json(source: Path) -> _Parts:
     read = OverpassJson(source)
     ways = [OsmWay(way_id, tags, nodes) for way_id, tags, nodes in read.ways() if _is_road(tags)]
-    others = Counter(tags["highway"] for _, tags, _ in read.ways() if tags.get("highway") in MAYBE_ROADS)
+    others = Counter(left_out for _, tags, _ in read.ways() if (left_out := _left_out(tags)))
     relations = tuple(filter(_is_kept, (Relation(*relation) for relation in read.relations())))
     wanted = _wanted(ways, relations)
     outlines = [(kind, refs) for _, tags, refs in read.ways() if (kind := _ground_of(tags, refs)) is not None]
@@ -406,12 +412,16 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
         the version of the format.
     """
     deleted: set[tuple[str, int]] = set()
-    version = ""
+    version, within = "0.6", ""
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
-        nonlocal version
-        if name == "osm":
+        nonlocal version, within
+        if name in ("osm", "osmChange"):
             version = attributes.get("version", "")
+        elif name in ("node", "way", "relation"):
+            within = name
+        elif name == "center" or (name == "bounds" and within) or (name == "nd" and within == "relation"):
+            version = ""
         elif name == "count":
             raise ImportMapError(f"{source} {COUNTS}")
         elif name == "remark":
@@ -478,10 +488,10 @@ def _read_ways(file: Any, carried: dict[int, Node]) -> tuple[list[OsmWay], tuple
         if item.is_way():
             if _is_road(tags):
                 ways.append(OsmWay(item.id, tags, tuple(node.ref for node in item.nodes)))
-                if item.nodes and item.nodes[0].location.valid():
-                    carried |= {node.ref: Node(Position(node.lon, node.lat), {}) for node in item.nodes}
-            elif tags.get("highway") in MAYBE_ROADS:
-                others[tags["highway"]] += 1
+                known = [node for node in item.nodes if node.location.valid()]
+                carried |= {node.ref: Node(Position(node.lon, node.lat), {}) for node in known}
+            elif left_out := _left_out(tags):
+                others[left_out] += 1
         else:
             members = tuple((member.type, member.ref, member.role) for member in item.members)
             relations.append(Relation(item.id, tags, members))
@@ -519,6 +529,13 @@ def _is_road(tags: Mapping[str, str]) -> bool:
     return (tags.get("construction") if road == "construction" else road) in ROAD_CLASSES and tags.get(
         "area"
     ) != "yes"
+
+
+def _left_out(tags: Mapping[str, str]) -> str:
+    """The class of a way on which cars may drive, but which is not read; several, as tools write them, count."""
+    value = tags.get("highway", "")
+    words = set(re.findall(r"\w+", value.lower())) if value not in ROAD_CLASSES and not _is_road(tags) else ()
+    return value if value in MAYBE_ROADS or ROAD_CLASSES.intersection(words) else ""
 
 
 def _read_nodes(file: Any, wanted: set[int]) -> dict[int, Node]:
