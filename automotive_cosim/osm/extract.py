@@ -369,8 +369,8 @@ def _read_json(source: Path) -> _Parts:
     areas = (
         MappedArea.of(kind, [places[ref] for ref in refs]) for kind, refs in outlines if places.keys() >= set(refs)
     )
-    left_out = ("water in JSON, left out", "relation")
-    water = [(left_out, ref) for ref, tags, _ in read.relations() if ground.kind_of(tags) is GroundKind.WATER]
+    in_json = ("water in JSON, left out", "relation")
+    water = [(in_json, ref) for ref, tags, _ in read.relations() if ground.kind_of(tags) is GroundKind.WATER]
     return ways, relations, dict(sorted(nodes.items())), tagged, tuple(areas), others, water
 
 
@@ -576,16 +576,14 @@ def _read_ground(file: Any, roads: list[list[Position]], told: _Listed) -> Itera
             yield MappedArea.of(kind, _line(outer), map(_line, area.inner_rings(outer)))
     waters = [water for water in _waters(osmium, file) if (water.kind, water.number) not in whole]
     lines = _lines(osmium, file, {way for water in waters for way in (*water.outer, *water.inner)})
-    for kind, number, *ways in waters:
-        outer, inner = ([lines[way] for way in each if way in lines] for each in ways)
-        parted = cut_water([*outer, *inner], roads)
-        closed = [] if parted or not number else closed_water(outer, inner, roads)
-        if number and not parted:
-            told.append(((f"water that the extract cuts, {CLOSED if closed else 'left out'}", kind), number))
-        yield from (MappedArea(GroundKind.WATER, shape) for shape in (*parted, *closed))
-
-
-CLOSED = "closed by straight lines"
+    for water in waters:
+        outer, inner = ([lines[way] for way in ways if way in lines] for ways in (water.outer, water.inner))
+        shapes = cut_water([*outer, *inner], roads)
+        if water.number and not shapes:
+            shapes = closed_water(outer, inner, roads)
+            done = "closed by straight lines" if shapes else "left out"
+            told.append(((f"water that the extract cuts, {done}", water.kind), water.number))
+        yield from (MappedArea(GroundKind.WATER, shape) for shape in shapes)
 
 
 class _Water(NamedTuple):
@@ -609,13 +607,9 @@ def _waters(osmium: Any, file: Any) -> Iterator[_Water]:
         elif ground.kind_of(tags) is not GroundKind.WATER:
             continue
         elif item.is_relation() and tags.get("type") in ("multipolygon", "boundary"):
-            ways = [(member.role == "inner", member.ref) for member in item.members if member.type == "w"]
-            yield _Water(
-                "relation",
-                item.id,
-                tuple(sorted(ref for is_inner, ref in ways if not is_inner)),
-                tuple(sorted(ref for is_inner, ref in ways if is_inner)),
-            )
+            ways = sorted((member.role == "inner", member.ref) for member in item.members if member.type == "w")
+            of_role = (tuple(ref for is_inner, ref in ways if is_inner is role) for role in (False, True))
+            yield _Water("relation", item.id, *of_role)
         elif item.is_way() and len(item.nodes) > 3 and item.nodes[0].ref == item.nodes[-1].ref:
             yield _Water("way", item.id, (item.id,))
     if coast:
