@@ -23,6 +23,7 @@ from automotive_cosim.errors import ImportMapError, SetupError
 from automotive_cosim.formats import bounds
 from automotive_cosim.formats.files import is_utf8, open_file, opened
 from automotive_cosim.formats.limited import read_limited
+from automotive_cosim.formats.writing import drafted
 from automotive_cosim.formats.xml import scan
 from automotive_cosim.osm import ground
 from automotive_cosim.osm.area import Area
@@ -296,14 +297,14 @@ _VERSION = re.compile(rb"""\sversion=["'][^"']*["']""")
 
 def _as_new(source: Path, target: Path) -> Path:
     """Writes a file unpacked, with the present version, without what Overpass adds (``out geom``, ``center``)."""
-    with opened(source) as old:
+    with opened(source) as old, drafted(target) as new:
         text = old.read()
-    start = _ROOT.search(text)
-    at, end = (start.end(), text.index(b">", start.end())) if start else (0, 0)
-    root = b' version="0.6"' + _VERSION.sub(b"", text[at:end])
-    body = re.sub(rb"<(bounds|center)\b[^>]*>(\s*</(bounds|center)>)?", b"", text[end:])
-    body = re.sub(rb"<member\b([^>]*[^/>])>.*?</member>", rb"<member\1/>", body, flags=re.DOTALL)
-    target.write_bytes(text[:at] + root + body)
+        start = _ROOT.search(text)
+        at, end = (start.end(), text.index(b">", start.end())) if start else (0, 0)
+        root = b' version="0.6"' + _VERSION.sub(b"", text[at:end])
+        body = re.sub(rb"<(bounds|center)\b[^>]*>(\s*</(bounds|center)>)?", b"", text[end:])
+        body = re.sub(rb"<member\b([^>]*[^/>])>.*?</member>", rb"<member\1/>", body, flags=re.DOTALL)
+        new.write(text[:at] + root + body)
     return target
 
 
