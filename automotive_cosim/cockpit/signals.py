@@ -6,8 +6,8 @@
 Paths, kinds, units and allowed values are those of the Vehicle Signal Specification, release 6.0 of January 2026
 (https://github.com/COVESA/vehicle_signal_specification), but ``MassageLevel`` and ``IsOccupied``, names of its
 release 5.1; ranges are narrowed to what this car's switches offer. These differ: child locks, the sunroof and the
-language are sensors in VSS, here switches as well; the horn is an actuator there; ambient light goes down to 0, which
-is off. What VSS lacks has paths in its manner.
+language are sensors in VSS, here switches as well; the horn is an actuator there; ambient light may be 0, which is
+off. What VSS lacks has paths in its manner.
 """
 
 from __future__ import annotations
