@@ -32,6 +32,8 @@ _CHANNEL = re.compile(
     r"|\Aanalysis(?=[^\s\w]|[A-Z])(?P<bare>.*?)(?:(?P<said>assistant(?:final|commentary))|\Z)",  # its tokens eaten
     re.DOTALL,
 )
+_TOKEN = re.compile(r"_never_used_[0-9a-f]{32}\b")
+"""How ByteDance's Seed and UI-TARS 2 end their tags."""
 _CONTROL = re.compile(r"<\|\w+\|>(?:assistant|final)?")
 """What stands between the channels of gpt-oss."""
 
@@ -42,7 +44,7 @@ def spoken(text: str) -> str:
     Raises:
         ActionError: it ends within them, or says nothing besides.
     """
-    cut = False
+    cut, text = False, _TOKEN.sub("", text)
 
     def channel(found: re.Match[str]) -> str:
         nonlocal cut

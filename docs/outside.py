@@ -118,10 +118,10 @@ from opening_hours import OpeningHours
 place = tuple(map(float, sys.argv[2].split(",")))
 def told(value, at):
     try:
-        state = str(OpeningHours(value, coords=place).state(datetime.fromisoformat(at))).lower()
+        hours, then = OpeningHours(value, coords=place), datetime.fromisoformat(at)
     except Exception:
         return "refused"
-    return {"open": "yes", "closed": "no"}.get(state.rpartition(".")[2], "unknown")
+    return "yes" if hours.is_open(then) else "unknown" if hours.is_unknown(then) else "no"
 print(json.dumps([told(*each) for each in json.loads(sys.argv[1])]))
 """
 _IN_NODE = """
@@ -130,7 +130,7 @@ const [lat, lon] = process.argv[2].split(",").map(Number);
 const where = {lat, lon, address: {country_code: "fr", state: "Île-de-France"}};
 console.log(JSON.stringify(JSON.parse(process.argv[1]).map(([value, at]) => {
   try {
-    const read = new hours(value, where), then = new Date(at.replace(" ", "T"));
+    const read = new hours(value, where, 2), then = new Date(at.replace(" ", "T"));
     return read.getUnknown(then) ? "unknown" : read.getState(then) ? "yes" : "no";
   } catch (error) { return "refused"; }
 })));
@@ -160,8 +160,12 @@ def _vss(scratch: Path, given: argparse.Namespace) -> Iterator[str]:
                 leaves[path] = each
 
     walk(json.loads((tree / "vss.json").read_text(encoding="utf-8")), "")
-    for row in csv.DictReader(VSS.read_text(encoding="utf-8").splitlines(), delimiter="\t"):
+    rows = list(csv.DictReader(VSS.read_text(encoding="utf-8").splitlines(), delimiter="\t"))
+    newest_seen = max(row["release"] for row in rows)
+    for row in rows:
         leaf = leaves.get(row["path"])
+        if row["release"] != newest_seen and leaf is None:
+            continue  # it had gone before
         if leaf is None:
             yield f"{row['path']}, of {row['release']}: not in this release"
             continue

@@ -66,6 +66,7 @@ THOUGHTS = [
     ),
     ("<think>\n<think>", "</think>"),
     ("&lt;think&gt;", "&lt;/think&gt;"),
+    (f"<think_never_used_{'5' * 32}>", f"</think_never_used_{'5' * 32}>"),
     ("<|inner_prefix|>", "<|inner_suffix|>"),
     ('<details type="reasoning" done="true">\n<summary>Thought for 2 s</summary>\n', "\n</details>"),
     ("[THINK]", "[/THINK]"),
