@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -54,7 +55,7 @@ def test_the_choice_of_sumos_device_sees_the_traffic_though_nobody_has_one(tmp_p
 def test_cars_that_are_told_to_take_another_way_keep_it(tmp_path: Path) -> None:
     """SUMO's device turns back at its next period who was given a slower way."""
     road = Road(FIRST.replace("25", "10") + LAST + QUICK + SLOW, CARS.replace("e2", "q1 q2"))
-    with running(road.opened(tmp_path, rerouting=1.0)) as (_, world, libsumo):
+    with running(replace(road.opened(tmp_path, rerouting=1.0), as_stated=False)) as (_, world, libsumo):
         other = max(libsumo.vehicle.getIDList(), key=libsumo.vehicle.getDeparture)
         libsumo.vehicle.setRoute(other, ("e1", "s1", "s2", "e3"))
         took, could = divert(Running(world), ("e1", "q1", "q2", "e3"), ("e1", "s1", "s2", "e3"), 1.0, 0)
@@ -80,7 +81,7 @@ def test_a_queue_is_as_long_as_those_who_wait(tmp_path: Path) -> None:
 
 def test_who_collides_has_not_arrived(tmp_path: Path) -> None:
     """SUMO lists both among those that have arrived."""
-    with running(Road().opened(tmp_path)) as (_, world, libsumo):
+    with running(replace(Road().opened(tmp_path), as_stated=False)) as (_, world, libsumo):
         ledger = Ledger(load_library(), 1.0)
         front, rear, *_ = sorted(libsumo.vehicle.getIDList(), key=libsumo.vehicle.getDistance, reverse=True)[1:]
         libsumo.vehicle.setSpeed(front, 0)
@@ -94,3 +95,21 @@ def test_who_collides_has_not_arrived(tmp_path: Path) -> None:
         assert {front, rear} <= arrived, "of SUMO"
         assert not {front, rear} & ledger.arrivals_s.keys()
         assert ledger.summary().collided == 2
+
+
+def test_who_is_removed_by_a_calibrator_has_not_arrived(tmp_path: Path) -> None:
+    """SUMO lists them among those that have arrived, one step after they have gone."""
+    calibrator = '<calibrator id="k" edge="e2" pos="0" freq="60"><flow begin="0" end="999" vehsPerHour="60"'
+    route = '<route id="r" edges="e2 e3"/>'
+    road = Road(routes=CARS.replace('"20"', '"10"'), more=f'{route}{calibrator} route="r"/></calibrator>')
+    with running(road.opened(tmp_path)) as (_, world, libsumo):
+        ledger, listed, last = Ledger(load_library(), 1.0), set(), {}
+        for _ in range(200):
+            last |= {each: libsumo.vehicle.getRoadID(each) for each in libsumo.vehicle.getIDList()}
+            world.step()
+            ledger.after_step()
+            listed |= set(libsumo.simulation.getArrivedIDList())
+    arrived = {each for each in listed if last[each] == "e3"}
+    assert len(listed - arrived) > 5, "of SUMO"
+    assert ledger.arrivals_s.keys() == arrived
+    assert arrived

@@ -43,9 +43,14 @@ class Ledger:
         self._track: list[TrackPoint] | None = [] if tracks else None
         self._departed = self._teleported = self._collided = 0
         self.arrivals_s: dict[str, float] = {}
-        """Time at which each vehicle arrived; who collides leaves the road too, but has not arrived."""
+        """Time at which each vehicle arrived; who collides or is removed by a calibrator has not."""
         self.left: Sequence[str] = ()
         """Vehicles that left the road in the last step, arrived or not."""
+        self._calibrators: Sequence[str] = sumo.calibrators.getIDList()
+        self._removed = self._removals()
+        self._driving: frozenset[str] | None = None
+        """Who is on the road, if a calibrator has removed others in the last step. SUMO lists these as arrived one
+        step after they have gone, and everybody else in the same."""
         self._ego_is_on = self._ego_is_halted = False
         self._ego = Account(0.0, 0, 0.0, 0.0, 0.0)
 
@@ -59,7 +64,10 @@ class Ledger:
         self._departed += len(departed)
         self._teleported += len(teleporting)
         self._collided += sum(vehicle in collided for vehicle in self.left)
-        self.arrivals_s.update((vehicle, now_s) for vehicle in self.left if vehicle not in collided)
+        at_end = self.left if self._driving is None else self._driving.intersection(self.left)
+        self.arrivals_s.update((vehicle, now_s) for vehicle in at_end if vehicle not in collided)
+        before, self._removed = self._removed, self._removals()
+        self._driving = None if self._removed == before else frozenset(sumo.vehicle_ids())
         if EGO in departed:
             self._ego_is_on = True
             self._ego = Account(now_s, 0, 0.0, 0.0, 0.0)
@@ -69,6 +77,10 @@ class Ledger:
             self._note_ego()
         if self._consumed is not None:
             self._note_consumed(self._consumed)
+
+    def _removals(self) -> tuple[int, ...]:
+        """How many vehicles each calibrator has removed in its present interval."""
+        return tuple(self._sumo.calibrators.getRemoved(each) for each in self._calibrators)
 
     def _note_consumed(self, consumed: dict[str, list[float]]) -> None:
         vehicle, step_s = self._sumo.vehicle, self._step_s

@@ -1,6 +1,6 @@
 """What a run makes of a ``.sumocfg``, beside what ``sumo -c`` makes of it with the same seed.
 
-``python -m tests.scenarios.beside_sumo`` writes the table of ``docs/studies/beside-sumo.md``.
+``python -m tests.studies.beside_sumo`` writes the tables of ``docs/studies/beside-sumo.md``.
 """
 
 from __future__ import annotations
@@ -10,29 +10,33 @@ import re
 import subprocess
 import tempfile
 from collections.abc import Iterator
-from contextlib import closing
+from contextlib import closing, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
+from statistics import fmean, median
 
 from automotive_cosim import scenarios
+from automotive_cosim.contracts import EgoEnd
+from automotive_cosim.errors import NoRoomError
 from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.studies.calls.flow import flow
-from automotive_cosim.studies.calls.ledger import keep_ledger
+from automotive_cosim.studies.calls.ledger import keep_ledger, run_on
 from automotive_cosim.studies.congestion.outputs import read_flows
+from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.options import Configuration, edge_data, read_configuration
 from automotive_cosim.traffic.sumo_programs import environment, program, run
+from tests.scenarios.test_foreign import OTHERS
 
 PAGE = Path(__file__).parents[2] / "docs" / "studies" / "beside-sumo.md"
-OTHERS = {
-    "ingolstadt1": "ingolstadt/ingolstadt1/ingolstadt1.sumocfg",
-    "ingolstadt7": "ingolstadt/ingolstadt7/ingolstadt7.sumocfg",
-    "bologna": "bologna/acosta/run.sumocfg",
-}
 CLASSES = ["passenger", "private", "hov", "evehicle", "taxi", "delivery", "truck", "trailer", "bus", "coach"]
 CLASSES += ["motorcycle", "moped", "bicycle", "emergency", "authority", "army", "vip", "custom1"]
+MADE = "all classes of vehicle"
 SEED = 1
 INTERVAL_S = 60.0
+DEPARTURES, DEPARTS_EVERY_S, LONGEST_DRIVE_S = 4, 240.0, 3600.0
+NOTICED_S = 10.0
+"""Below so much, a delay told is no news, and a ratio to it is chance."""
 FIGURES = ("vehicle-km", "vehicle-h", "h lost", "h standing")
 
 
@@ -130,11 +134,48 @@ def networks(folder: Path) -> Iterator[tuple[str, Path]]:
         yield name, scenarios.load(name).config
     data = os.environ.get("AUTOMOTIVE_COSIM_TEST_DATA")
     yield from ((name, Path(data) / path) for name, path in OTHERS.items() if data and (Path(data) / path).exists())
-    yield "all classes of vehicle", made(folder)
+    yield MADE, made(folder)
+
+
+def delays(config: Path, departures: int = DEPARTURES) -> Iterator[tuple[float, float, float, float]]:
+    """Of each drive that arrives, in seconds: the delay that the ego is told at its departure, what it then takes
+    longer than at the limits, the time that it is told, and the time that it takes."""
+    scenario = open_scenario(config)
+    with closing(Forked(scenario, SEED, allow_unprojected=True)) as warm:
+        warm.call(keep_ledger)
+        for number in range(departures):
+            if number:
+                warm.call(run_on, DEPARTS_EVERY_S)
+            for trip in scenario.ego.trips:
+                with suppress(NoRoomError), closing(warm.depart(EgoPlan(trip, "steady", SEED))) as drive:
+                    first = drive.state
+                    while drive.state.end is None and drive.state.time_s < first.time_s + LONGEST_DRIVE_S:
+                        drive.advance(60.0)
+                    if drive.state.end is EgoEnd.ARRIVED:
+                        took_s, told = drive.state.time_s - first.time_s, first.ahead
+                        yield told.delay_s, took_s - told.eta_s + told.delay_s, told.eta_s, took_s
+
+
+def delay_table(folder: Path) -> Iterator[str]:
+    """The lines of the page's table of delays."""
+    yield "| network | drives | told, s | lost, s | lost/told, median | time taken/told, median | farthest off |"
+    yield "|---|---:|---:|---:|---:|---:|---|"
+    for name, config in networks(folder):
+        if name == MADE:  # it has traffic for six minutes
+            continue
+        rows = list(delays(config))
+        told_s, lost_s, eta_s, took_s = zip(*rows, strict=True)
+        ratios = [lost / told for told, lost, *_ in rows if told >= NOTICED_S]
+        ratio = f"{median(ratios):.2f}" if ratios else "–"
+        times = median(took / eta for eta, took in zip(eta_s, took_s, strict=True))
+        told, lost, *_ = max(rows, key=lambda row: abs(row[0] - row[1]))
+        worst = f"told {told:.0f} s, lost {lost:.0f} s"
+        means = f"{fmean(told_s):.0f} | {fmean(lost_s):.0f}"
+        yield f"| {name} | {len(rows)} | {means} | {ratio} | {times:.2f} | {worst} |"
 
 
 def table(folder: Path) -> Iterator[str]:
-    """The lines of the page's table."""
+    """The lines of the page's table of outputs."""
     yield f"| network | vehicles arrived | of these otherwise | {' | '.join(FIGURES)} | difference |"
     yield "|---|" + "---:|" * (3 + len(FIGURES))
     for name, config in networks(folder):
@@ -147,5 +188,8 @@ def table(folder: Path) -> Iterator[str]:
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as there:
-        head, _ = PAGE.read_text(encoding="utf-8").split("| network |")
-        PAGE.write_text(head + "\n".join(table(Path(there))) + "\n", encoding="utf-8")
+        page = PAGE.read_text(encoding="utf-8")
+        for made_of in (table, delay_table):
+            lines = list(made_of(Path(there)))
+            page = re.sub(rf"{re.escape(lines[0])}\n(\|.*\n)*", "\n".join(lines) + "\n", page)
+        PAGE.write_text(page, encoding="utf-8")
