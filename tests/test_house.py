@@ -36,8 +36,8 @@ CEILINGS = {
     "drives": (7279, 81, 0),
     "envs": (1301, 9, 0),
     "episode": (1733, 19, 0),
-    "exchange": (3154, 12, 0),
-    "formats": (2631, 37, 0),
+    "exchange": (3278, 12, 0),
+    "formats": (2633, 37, 0),
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),
     "measures": (929, 8, 0),
@@ -56,8 +56,8 @@ CEILINGS = {
     "studies": (12648, 113, 92),
     "tasking": (4166, 120, 0),
     "tasks": (29394, 1, 0),
-    "tests": (60099, 120, 0),
-    "traffic": (11185, 76, 0),
+    "tests": (60367, 120, 0),
+    "traffic": (11189, 76, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
