@@ -27,6 +27,7 @@ from automotive_cosim.errors import SetupError, UnknownNameError, UserError
 from automotive_cosim.formats.annotations import OneOf
 from automotive_cosim.formats.checked import checked
 from automotive_cosim.formats.toml import dotted, read_toml
+from automotive_cosim.interface.trace import plain
 from automotive_cosim.run import difficulty
 from automotive_cosim.run.drive import DriveSetup
 from automotive_cosim.run.episode import EpisodeSetup
@@ -314,7 +315,7 @@ class Plan(EvaluationSettings):
 
 
 def _place(job: TrialJob) -> tuple[str, str, str]:
-    return digest(job.simulation), digest(job.instance), digest(job.id)
+    return digest(job.simulation), digest(plain(job.instance)), digest(job.id)
 
 
 def languages_in_words(codes: Iterable[str]) -> str:

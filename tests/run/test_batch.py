@@ -16,7 +16,6 @@ from automotive_cosim.run import batch
 from automotive_cosim.run.batch import run_jobs, run_plan
 from automotive_cosim.run.episode_row import EpisodeRow
 from automotive_cosim.run.executor import LostError
-from automotive_cosim.run.jobs import failed
 from automotive_cosim.run.kept import pictures, read_steps, read_trial
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.processes import Processes
@@ -189,7 +188,7 @@ def test_what_an_agent_does_is_its_own_failure_and_nobody_elses_error(trouble):
     with pytest.raises(UserError, match="ModelError"):
         wanted.check()
     with opened(trouble / "e", wanted.as_json(), EpisodeRow) as store:
-        end = run_jobs(wanted.jobs(), store, partial(trials, Pictures.NONE), failed)
+        end = run_jobs(wanted.jobs(), store, partial(trials, Pictures.NONE))
     assert (end.judged, end.successes, end.errors) == (5, 1, 0)
     assert tries(trouble) == 3, "none was tried twice"
     ends = {row.agent: (row.end, row.agent_error) for row in read_rows(trouble / "e", EpisodeRow).values()}

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import re
 import shutil
-from collections.abc import Callable
 from contextlib import closing
-from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -20,17 +18,19 @@ from automotive_cosim.scenarios import Scenario, open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.scenarios.routes import LONG_M, chosen_trips, edges_at
 from automotive_cosim.scenarios.variant import write_variant
-from automotive_cosim.studies.congestion.plan import CongestionPlan
 from automotive_cosim.traffic.base import EgoPlan
 from automotive_cosim.traffic.fork import Forked
 from automotive_cosim.traffic.georeference import GeoReference
 from automotive_cosim.traffic.options import Setup, copied, read_configuration, run_options
-from automotive_cosim.traffic.stability import measure
-from automotive_cosim.traffic.sumo_programs import run
 from automotive_cosim.traffic.ways import way_through
-from tests.scenarios.beside_sumo import INTERVAL_S, OTHERS, beside, made
 
 GRID = scenarios.load("grid").folder
+
+OTHERS = {
+    "ingolstadt1": "ingolstadt/ingolstadt1/ingolstadt1.sumocfg",
+    "ingolstadt7": "ingolstadt/ingolstadt7/ingolstadt7.sumocfg",
+    "bologna": "bologna/acosta/run.sumocfg",
+}
 
 OUTPUTS = '<output><summary-output value="summary.xml"/><fcd-output value="fcd.xml"/></output>'
 DETECTOR = '<e1Detector id="d" lane="c1c2_0" pos="50" period="60" file="detector.xml"/>'
@@ -79,8 +79,6 @@ def test_a_configuration_is_read_for_what_it_says(foreign: Path) -> None:
         0.5,
         None,
     )
-    assert CongestionPlan(str(foreign)).scene().sumo.step_length_s == 0.5
-    assert CongestionPlan(str(foreign), step_s=1.0).scene().sumo.step_length_s == 1.0
     assert scenario.weather == ()
     assert str(scenario.start.tzinfo) == "Europe/Paris"
     after_midnight_s = scenario.start.hour * 3600 + scenario.start.minute * 60 + scenario.start.second
@@ -89,43 +87,6 @@ def test_a_configuration_is_read_for_what_it_says(foreign: Path) -> None:
     assert "runs as `sumo -c` runs it" in runs_with
     assert "step-length" not in runs_with
     assert without == "town.sumocfg runs without its summary-output, fcd-output"
-
-
-@pytest.mark.parametrize("name", scenarios.shipped())
-def test_without_an_ego_every_road_is_as_in_sumo(name: str, sumo: None) -> None:
-    ours, sumos = beside(scenarios.load(name).config, 10.0, INTERVAL_S, trips=False)
-    assert ours.edges == sumos.edges != []
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("name", ["all classes", *OTHERS])
-def test_without_an_ego_every_vehicle_drives_as_in_sumo(
-    name: str, tmp_path: Path, data_of_others: Callable[[str], Path], sumo: None
-) -> None:
-    ours, sumos = beside(data_of_others(OTHERS[name]) if name in OTHERS else made(tmp_path))
-    assert dict(ours.trips.items() - sumos.trips.items()) == {}
-    assert len(ours.trips) > 50
-    assert ours == sumos
-
-
-@pytest.mark.slow
-def test_the_check_of_an_hour_is_of_what_sumo_does_by_the_file(tmp_path: Path, sumo: None) -> None:
-    config = made(tmp_path)
-    stated = '<time-to-teleport value="20"/><step-length'
-    config.write_text(config.read_text().replace("<step-length", stated))
-    scenario = open_scenario(config)
-    scenario = replace(scenario, sumo=replace(scenario.sumo, warm_up_s=60.0))
-    found = measure(scenario, observe_s=300.0, step_length_s=0.5)
-    summary = ["--seed", "0", "--end", "360", "--summary-output", "s.xml", "--summary-output.period", "1"]
-    assert run("sumo", ["-c", str(config), *summary], tmp_path)[0]
-    steps = re.findall(
-        '<step time="([^"]*)".* arrived="([^"]*)".* teleports="([^"]*)"', (tmp_path / "s.xml").read_text()
-    )
-    (_, *before), (_, *after) = next(step for step in steps if float(step[0]) == 60), steps[-1]
-    arrived, teleports = (int(last) - int(first) for first, last in zip(before, after, strict=True))
-    assert (found.arrived, found.teleports, found.longest_wait_s) == (arrived, teleports, 20)
-    assert teleports
-    assert f"{teleports} vehicles stood for over 20 s" in found.problems[1]
 
 
 def test_what_works_in_parallel_and_other_settings_that_are_not_kept_are_told(
