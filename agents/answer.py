@@ -40,7 +40,8 @@ WIDE_COMMA = re.compile(r"""(?<=["'\u201d\u2019\del}\]])\s*\uff0c\s*(?=["'\u201c
 FORM = {"situation", "plan", "action"}
 """Keys of an answer that is one object."""
 LABELS = re.compile(
-    r"^(?:[^\S\n]|[*_#>-])*(situation|reason|thought|plan|action|lesson)[*_]*\s*[:\uff1a][*_]*", re.IGNORECASE | re.M
+    r"^(?:[^\S\n]|[*_#>-])*(situation|reason|thought|plan|action|lesson)[*_]*\s*[:\uff1a][*_]*",
+    re.IGNORECASE | re.MULTILINE,
 )
 
 

@@ -16,13 +16,9 @@ from automotive_cosim.contracts import Json
 from automotive_cosim.contracts.plain import counted
 from automotive_cosim.episode.conditions import TABLE
 from automotive_cosim.errors import UserError
-<<<<<<< HEAD
 from automotive_cosim.formats import bounds
-from automotive_cosim.formats.files import write_whole
 from automotive_cosim.formats.limited import read_limited
-=======
 from automotive_cosim.formats.writing import write_whole
->>>>>>> main
 from automotive_cosim.publish import archive
 from automotive_cosim.publish.contents import read_contents
 from automotive_cosim.publish.verify import verify
