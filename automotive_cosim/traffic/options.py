@@ -54,6 +54,7 @@ QUIET = {
 }
 
 ANY_ROUTE = "ignore-route-errors"
+INTERNAL = "no-internal-links"
 
 COLLISIONS = "collision.action"
 
@@ -232,7 +233,8 @@ class _Reader:
         if element in TAKEN:
             self._take(TAKEN[element], value, where)
         elif element in IGNORED or element in WINDOW:
-            self.ignored[IGNORED.get(element, element)] = None
+            if element != INTERNAL or value.lower() not in FALSE:
+                self.ignored[IGNORED.get(element, element)] = None
         elif element in PARALLEL:
             self.parallel[PARALLEL[element]] = None
         elif element == MESOSCOPIC:

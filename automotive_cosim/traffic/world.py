@@ -58,7 +58,8 @@ NOT_LIKE_CARS = frozenset(("bicycle", "scooter", "moped", "wheelchair", "bus", "
 by a timetable."""
 
 SEARCHING_TYPE = "automotive_cosim.search"
-"""A vehicle type that no vehicle has."""
+"""A vehicle type that no vehicle has. It neither deviates in speed nor carries a device, so that no search for it
+draws a random number."""
 
 INSERTION_LIMIT_S = 300.0
 """Limit of the simulated time that the ego waits for a gap to enter the traffic."""
@@ -106,6 +107,10 @@ class World:
         self._not_like_cars: set[str] = set()
         self._wants: dict[str, DesiredSpeed] = {}
         self._sumo.copy_type("DEFAULT_VEHTYPE", TEMPLATE_TYPE)
+        self._sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
+        self._sumo.type.setVehicleClass(SEARCHING_TYPE, "passenger")
+        self._sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
+        self._sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
         # the recorded traces of scenarios with a scenario.toml have what calls to distributions made of them
         drawn = self._configuration.distributions if scenario.as_stated else None
         self._surface = Surface(self._sumo, self.network, (EGO_TYPE, TEMPLATE_TYPE), drawn)
@@ -189,17 +194,10 @@ class World:
 
     def prepare_copies(self) -> None:
         """Makes SUMO build its routers' tables of all edges, which copies of this process then share, and begin to
-        average the speeds by which its rerouting devices choose, whether or not a vehicle has one.
-
-        The type of the search neither deviates in speed nor carries a device, so no random number is drawn.
-        """
-        sumo = self._sumo
-        sumo.copy_type(TEMPLATE_TYPE, SEARCHING_TYPE)
-        sumo.type.setSpeedDeviation(SEARCHING_TYPE, 0.0)
-        sumo.type.setParameter(SEARCHING_TYPE, "has.rerouting.device", "false")
+        average the speeds by which its rerouting devices choose, whether or not a vehicle has one."""
         edge = next(iter(self.network.edges))
         for mode in (LIMITS, AVERAGED):
-            sumo.find_route(edge, edge, SEARCHING_TYPE, NOW, mode)
+            self._sumo.find_route(edge, edge, SEARCHING_TYPE, NOW, mode)
 
     def depart(self, plan: EgoPlan, beat: Callable[[], None] | None = None) -> EgoDrive:
         """Inserts the ego and runs until it is on the road; ``beat`` is called after every step.
@@ -380,9 +378,11 @@ class World:
                     f"that cars may use{_similar(edge_id, self.network.edges)}"
                 )
         edges: list[str] = [trip.from_edge]
+        # in recorded traces of scenarios with a scenario.toml, a random number is drawn for each search
+        kind = SEARCHING_TYPE if self._scenario.as_stated else "DEFAULT_VEHTYPE"
         for origin, goal in pairwise(stops):
             try:
-                found, why = self._sumo.find_route(origin, goal, "DEFAULT_VEHTYPE").edges, ""
+                found, why = self._sumo.find_route(origin, goal, kind).edges, ""
             except self._sumo.refusals as error:  # no car may set out there now
                 found, why = (), f" ({error})"
             if not found:
