@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from contextlib import chdir
+from contextlib import chdir, suppress
 from dataclasses import replace
 from difflib import get_close_matches
 from itertools import pairwise
@@ -232,6 +232,8 @@ class World:
             raise NoRoomError(
                 f"the ego found no gap on {plan.trip.from_edge!r} in {INSERTION_LIMIT_S:.0f} s of simulated time"
             )
+        if self._sumo.route(EGO)[-1] != edges[-1]:  # a rerouter stands where it departs
+            self._sumo.set_route(EGO, edges)
         self._forecast = Forecast(plan.weather, self._sumo.time(), plan.settles_s)
         self._surface.put(self._forecast.read(self._sumo.time()))  # its first look is on the road of its weather
         self._sumo.set_parameter(EGO, "laneChangeModel.lcSpeedGain", f"{driver_profile.overtaking:g}")
@@ -421,6 +423,8 @@ class _EgoRoad:
     def step(self, *, hazard_lights: bool) -> tuple[Instant, tuple[Event, ...]]:
         self._pedals.apply()
         sampled = self._world.step()
+        with suppress(*self._sumo.refusals):
+            self._keep_goal()
         end, events = self._mishaps()
         events += self._world.happened
         self._steps += 1
@@ -451,6 +455,13 @@ class _EgoRoad:
 
     def shapes(self) -> RoadShapes:
         return replace(read_shapes(self._sumo), ground=self._world.network.map.ground)
+
+    def _keep_goal(self) -> None:
+        """Goes on to the destination where a rerouter of the scenario's has given the ego another one."""
+        planned, now = self._sensor.route.edge_ids, self._sumo.route(EGO)
+        here = now[self._sumo.route_index(EGO)]
+        if now[-1] != planned[-1] and here in planned:
+            self._sumo.set_route(EGO, planned[planned.index(here) :])
 
     def _go_on(self, round_: Round) -> tuple[Event, ...]:
         """Sets the next destination near the present one, if there is a way to it, and says so. From a place
