@@ -15,6 +15,7 @@ import automotive_cosim
 from automotive_cosim.run.extensions import extensions, kind_of
 
 WING = "studies"
+TESTS = Path(__file__).parent
 IMPORTS_ALL = """
 import importlib, pkgutil, automotive_cosim
 found = [each.name for each in pkgutil.walk_packages(automotive_cosim.__path__, "automotive_cosim.", onerror=print)]
@@ -74,3 +75,10 @@ def test_what_it_registers_is_there() -> None:
         assert all(map(callable, map(resolve_name, (kind.page, *kind.served.values()))))
     assert kind_of({"study": "days"}) in kinds
     assert kind_of({"agents": ["oracle"]}) is None
+
+
+def test_the_tests_of_the_core_are_read_without_it() -> None:
+    files = [each for each in TESTS.rglob("*.py") if each.relative_to(TESTS).parts[0] != WING]
+    assert len(files) > 200
+    begins = re.compile(rf"^(from|import) (automotive_cosim|tests)[.]{WING}[ .]", re.MULTILINE)
+    assert [str(each) for each in files if begins.search(each.read_text(encoding="utf-8"))] == []

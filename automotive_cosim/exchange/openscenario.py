@@ -292,10 +292,10 @@ def _environment(action: ET.Element, name: str, sky: Weather | None, local_time:
 
 
 def _signals_of(road: Path) -> Mapping[str, Mapping[int, str]]:
-    """The signals of an OpenDRIVE file by netconvert: light -> place of the link's letter -> id."""
+    """The signals of an exported OpenDRIVE file: light -> place of the link's letter -> id."""
     found: dict[str, dict[int, str]] = {}
     for signal in read_tree(road, error=ScenarioError).iter("signal"):
-        light, _, place = signal.attrib["id"].rpartition("_")
+        light, _, place = signal.attrib["name"].rpartition("_")
         if light and place.isdecimal():
             found.setdefault(light, {})[int(place)] = signal.attrib["id"]
     return found

@@ -65,10 +65,11 @@ class _BusyError(Exception):
 
 
 def query(area: Area, limits: DownloadLimits) -> str:
-    """What to ask for, in Overpass QL: the roads of an area, with turn restrictions, speed cameras and
-    what these enforce; water and
-    green; in an area of at most ``BUILDINGS_KM2``, buildings too."""
+    """What to ask for, in Overpass QL: the roads of an area, with turn restrictions, signs, speed cameras and what
+    these enforce, and zones for some cars; water and green; in an area of at most ``BUILDINGS_KM2``, buildings."""
     box = f"{area.south_deg:.7f},{area.west_deg:.7f},{area.north_deg:.7f},{area.east_deg:.7f}"
+    middle = f"{(area.south_deg + area.north_deg) / 2:.7f},{(area.west_deg + area.east_deg) / 2:.7f}"
+    zones = '[boundary~"^(low_emission_zone|limited_traffic_zone)$"]'
     values: dict[str, list[str]] = {}
     for keys in TAGS.values():
         for key, words in keys.items():
@@ -80,10 +81,12 @@ def query(area: Area, limits: DownloadLimits) -> str:
         f"[out:xml][timeout:{limits.timeout_s:.0f}][maxsize:{limits.size_mb * 1e6:.0f}];"
         f"way[highway]({box})->.roads;"
         f"({ground})->.ground;"
-        f"node[highway=speed_camera]({box})->.cameras;"
+        f'node[highway~"^(speed_camera|stop|give_way)$"]({box})->.cameras;'
         "rel(bn.cameras)[type=enforcement]->.watches;"
-        f'(.roads;node(w.roads);rel(bw.roads)[type~"^restriction"];'
-        ".cameras;.watches;node(r.watches);.ground;.ground >;);"
+        f"is_in({middle})->.here;"
+        f"(rel{zones}({box});rel(pivot.here){zones};)->.zones;"
+        f'(.roads;node(w.roads);rel(bw.roads)[type~"^(restriction|connectivity)"];'
+        ".cameras;.watches;node(r.watches);.zones;.ground;.ground >;);"
         "out body;"
     )
 

@@ -9,7 +9,7 @@ from difflib import get_close_matches
 from itertools import pairwise
 from pathlib import Path
 
-from automotive_cosim.contracts import EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
+from automotive_cosim.contracts import KMH_PER_MPS, EgoEnd, RoadIncident, RoadShapes, RoadSnapshot, RouteOption
 from automotive_cosim.errors import NoRoomError, ScenarioError, TrafficError
 from automotive_cosim.formats.incidents import Incident
 from automotive_cosim.formats.scenario import Scenario, Trip
@@ -216,7 +216,7 @@ class World:
                 beat()
         round_ = planned(self.always_open, plan.trip, plan.onward) if plan.onward else None
         edges = round_.first if round_ else self._trip_edges(plan.trip)
-        self._add_ego(edges, driver_profile, parked=plan.parked)
+        self._add_ego(edges, driver_profile, plan.trip, parked=plan.parked)
         if plan.emission_class:
             try:
                 self._sumo.vehicle.setEmissionClass(EGO, plan.emission_class)
@@ -345,7 +345,7 @@ class World:
                 "set ignore-route-errors in the .sumocfg"
             )
 
-    def _add_ego(self, edges: tuple[str, ...], driver: DriverProfile, *, parked: bool) -> None:
+    def _add_ego(self, edges: tuple[str, ...], driver: DriverProfile, trip: Trip, *, parked: bool) -> None:
         sumo = self._sumo
         sumo.copy_type(TEMPLATE_TYPE, EGO_TYPE)
         kind = sumo.type
@@ -362,6 +362,20 @@ class World:
         kind.setActionStepLength(EGO_TYPE, self.step_s)
         kind.setParameter(EGO_TYPE, "has.rerouting.device", "false")
         sumo.add_route(EGO_TYPE, edges)
+        if not parked and trip.from_m is not None:
+            edge = self.network.edges[edges[0]]
+            if trip.from_m > edge.length_m or trip.from_lane >= len(edge.lane_ids):
+                raise ScenarioError(
+                    f"trip {trip.name!r} of scenario {self._scenario.name!r}: from_m and from_lane are not on edge "
+                    f"{edge.edge_id!r}, which has {len(edge.lane_ids)} lanes of {edge.length_m:.0f} m for cars"
+                )
+            lane = edge.lane_ids[trip.from_lane]
+            mps = min(trip.from_kmh / KMH_PER_MPS, sumo.lane_speed(lane))
+            number, from_m = lane.rpartition("_")[2], f"{trip.from_m:.2f}"
+            sumo.add_vehicle(
+                EGO, EGO_TYPE, typeID=EGO_TYPE, departLane=number, departPos=from_m, departSpeed=f"{mps:.2f}"
+            )
+            return
         if not parked:
             sumo.add_vehicle(EGO, EGO_TYPE, typeID=EGO_TYPE, departLane="best", departSpeed="max")
             return

@@ -15,7 +15,7 @@ from automotive_cosim.report import templates
 from automotive_cosim.report.regression import as_json, changes, junit, markdown, plain
 from automotive_cosim.run.drive_row import DriveTrialRow
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.jobs import failed
+from automotive_cosim.run.executor import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 

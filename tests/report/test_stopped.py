@@ -13,7 +13,7 @@ from automotive_cosim.report.results import read_results, standings
 from automotive_cosim.report.summary import main, progress, rate_of
 from automotive_cosim.report.tables import Cell
 from automotive_cosim.run.episode_row import EpisodeRow, PartsHeld
-from automotive_cosim.run.jobs import failed
+from automotive_cosim.run.executor import failed
 from automotive_cosim.run.plan import make_plan
 from automotive_cosim.run.store import opened
 

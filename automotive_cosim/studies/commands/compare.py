@@ -24,8 +24,7 @@ def compare(
     table = compared(found)
     changed = {pair.name: list(pair.changed) for pair in found if pair.changed}
     if as_json:
-        rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
-        print_json({"same": all(pair.is_same for pair in found), "changed": changed, "figures": rows})
+        print_json({"same": all(pair.is_same for pair in found), "changed": changed, "figures": table.records()})
     else:
         console = Console(highlight=False)
         console.print(answer(found), soft_wrap=True)

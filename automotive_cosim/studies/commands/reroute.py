@@ -66,7 +66,7 @@ def reroute(
     from automotive_cosim.cli.console import Console
     from automotive_cosim.scenarios import shipped
     from automotive_cosim.studies.reroute.plan import StudyPlan
-    from automotive_cosim.studies.reroute.results import read_study
+    from automotive_cosim.studies.reroute.results import Study
     from automotive_cosim.studies.reroute.suite import folder_name
 
     departures = settings.pop("departures_s")
@@ -93,15 +93,15 @@ def reroute(
         for plan, folder in zip(plans, folders, strict=True):
             _run(console, plan, folder, where, measure_gap=measure_gap)
     if len(plans) == 1:
-        _tell(console, read_study(folders[0]), as_json=as_json)
+        _tell(console, Study.read(folders[0]), as_json=as_json)
     else:
-        _tell_all(console, [read_study(folder) for folder in folders], as_json=as_json)
+        _tell_all(console, [Study.read(folder) for folder in folders], as_json=as_json)
 
 
 def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, measure_gap: bool) -> None:
     """Runs what is left of a study, and writes its report."""
     from automotive_cosim.run.store import read_rows
-    from automotive_cosim.studies.reroute.batch import run_study
+    from automotive_cosim.studies.reroute.batch import REROUTE
     from automotive_cosim.studies.reroute.demand import measure_demand
     from automotive_cosim.studies.reroute.page import write_study
     from automotive_cosim.studies.reroute.rows import DriveRow
@@ -112,7 +112,7 @@ def _run(console: Console, plan: StudyPlan, folder: Path, where: Executor, *, me
         return f"{counted(count, 'decision')}{errors}"
 
     with driven(console, "drives", folder, said) as tell:
-        run_study(plan, folder, executor=where, tell=tell)
+        REROUTE.run(plan, folder, executor=where, tell=tell)
     for each in measure_demand(plan, folder) if measure_gap else ():
         console.print(f"demand, {each.share:.0%} reroute: {each.gap or each.why_not}", soft_wrap=True)
     write_study(folder)
@@ -127,8 +127,7 @@ def _tell_all(console: Console, studies: Sequence[Study], *, as_json: bool) -> N
     console.print(table.markdown(), soft_wrap=True)
     console.print(f"{page} written; every study has its own report beside it", soft_wrap=True)
     if as_json:
-        rows = [dict(zip(table.columns, map(str, row), strict=True)) for row in table.rows]
-        print_json({"networks": rows, "out": str(out)})
+        print_json({"networks": table.records(), "out": str(out)})
     raise_errors([error for study in studies for error in study.errors], sum(len(s.rows) for s in studies), "drive")
 
 

@@ -16,7 +16,6 @@ from automotive_cosim.studies.congestion.results import (
     cost,
     delay_h,
     indices,
-    read_congestion,
     strongest,
 )
 from automotive_cosim.studies.congestion.rows import FlowState
@@ -32,22 +31,23 @@ LEAST_DEPARTING = 0.1
 
 
 def write_congestion(folder: Path) -> Path:
-    """Writes all of a study's pages, tables and plots into its folder; returns ``report.html``.
+    """Writes the report of a study into its folder; returns ``report.html``.
 
     Raises:
         UserError: the folder is not a congestion study's, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
-    study = read_congestion(folder)
-    plan = study.plan
+    study = CongestionStudy.read(folder)
+    return write_shown(study, shown(study))
+
+
+def shown(study: CongestionStudy) -> ShownStudy:
+    """What the report shows."""
     about = (
-        f"{counted(len(study.rows), 'seed')}, {plan.minutes:g} minutes each; every measure begins in a copy of "
-        "the same traffic"
+        f"{counted(len(study.rows), 'seed')}, {study.plan.minutes:g} minutes each; every measure begins in a copy "
+        "of the same traffic"
     )
-    shown = ShownStudy("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
-    return write_shown(
-        folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.seeds) - len(study.rows)
-    )
+    return ShownStudy("Congestion study", about, answer(study), warnings(study), tables(study), charts(study))
 
 
 def answer(study: CongestionStudy) -> str:

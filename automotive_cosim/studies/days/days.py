@@ -11,31 +11,26 @@ fewer each day.
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from statistics import fmean
-from typing import Any
 from zlib import crc32
 
 import numpy as np
 
-from automotive_cosim.errors import CosimError
-from automotive_cosim.run.batch import Progress, run_jobs
-from automotive_cosim.run.executor import Executor, LoneJob, Runner
-from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.batch import BatchKind
+from automotive_cosim.run.executor import LoneJob, alone
 from automotive_cosim.run.row import JobRow
 from automotive_cosim.run.stage import doing
-from automotive_cosim.run.store import opened
-from automotive_cosim.scenarios import Scenario, open_scenario, variant
+from automotive_cosim.scenarios import Scenario, variant
 from automotive_cosim.studies.content import StudyContent
 from automotive_cosim.studies.days.adviser import AdvisedDay, Adviser, OwnAdviser, Quickest
 from automotive_cosim.studies.equilibrium.equilibrium import ROUTES, Assigned, rerouted
 from automotive_cosim.studies.equilibrium.gap import TAIL_S, DrivenTrip, EdgeTimes, quickest, run, vehicle_types
 from automotive_cosim.studies.equilibrium.optimum import POWER
-from automotive_cosim.studies.reroute.plan import checked_plan, driven_at, plan_of
+from automotive_cosim.studies.plan import check_values, driven_at, opened
 from automotive_cosim.studies.settings import DaysSettings
 from automotive_cosim.traffic.network import read_network
 from automotive_cosim.traffic.options import Configuration, copied, read_configuration
@@ -64,8 +59,7 @@ class DaysPlan(DaysSettings):
         Raises:
             UserError: one does not exist or is out of range, or the demand has stops or persons.
         """
-        checked_plan(type(self), asdict(self))
-        self.check_lists()
+        check_values(self)
         configuration = read_configuration(self.scene().config)
         variant.check_demand(configuration)
         if self.adviser:
@@ -74,7 +68,7 @@ class DaysPlan(DaysSettings):
     def scene(self) -> Scenario:
         """The scenario as it is driven on the first day: everybody keeps the route that they set out on."""
         return driven_at(
-            _opened(self.scenario),
+            opened(self.scenario),
             step_s=1.0,
             share=0.0,
             scale=self.scale,
@@ -121,6 +115,12 @@ class DaysJob(LoneJob):
     def wall_s(self) -> float:
         """Limit of its wall time."""
         return 3_600.0 + self.plan.days * 30 * self.plan.minutes
+
+    def planned(self) -> DaysRow:
+        """Its row before it runs."""
+        return DaysRow(
+            id=self.id, scenario=self.plan.scenario, share=self.share, seed=self.seed, optimum=self.optimum
+        )
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -186,41 +186,9 @@ def has_settled(means_s: Sequence[float]) -> bool:
     return abs(now_s - before_s) < SETTLED * before_s
 
 
-def run_days(
-    plan: DaysPlan,
-    folder: Path,
-    *,
-    executor: Executor = Processes(),  # noqa: B008, frozen
-    retries: int = 1,
-    tell: Callable[[Progress[DaysRow]], None] = lambda progress: None,
-) -> Progress[DaysRow]:
-    """Runs what is left of a study; arguments and errors are those of ``reroute.batch.run_study``."""
-    plan.check()
-    with opened(folder, plan.as_json(), DaysRow, parts=()) as store:
-        return run_jobs(plan.jobs(), store, chains, failed, executor=executor, retries=retries, tell=tell)
-
-
-@contextmanager
-def chains() -> Iterator[Runner[DaysJob, DaysRow]]:
-    """Makes the runner in a worker."""
-    yield run_chain
-
-
-def failed(job: DaysJob, kind: str, why: str) -> DaysRow:
-    """The row of a job that ended in an infrastructure error."""
-    return replace(_planned(job), error=why, error_kind=kind)
-
-
 def run_chain(job: DaysJob, folder: Path) -> DaysRow:
-    """Runs all days of a job; an error becomes a row too."""
-    try:
-        return replace(_planned(job), days=tuple(_days(job)))
-    except CosimError as error:
-        return failed(job, type(error).__name__, str(error))
-
-
-def _planned(job: DaysJob) -> DaysRow:
-    return DaysRow(id=job.id, scenario=job.plan.scenario, share=job.share, seed=job.seed, optimum=job.optimum)
+    """Runs all days of a job; nothing but its row is kept."""
+    return replace(job.planned(), days=tuple(_days(job)))
 
 
 def _days(job: DaysJob) -> Iterator[StudyDay]:
@@ -323,29 +291,12 @@ def _made(folder: Path) -> Path:
 class DaysStudy(StudyContent[DaysPlan, DaysRow]):
     """The content of a folder."""
 
+    plan_type = DaysPlan
+    row_type = DaysRow
+
     def of(self, drivers: Drivers) -> tuple[DaysRow, ...]:
         """The rows of a share or state."""
         return tuple(row for row in self.rows if row.drivers == drivers and row.days)
 
 
-def read_days(folder: Path) -> DaysStudy:
-    """Reads a study's folder, even of a running study.
-
-    Raises:
-        UserError: it is not such a study's folder, or is damaged.
-    """
-    return DaysStudy.read(folder, make_days, DaysRow)
-
-
-def make_days(values: Mapping[str, Any]) -> DaysPlan:
-    """A plan from a manifest's table.
-
-    Raises:
-        UserError: it is another kind of study, or of another version.
-    """
-    return plan_of(DaysPlan, "study of days", values)
-
-
-@lru_cache(maxsize=4)
-def _opened(name: str) -> Scenario:
-    return open_scenario(name)
+DAYS: BatchKind[DaysPlan, DaysJob, DaysRow] = BatchKind(DaysRow, partial(alone, run_chain))

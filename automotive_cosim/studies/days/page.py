@@ -20,7 +20,6 @@ from automotive_cosim.studies.days.days import (
     DaysStudy,
     Drivers,
     StudyDay,
-    read_days,
 )
 from automotive_cosim.studies.intervals import LEAST_SEEDS, SeedMean, seed_mean
 from automotive_cosim.studies.reroute.tables import NONE, told, told_mean
@@ -44,13 +43,15 @@ def write_days(folder: Path) -> Path:
         UserError: the folder is not such a study's, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
-    study = read_days(folder)
+    study = DaysStudy.read(folder)
+    return write_shown(study, shown(study))
+
+
+def shown(study: DaysStudy) -> ShownStudy:
+    """What the report shows."""
     plan = study.plan
     about = f"{counted(len(plan.seeds), 'seed')}, up to {counted(plan.days, 'day')} of {plan.minutes:g} minutes"
-    shown = ShownStudy("Study from day to day", about, answer(study), warnings(study), tables(study), charts(study))
-    return write_shown(
-        folder, shown, plan.as_json(), study.manifest, len(study.errors), len(plan.jobs()) - len(study.rows)
-    )
+    return ShownStudy("Study from day to day", about, answer(study), warnings(study), tables(study), charts(study))
 
 
 def named(drivers: Drivers) -> str:

@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import replace
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
 from pathlib import Path
 
-from automotive_cosim.errors import CosimError
 from automotive_cosim.formats.layout import LIVE, WATCHED
-from automotive_cosim.run.batch import Progress, run_jobs
-from automotive_cosim.run.executor import Executor, Runner
-from automotive_cosim.run.processes import Processes
+from automotive_cosim.run.batch import BatchKind
+from automotive_cosim.run.executor import Runner, tried
 from automotive_cosim.run.stage import doing, warming_up
-from automotive_cosim.run.store import opened
+from automotive_cosim.run.store import Store
 from automotive_cosim.studies.calls.accounts import TrafficSummary
 from automotive_cosim.studies.calls.chance import fresh_of
 from automotive_cosim.studies.calls.ledger import keep_ledger, run_on
 from automotive_cosim.studies.gridlock import MEASURED_EVERY_S
 from automotive_cosim.studies.intervals import LEAST_SEEDS, seed_mean
-from automotive_cosim.studies.reroute.drive import planned, run_drive
+from automotive_cosim.studies.reroute.drive import run_drive
 from automotive_cosim.studies.reroute.plan import StudyJob, StudyPlan
 from automotive_cosim.studies.reroute.policies import PolicyRule
 from automotive_cosim.studies.reroute.results import choices
@@ -31,48 +28,20 @@ STRIDE = 5
 """Seeds added at a time once there are enough for an interval."""
 
 
-def run_study(
-    plan: StudyPlan,
-    folder: Path,
-    *,
-    executor: Executor = Processes(),  # noqa: B008, frozen
-    retries: int = 1,
-    tell: Callable[[Progress[DriveRow]], None] = lambda progress: None,
-) -> Progress[DriveRow]:
-    """Runs the remaining drives of a study and retries those that ended in an error.
-
-    Args:
-        plan: what to run.
-        folder: results folder, new or to be resumed.
-        executor: where to run it; the results do not depend on it.
-        retries: how many times to retry a drive after an infrastructure error.
-        tell: called at the start and after every drive.
-
-    Raises:
-        UserError: the plan names something that does not exist, or the folder cannot take its results.
-        KeyboardInterrupt: passed on; only the running drives are lost.
-    """
-    plan.check()
-    first, *more = _stages(plan)
-    with opened(folder, plan.as_json(), DriveRow, parts=(LIVE,)) as store:
-        (folder / LIVE / WATCHED).touch()
-
-        def run(seeds: tuple[int, ...]) -> Progress[DriveRow]:
-            jobs = [job for job in plan.jobs() if job.seed in seeds]
-            return run_jobs(jobs, store, drives, failed, executor=executor, retries=retries, tell=tell)
-
-        progress = run(first)
-        for seeds in more:
-            if _is_narrow(plan, list(store.rows.values())):
-                break
-            progress = run(seeds)
-    return progress
+def rounds(plan: StudyPlan, store: Store[DriveRow]) -> Iterator[Sequence[StudyJob]]:
+    """The drives of all seeds; with a stopping rule, of some more until the interval is narrow enough."""
+    (store.folder / LIVE / WATCHED).touch()
+    for count in _counts(plan):
+        yield [job for job in plan.jobs() if job.seed in plan.seeds[:count]]
+        if _is_narrow(plan, list(store.rows.values())):
+            return
 
 
-def _stages(plan: StudyPlan) -> list[tuple[int, ...]]:
-    """Seeds to run before the interval is checked again; all at once without a stopping rule."""
-    counts = [] if plan.half_width_s is None else range(LEAST_SEEDS, len(plan.seeds), STRIDE)
-    return [*(plan.seeds[:count] for count in counts), plan.seeds]
+def _counts(plan: StudyPlan) -> Iterator[int]:
+    """Numbers of seeds after which the interval is checked; all at once without a stopping rule."""
+    if plan.half_width_s is not None:
+        yield from range(LEAST_SEEDS, len(plan.seeds), STRIDE)
+    yield len(plan.seeds)
 
 
 def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
@@ -88,16 +57,8 @@ def _is_narrow(plan: StudyPlan, rows: Sequence[DriveRow]) -> bool:
 @contextmanager
 def drives() -> Iterator[Runner[StudyJob, DriveRow]]:
     """Makes the runner of the drives in a worker."""
-    warm = _Warm()
-    try:
-        yield warm.run
-    finally:
-        warm.close()
-
-
-def failed(job: StudyJob, kind: str, why: str) -> DriveRow:
-    """The row of a drive that ended in an infrastructure error."""
-    return replace(planned(job), error=why, error_kind=kind)
+    with closing(_Warm()) as warm:
+        yield tried(warm.run)
 
 
 class _Warm:
@@ -110,16 +71,12 @@ class _Warm:
         self._measured: list[TrafficSummary] = []
 
     def run(self, job: StudyJob, folder: Path) -> DriveRow:
-        """Runs a drive; an error becomes a row too. Tracks, if wanted, and what is watched are also kept."""
+        """Runs a drive; tracks, if wanted, and what is watched are also kept."""
         try:
             return run_drive(job, *self._at(job), folder / TRACKS if job.plan.trajectories else None, folder)
-        except CosimError as error:
-            self.close()  # after any error, the next drive begins with fresh traffic
-            return failed(job, type(error).__name__, str(error))
-        except Exception as error:
-            # A fault in an agent or in this package must not end the study; it is counted and listed.
-            self.close()
-            return failed(job, type(error).__name__, f"{type(error).__name__}: {error}")
+        except Exception:
+            self.close()  # the next drive begins with fresh traffic
+            raise
 
     def close(self) -> None:
         """Ends the simulation."""
@@ -140,9 +97,7 @@ class _Warm:
             )
             self._simulation.call(keep_ledger, consumptions=job.plan.emissions, tracks=job.plan.trajectories)
             if job.plan.placebo_every or job.plan.draws.stop:
-                fresh_of(
-                    self._simulation
-                )  # here, so that it does not depend on which departures this worker drives
+                fresh_of(self._simulation)  # here, whichever departures this worker drives
             self._key, self._now_s, self._measured = job.simulation, 0.0, []
         while self._now_s < job.departure_s:
             onward_s = min(job.departure_s, (self._now_s // MEASURED_EVERY_S + 1) * MEASURED_EVERY_S) - self._now_s
@@ -159,3 +114,6 @@ class _Warm:
             if self._now_s % MEASURED_EVERY_S == 0:
                 self._measured.append(summary)
         return self._simulation, tuple(self._measured)
+
+
+REROUTE = BatchKind(DriveRow, drives, (LIVE,), rounds)

@@ -55,18 +55,6 @@ AT_ONCE = os.cpu_count() or 1
 """Decisions whose branches may run while the drive continues; each takes some 50 MB per branch."""
 
 
-def planned(job: StudyJob) -> DriveRow:
-    """What is known about a drive before it runs."""
-    return DriveRow(
-        id=job.id,
-        scenario=job.plan.scenario,
-        share=job.share,
-        seed=job.seed,
-        departure_s=job.departure_s,
-        trip=job.trip.name,
-    )
-
-
 def run_drive(
     job: StudyJob,
     simulation: Forked,
@@ -87,7 +75,7 @@ def run_drive(
         TrafficError: the simulation failed.
         UserError: the scenario or an agent cannot be used.
     """
-    row = planned(job)
+    row = job.planned()
     if job.trip.from_edge == job.trip.to_edge and not job.trip.via:
         return replace(
             row, excluded=SAME_PLACE, why=f"trip {job.trip.name!r} begins and ends on {job.trip.to_edge}"

@@ -19,7 +19,7 @@ from automotive_cosim.studies.reroute.data import write_data
 from automotive_cosim.studies.reroute.decisions import write_decisions
 from automotive_cosim.studies.reroute.demand import demand_table, read_demand
 from automotive_cosim.studies.reroute.effects import effects
-from automotive_cosim.studies.reroute.results import Study, read_study
+from automotive_cosim.studies.reroute.results import Study
 from automotive_cosim.studies.reroute.rows import PolicyChoice
 from automotive_cosim.studies.reroute.tables import STAYING, groups, tables, time_saved_s
 from automotive_cosim.studies.reroute.warnings import warnings
@@ -32,7 +32,7 @@ def write_study(folder: Path) -> Path:
         UserError: the folder is not a study's, has no decision that counts, or cannot be written.
         SetupError: the extra ``report`` is not installed.
     """
-    study = read_study(folder)
+    study = Study.read(folder)
     if not study.rows:
         raise UserError(f"{folder} has no drives yet; rerun its `study` command to resume")
     made = [

@@ -3,24 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from contextlib import suppress
-from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
+from dataclasses import dataclass
 from itertools import product
-from typing import Any, TypeVar
 
 from automotive_cosim.agents import make_agent
 from automotive_cosim.errors import UnknownNameError, UserError
-from automotive_cosim.formats.checked import checked
-from automotive_cosim.formats.incidents import AnyIncident, Incident
-from automotive_cosim.formats.options import option
 from automotive_cosim.run.executor import LoneJob
-from automotive_cosim.scenarios import Scenario, Trip, open_scenario
+from automotive_cosim.scenarios import Scenario, Trip
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.scenarios.wording import KINDS, read_line
+from automotive_cosim.studies.plan import check_edges, check_values, driven_at, opened
 from automotive_cosim.studies.reroute.policies import AGENT, parse_policy
-from automotive_cosim.studies.settings import RerouteSettings, TrafficSettings
+from automotive_cosim.studies.reroute.rows import DriveRow
+from automotive_cosim.studies.settings import RerouteSettings
 from automotive_cosim.traffic.profiles import profile
 
 EQUILIBRIUM_GAP = 0.01
@@ -45,8 +40,7 @@ class StudyPlan(RerouteSettings):
         Raises:
             UserError: one does not exist or is out of range.
         """
-        checked_plan(type(self), asdict(self))
-        self.check_lists()
+        check_values(self)
         if self.equilibrium_gap is not None and not 0 <= self.equilibrium_gap < EQUILIBRIUM_GAP:
             raise UserError(
                 f"--equilibrium-gap is {self.equilibrium_gap:g}; demand counts as an equilibrium below "
@@ -120,7 +114,7 @@ class StudyPlan(RerouteSettings):
         Raises:
             ScenarioError: it cannot be read, or has no such route.
         """
-        return _opened(self.scenario, self.from_place, self.to_place)
+        return opened(self.scenario, self.from_place, self.to_place)
 
     def jobs(self) -> tuple[StudyJob, ...]:
         """Every drive, grouped by simulation and ordered by departure."""
@@ -162,94 +156,24 @@ class StudyJob(LoneJob):
         name = re.sub(r"[^A-Za-z0-9_.]+", "_", self.trip.name)
         return f"share{self.share:g}-seed{self.seed}-at{self.departure_s:g}-{name}"
 
+    def planned(self) -> DriveRow:
+        """Its row before it runs."""
+        return DriveRow(
+            id=self.id,
+            scenario=self.plan.scenario,
+            share=self.share,
+            seed=self.seed,
+            departure_s=self.departure_s,
+            trip=self.trip.name,
+        )
+
     @property
     def entropy(self) -> tuple[int, ...]:
         """The seed of all randomness of this drive; it does not depend on the share."""
         return self.seed, round(self.departure_s * 10), *self.trip.name.encode()
 
 
-@lru_cache(maxsize=4)
-def _opened(name: str, from_place: str, to_place: str) -> Scenario:
-    """Cached, because every drive needs it and a foreign network takes a second to read."""
-    return open_scenario(name, from_place=from_place, to_place=to_place)
-
-
-def driven_at(
-    scenario: Scenario,
-    *,
-    step_s: float,
-    share: float | None,
-    scale: float | None,
-    warm_up_s: float | None,
-    redraw: bool,
-    incidents: Sequence[AnyIncident],
-) -> Scenario:
-    """A scenario as a study drives it; what is None stays the scenario's own, and incidents come on top."""
-    sumo = scenario.sumo.stepping(step_s)
-    sumo = replace(
-        sumo,
-        background_rerouting=sumo.background_rerouting if share is None else share,
-        scale=sumo.scale if scale is None else scale,
-        warm_up_s=sumo.warm_up_s if warm_up_s is None else warm_up_s,
-        redraws_trips=redraw or sumo.redraws_trips,
-    )
-    return replace(scenario, sumo=sumo, incidents=(*scenario.incidents, *incidents))
-
-
-def check_edges(incident: Incident, place: str, scenario: Scenario) -> None:
-    """Checks that an incident is on edges that the network has.
-
-    Raises:
-        UserError: one is missing.
-    """
-    edges = network_of(scenario).edges
-    for name in ("edge", "edges", "from_edge", "to_edge"):
-        value = getattr(incident, name, ())
-        for edge in (value,) if isinstance(value, str) else value:
-            if edge not in edges:
-                raise UnknownNameError(f"edge for cars in {place}", edge, edges)
-
-
 def named(agent: str) -> tuple[str, str]:
     """An agent's name and its model's, from ``NAME`` or ``NAME/MODEL``."""
     name, _, model = agent.partition("/")
     return name, model or "rules"
-
-
-def make_study(values: Mapping[str, Any]) -> StudyPlan:
-    """A plan from a manifest's table.
-
-    Raises:
-        UserError: it is another kind of study, or of another version.
-    """
-    return plan_of(StudyPlan, "rerouting study", values)
-
-
-P = TypeVar("P", bound=TrafficSettings)
-
-
-def plan_of(plan: type[P], words: str, values: Mapping[str, Any]) -> P:
-    """The plan of a study from a manifest's table.
-
-    Args:
-        plan: its type.
-        words: what a message calls it.
-        values: the table.
-
-    Raises:
-        UserError: it is another kind of study, or of another version.
-    """
-    given = dict(values)
-    if given.pop("study", None) == plan.kind:
-        with suppress(UserError):  # its message would mention options that the user has not given
-            return checked_plan(plan, given)
-    raise UserError(f"the folder has no {words} of this version; use the version that wrote it")
-
-
-def checked_plan(plan: type[P], values: Mapping[str, Any]) -> P:
-    """A plan of valid values.
-
-    Raises:
-        UserError: one is not valid; the message names the option.
-    """
-    return checked(plan, values, lambda steps: ("the study", option(plan, str(steps[0])) if steps else ""))

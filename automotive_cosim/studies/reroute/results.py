@@ -14,7 +14,7 @@ import numpy as np
 from automotive_cosim.errors import SetupError, install_hint
 from automotive_cosim.run.row import columns
 from automotive_cosim.studies.content import StudyContent
-from automotive_cosim.studies.reroute.plan import StudyPlan, make_study
+from automotive_cosim.studies.reroute.plan import StudyPlan
 from automotive_cosim.studies.reroute.policies import Policy, drawn_choices, hindsight, parse_policy
 from automotive_cosim.studies.reroute.rows import (
     NOBODY,
@@ -36,6 +36,9 @@ NOISE = 0.95
 @dataclass(frozen=True)
 class Study(StudyContent[StudyPlan, DriveRow]):
     """The content of a rerouting study's folder, with a row per drive."""
+
+    plan_type = StudyPlan
+    row_type = DriveRow
 
     @property
     def planned(self) -> int:
@@ -96,15 +99,6 @@ class Noise:
         return self.placebos > 0 and (self.time_s > 0 or self.others_s > 0)
 
 
-def read_study(folder: Path) -> Study:
-    """Reads a study's folder, even of a running study.
-
-    Raises:
-        UserError: it is not a study's folder, or is damaged.
-    """
-    return Study.read(folder, make_study, DriveRow)
-
-
 def load_study(folder: Path | str) -> pd.DataFrame:
     """The choices of every policy at every decision as a data frame, one row per choice.
 
@@ -116,7 +110,7 @@ def load_study(folder: Path | str) -> pd.DataFrame:
         import pandas as pd
     except ImportError as error:
         raise SetupError(f"load_study requires pandas: {install_hint('report')}") from error
-    return pd.DataFrame([columns(choice) for choice in read_study(Path(folder)).all_choices])
+    return pd.DataFrame([columns(choice) for choice in Study.read(Path(folder)).all_choices])
 
 
 def all_decisions(rows: Iterable[DriveRow]) -> Iterator[DecisionPoint]:

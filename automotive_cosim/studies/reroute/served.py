@@ -13,7 +13,7 @@ from automotive_cosim.scenarios import open_scenario
 from automotive_cosim.scenarios.opening import network_of
 from automotive_cosim.serve.records import NotHereError
 from automotive_cosim.studies.reroute.decisions import told
-from automotive_cosim.studies.reroute.results import Study, all_decisions, choices_at, read_study
+from automotive_cosim.studies.reroute.results import Study, all_decisions, choices_at
 from automotive_cosim.studies.reroute.rows import Branch, DecisionPoint
 from automotive_cosim.studies.reroute.tracks import TRACKS
 from automotive_cosim.traffic.network import Network
@@ -30,7 +30,7 @@ def decisions(folder: Path) -> Json:
     Raises:
         UserError: it is not a study's folder, or is damaged.
     """
-    study = read_study(folder)
+    study = Study.read(folder)
     return {
         "name": folder.name,
         "scenario": study.plan.scenario,
@@ -48,7 +48,7 @@ def decision_map(folder: Path, name: str) -> Json:
         NotHereError: there is no such decision, or its row does not hold the routes.
         UserError: the study or its scenario cannot be read.
     """
-    study = read_study(folder)
+    study = Study.read(folder)
     point = next((each for each in all_decisions(study.rows) if each.id == name), None)
     if point is None or not point.decision.ways:
         raise NotHereError(f"there are no routes of a decision {name!r}; older studies did not keep them")
