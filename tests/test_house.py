@@ -56,8 +56,8 @@ CEILINGS = {
     "studies": (12642, 113, 92),
     "tasking": (4166, 120, 0),
     "tasks": (29394, 1, 0),
-    "tests": (59710, 120, 0),
-    "traffic": (11181, 76, 0),
+    "tests": (59722, 120, 0),
+    "traffic": (11186, 76, 0),
     "beside them": (298, 18, 0),
 }
 """Lines of Python, public classes and options of commands by folder: those of the package, and those at the top."""
