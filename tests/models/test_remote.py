@@ -36,6 +36,7 @@ from automotive_cosim.run.record import Recorder
 from automotive_cosim.traffic.fork import Simulations
 
 KEY = "sk-a-very-secret-key-0123456789"
+LONG_KEY = "sk-ant-api03-kT7bQ9xW2mZ4rV6yL8pN0cJ5hG3fD1sA"
 
 Behave = Callable[[BaseHTTPRequestHandler], None]
 
@@ -744,6 +745,18 @@ def test_no_encoding_of_a_key_gets_into_a_record(before, after):
     for text in (KEY, KEY.encode().hex().upper(), KEY[::-1]):
         assert clean(f"<{text}>") == "<***>"
     assert clean("nothing of it") == "nothing of it"
+
+
+SPELLINGS = (str, str.upper, " ".join, ". ".join, lambda key: key.replace("-", "_"), lambda key: f"{key[:20]}...")
+"""However a model says a key; as long as twenty characters of it stand there, it is hidden."""
+
+
+@pytest.mark.parametrize("spell", SPELLINGS)
+def test_no_spelling_of_a_key_gets_into_a_record(spell):
+    clean = _Endpoint("local", None, LONG_KEY).clean
+    assert clean(f"It is [{spell(LONG_KEY)}]!") in ("It is [***]!", "It is [***...]!")
+    assert clean(f"{spell(LONG_KEY)} {spell(LONG_KEY)}").count("***") == 2
+    assert clean(f"{LONG_KEY[:15]} and {LONG_KEY[15:30]}") == f"{LONG_KEY[:15]} and {LONG_KEY[15:30]}"
 
 
 def test_no_part_of_a_key_is_left_where_a_text_is_cut(server):
