@@ -33,7 +33,7 @@ from automotive_cosim.traffic.stability import SUMMARY, summary
 HALF_S = 300.0
 """Time for the traffic to build up, and time in which it is compared."""
 
-Figures = tuple[float, float]
+Means = tuple[float, float]
 """Means of the vehicles on the road, and of their speed in m/s."""
 
 
@@ -49,13 +49,13 @@ def notes_of(scenario: Scenario) -> Iterator[str]:
                 yield f"the difference could not be measured: {error}"
 
 
-def driven(running: Running) -> Figures:
+def driven(running: Running) -> Means:
     """Lets the traffic run, and tells of it; called in its process."""
     steps = round(HALF_S / running.world.step_s)
     return _means(_now(running) for _ in range(steps))
 
 
-def _now(running: Running) -> Figures:
+def _now(running: Running) -> Means:
     running.step()
     speeds = [speed_mps for _, speed_mps, _ in running.sumo.on_lanes()]
     return float(len(speeds)), fmean(speeds) if speeds else 0.0
@@ -72,7 +72,7 @@ def _size(scenario: Scenario) -> str:
     return f"{' instead of '.join(figures)} in minutes 5 to 10 of seed 0 ({' and '.join(changes)})"
 
 
-def _sumos(scenario: Scenario) -> Figures:
+def _sumos(scenario: Scenario) -> Means:
     """Of SUMO's run by all that the configuration states."""
     given = read_configuration(scenario.config)
     with tempfile.TemporaryDirectory(prefix="automotive-cosim-difference-") as scratch:
@@ -94,6 +94,6 @@ def _sumos(scenario: Scenario) -> Figures:
     return _means(rows)
 
 
-def _means(rows: Iterable[Figures]) -> Figures:
+def _means(rows: Iterable[Means]) -> Means:
     counts, speeds = zip(*rows, strict=True)
     return fmean(counts), fmean(speeds)
