@@ -417,11 +417,14 @@ def _checked(source: Path) -> tuple[set[tuple[str, int]], str]:
 
     def start(name: str, attributes: dict[str, str], line: int) -> None:
         nonlocal version, within
+        if name in ("tag", "nd"):  # most of the elements
+            version = "" if name == "nd" and within == "relation" else version
+            return
         if name in ("osm", "osmChange"):
             version = attributes.get("version", "")
         elif name in ("node", "way", "relation"):
             within = name
-        elif name == "center" or (name == "bounds" and within) or (name == "nd" and within == "relation"):
+        elif name == "center" or (name == "bounds" and within):
             version = ""
         elif name == "count":
             raise ImportMapError(f"{source} {COUNTS}")
