@@ -36,7 +36,7 @@ CEILINGS = {
     "drives": (7279, 81, 0),
     "envs": (1301, 9, 0),
     "episode": (1733, 19, 0),
-    "exchange": (3278, 12, 0),
+    "exchange": (3290, 12, 0),
     "formats": (2639, 37, 0),
     "geo": (3470, 39, 0),
     "interface": (1479, 5, 0),

@@ -198,6 +198,9 @@ def scenario_text(
     for title, values in blocks:
         text += f"\n{title}\n" if title else ""
         text += "".join(f"{key} = {toml_value(value)}\n" for key, value in values.items() if value is not None)
+    for signal in story.signals:  # also those for which nothing waits name places
+        for condition in (each for group in signal["when"] for each in group):
+            _waits(condition, 0, story, places)
     unread(story.root)
     return text
 
