@@ -29,7 +29,7 @@ class Catalogs:
             for place in places.parts:
                 if rows["CatalogLocations"].parts.get(place.tag) == CARRIED:
                     places.taken.add(place.tag)
-                    self._folders.append(root.path.parent / place.part("Directory").text("path"))
+                    self._folders.append(place.part("Directory").beside("path"))
 
     def complete(self, element: XmlElement, scope: Mapping[str, str]) -> None:
         """Checks an element and all in it; gives them their parameters; replaces references by what they name.

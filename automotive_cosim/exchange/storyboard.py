@@ -86,7 +86,7 @@ def read_story(file: Path, ego: str) -> ReadStory:
         raise root.refused("is not OpenSCENARIO XML")
     Catalogs(root).complete(root, {})
     logic = (root.find("RoadNetwork") or root).find("LogicFile")
-    story = ReadStory(root, None if logic is None else file.parent / logic.text("filepath"), ego=ego)
+    story = ReadStory(root, None if logic is None else logic.beside("filepath"), ego=ego)
     for entities in root.all("Entities"):
         for entity in entities.all("ScenarioObject"):
             made = _entity(entity)

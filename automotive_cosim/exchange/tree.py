@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -79,6 +80,22 @@ class XmlElement:
         if found is None:
             raise self.refused(f"has no {tag}")
         return found
+
+    def beside(self, name: str) -> Path:
+        """The file or folder that an attribute names: beside this file, below it, or in a folder next to its own.
+
+        Raises:
+            ScenarioError: the attribute is missing, or leads elsewhere on this machine.
+        """
+        given, here = self.text(name), self.path.resolve().parent
+        there, below = Path(here.anchor), Path().parts
+        with suppress(OSError, ValueError):
+            there = (here / given).resolve()
+            below = there.relative_to(here.parent).parts if here.parent != Path(here.anchor) else ()
+        is_next = len(below) > 1 or (len(below) == 1 and there.is_dir())
+        if Path(given).is_absolute() or not (is_next or there.is_relative_to(here)):
+            raise self.refused(f"names {given[:80]!r}, which is not beside it; copy it there")
+        return self.path.parent / given
 
     def text(self, name: str, otherwise: str | None = None) -> str:
         """The value of an attribute, with the values of parameters.

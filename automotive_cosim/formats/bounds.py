@@ -61,7 +61,7 @@ class Cost:
 
 BUNDLE = Cost()
 WORKBOOK = Cost()
-MAP = Cost(2**32, 64, 120, 20)
+MAP = Cost(2**31, 64, 60, 20)
 """An extract of a city, packed in PBF, becomes thirty times its size as Python keeps it."""
 
 

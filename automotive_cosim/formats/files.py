@@ -241,7 +241,8 @@ class _Unpacked(io.RawIOBase):
 
     def readinto(self, buffer: bytearray | memoryview) -> int:  # type: ignore[override]
         try:
-            data = self._content.read1(len(buffer))  # what is there: `read` loses it where the archive ends
+            # ``read`` would lose what comes before the end of an archive that is cut.
+            data = self._content.read1(len(buffer))
         except (EOFError, zlib.error, lzma.LZMAError) as error:
             if self._growing and isinstance(error, EOFError):
                 return 0

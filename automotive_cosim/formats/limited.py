@@ -6,8 +6,8 @@ refused, and the program that was asked to read it goes on.
 
 from __future__ import annotations
 
+import os
 import resource
-import sys
 import time
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
@@ -37,9 +37,7 @@ class LimitedProcesses:
         most = cost or BUNDLE
         size = path.stat().st_size if is_file(path) else sum(map(_bytes, path.rglob("*")))
         self._seconds = most.free_s + most.s_per_mb * (size >> 20)
-        self._pool = ProcessPoolExecutor(
-            count, initializer=_limit_memory, initargs=(most.free_bytes + most.times * size,)
-        )
+        self._pool = ProcessPoolExecutor(count, initializer=_limit, initargs=(most.free_bytes + most.times * size,))
 
     def __enter__(self) -> Self:
         return self
@@ -93,9 +91,9 @@ def _bytes(path: Path) -> int:
     return path.lstat().st_size
 
 
-def _limit_memory(more_bytes: int) -> None:
-    if sys.platform != "linux":
-        return
+def _limit(more_bytes: int) -> None:
+    """Limits the memory of this process, and what its libraries print when they end."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
     pages = int(Path("/proc/self/statm").read_text(encoding="ascii").split()[0])
     most = pages * resource.getpagesize() + more_bytes
     hard = resource.getrlimit(resource.RLIMIT_AS)[1]

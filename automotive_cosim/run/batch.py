@@ -447,7 +447,8 @@ def note_spent(store: Store[R], meter: MeterHandle) -> None:
 
 def spent_before(store: Store[R]) -> Spent:
     """What earlier starts have spent, as they noted it, or at least what their rows say."""
-    rows = store.rows.values()
+    # Without a model of this program's, an agent tells of itself what it has used, and nobody pays for it here.
+    rows = [row for row in store.rows.values() if getattr(row, "model", "none") != "none"]
     tokens = sum(getattr(row, "tokens_in", 0) + getattr(row, "tokens_out", 0) for row in rows)
     usd = sum(getattr(row, "cost_usd", 0.0) for row in rows)
     path = store.folder / SPENT

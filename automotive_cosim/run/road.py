@@ -42,10 +42,11 @@ from automotive_cosim.contracts import (
 )
 from automotive_cosim.errors import UserError
 from automotive_cosim.formats import bounds
-from automotive_cosim.formats.files import json_lines, opened
+from automotive_cosim.formats.files import json_lines, open_file, opened
 from automotive_cosim.formats.layout import PICTURES, ROAD
 
 FORMAT = 1
+PACKED = b"\x1f\x8b"
 
 GroundLine = tuple[tuple[float, float], ...]
 
@@ -167,6 +168,9 @@ def read_road(path: Path) -> Iterator[Json]:
         UserError: it cannot be read, or has another format.
     """
     try:
+        with open_file(path) as file:
+            if (head := file.read(2)) and head != PACKED:
+                raise ValueError("it is not packed")
         with opened(path, growing=True) as file:
             begun = False
             for entry in json_lines(file, bounds.ROAD_VALUES, growing=True):

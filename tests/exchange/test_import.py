@@ -134,11 +134,14 @@ def test_an_imported_vehicle_does_what_the_file_says(file, tmp_path, simulations
         ('rule="greaterThan"', 'rule="equalTo"', "has rule = 'equalTo'; what is imported is greaterThan"),
         (LANES.format(1), TRAJECTORY, r"line \d+: <FollowTrajectoryAction> in .* it fixes where"),
         ("<SimulationTimeCondition", "<TimeOfDayCondition", "<TimeOfDayCondition>"),
+        ("road.xodr", "../road.xodr", "which is not beside it; copy it there"),
+        ("road.xodr", "/etc/passwd", "which is not beside it; copy it there"),
+        ("road.xodr", "file:///etc/passwd", "there is no road"),
     ],
 )  # fmt: skip
 def test_what_is_outside_is_refused_by_name_and_line(file, tmp_path, before, after, told):
     assert before in TEXT
     file.write_text(TEXT.replace(before, after), "utf-8")
     with pytest.raises(ScenarioError, match=told):
-        import_openscenario(file, tmp_path / "made", grid())
+        import_openscenario(file, tmp_path / "made", None if "road" in before else grid())
     assert not (tmp_path / "made").exists()

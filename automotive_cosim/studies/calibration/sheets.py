@@ -188,7 +188,7 @@ def _workbook(path: Path) -> list[Cells]:
             for (top, left_), (bottom, right) in sheet.merged_cell_ranges or ():
                 for line in cells[top : bottom + 1]:
                     line[left_ : right + 1] = [cells[top][left_]] * len(line[left_ : right + 1])
-            sheets.append(cells)
+            sheets.append([line if any(line) else () for line in cells])
     except (CalamineError, ZipError) as error:
         raise CountsError(
             f"{path} is not a workbook that can be read ({error}); save it as .xlsx or CSV"
